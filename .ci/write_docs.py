@@ -3,7 +3,8 @@
     make docs
 
 A table of settings stands between `<!-- settings solvers.denoising.DenoiseSettings -->` and
-`<!-- end -->`, the table of buttons between `<!-- buttons -->` and `<!-- end -->`.
+`<!-- end -->`, the table of buttons between `<!-- buttons -->` and `<!-- end -->`, and that of
+the presets of a verb after `<!-- presets denoise -->`.
 """
 
 import ast
@@ -15,12 +16,14 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from solvers.presets import PRESETS
 from solvers.settings import label_of
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 ENDLESS = 1e6
 SETTINGS = re.compile(r"(<!-- settings ([\w.]+)\.(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+PRESET_TABLE = re.compile(r"(<!-- presets (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 BUTTONS = re.compile(r"(<!-- buttons -->\n).*?(<!-- end -->)", re.DOTALL)
 NOT_BUTTONS = {"import_job"}
 """Operators that another operator starts: no user sees them."""
@@ -52,7 +55,25 @@ def renewed(text: str) -> str:
     text = SETTINGS.sub(
         lambda found: found[1] + settings_table(found[2], found[3]) + found[4], text
     )
+    text = PRESET_TABLE.sub(lambda found: found[1] + preset_table(found[2]) + found[3], text)
     return BUTTONS.sub(lambda found: found[1] + buttons_table() + found[2], text)
+
+
+def preset_table(verb: str) -> str:
+    """Return a Markdown table of the presets of a verb."""
+    rows = ["| preset | what it does | what it sets |", "|---|---|---|"]
+    for name, preset in PRESETS[verb].items():
+        options = ", ".join(_option(*each) for each in preset.values.items())
+        rows.append(f"| *{name}* | {preset.help}. | {options or 'nothing'} |")
+    return "\n".join(rows) + "\n"
+
+
+def _option(name: str, value: Any) -> str:
+    """Return a setting as on the command line."""
+    option = name.replace("_", "-")
+    if isinstance(value, bool):
+        return f"`--{option}`" if value else f"`--no-{option}`"
+    return f"`--{option} {value:g}`" if isinstance(value, float) else f"`--{option} {value}`"
 
 
 def buttons_table() -> str:

@@ -103,6 +103,12 @@ class Settings:
         if wrong:
             raise InvalidSettingError(" ".join(wrong))
 
+    @classmethod
+    def values_of(cls, stored: Mapping[str, Any]) -> dict[str, Any]:
+        """Return those stored values that are settings of this class, choices as members."""
+        kinds: dict[str, Any] = {item.name: type(item.default) for item in fields(cls)}
+        return {name: kinds[name](value) for name, value in stored.items() if name in kinds}
+
     def _fault(self, item: Any) -> str:
         value, described = getattr(self, item.name), item.metadata["described"]
         kind = type(item.default)

@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 
+from ...solvers.command_line import add_preset_option
 from ...solvers.progress import Progress
 from ..blender.name_lists import join_names
 from ..reconstruct.button_settings import Postures, ReconstructBundle
@@ -28,6 +29,7 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
         help="clip library; take poses from its clips most similar to the take (same as"
         " --postures library)",
     )  # fmt: skip
+    add_preset_option(parser, "reconstruct")
     add_bundle_options(parser, ReconstructBundle)
 
 

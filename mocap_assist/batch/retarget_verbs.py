@@ -5,6 +5,7 @@ from typing import Any
 
 import bpy
 
+from ...solvers.command_line import add_preset_option
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
 from ...solvers.retargeting import RetargetSettings, UnbakeSettings
@@ -26,6 +27,7 @@ VerbResult = tuple[str, dict[str, Any]]
 
 def add_retarget_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `retarget`; those of the button."""
+    add_preset_option(parser, "retarget")
     arguments_from(parser, RetargetChoices, RetargetSettings)
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import bpy
 
+from ...solvers.command_line import add_preset_option
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.physics import SimulateSettings
 from ...solvers.progress import Progress
@@ -15,6 +16,7 @@ from .solving import solve_in_subprocess
 
 def add_simulate_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `simulate`; those of the button."""
+    add_preset_option(parser, "simulate")
     arguments_from(parser, SimulateSettings)
 
 

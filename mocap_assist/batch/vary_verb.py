@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 
+from ...solvers.command_line import add_preset_option
 from ...solvers.progress import Progress, within
 from ..variants.button_settings import VaryBundle
 from ..variants.listing import chosen
@@ -23,6 +24,7 @@ def add_vary_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sheet", type=Path, metavar="FILE", help="draw all variants to a PNG file"
     )
+    add_preset_option(parser, "vary")
     add_bundle_options(parser, VaryBundle)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import bpy
 
+from ...solvers.command_line import add_preset_option
 from ...solvers.command_line.files import MOTIONS, POINTS_BY_DEFAULT, check_target, convert
 from ...solvers.errors import InvalidSettingError
 from ...solvers.progress import Progress
@@ -81,6 +82,7 @@ def _clean_options(parser: argparse.ArgumentParser) -> None:
         help="clip library; learn from its clips most similar to the take (same as --prior"
         " library)",
     )  # fmt: skip
+    add_preset_option(parser, "denoise")
     add_bundle_options(parser, CleanBundle)
 
 

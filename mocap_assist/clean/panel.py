@@ -5,6 +5,7 @@ import bpy
 from ...solvers.denoising import PART_STRENGTHS, DenoiseSettings, PlantSettings
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists, folded, settings_column
+from ..panels.presets import draw_presets
 from ..panels.visibility import shows_take
 from ..runtime.selection import selected_subject, why_not_clean
 from .button_settings import Prior
@@ -24,6 +25,9 @@ class CleanPanel(PanelMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return shows_take(context)
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        draw_presets(self.layout, "clean")
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

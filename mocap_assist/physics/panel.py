@@ -8,6 +8,7 @@ import bpy
 from ...solvers.physics import Ground, SimulateSettings
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists, settings_column
+from ..panels.presets import draw_presets
 from ..panels.visibility import shows_armature
 from ..runtime.selection import why_not_change
 
@@ -23,6 +24,9 @@ class PhysicsPanel(PanelMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return exists(SIMULATE) and shows_armature(context)
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        draw_presets(self.layout, "simulate")
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

@@ -10,6 +10,7 @@ from ..blender.mixins import PanelMixin
 from ..clean.example_list import RECONSTRUCT, draw_examples
 from ..drawing.confidence_switch import draw_confidence_switch
 from ..panels.drawing import draw_sentence, exists, folded, settings_column
+from ..panels.presets import draw_presets
 from ..panels.visibility import shows_all
 from ..runtime.selection import selected_armature
 from ..scene.origin import origin_of, was_tracked
@@ -28,6 +29,9 @@ class ReconstructPanel(PanelMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return exists(BUTTON) and (shows_all(context) or _suits(selected_armature(context)))
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        draw_presets(self.layout, "reconstruct")
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

@@ -10,6 +10,7 @@ from ..blender.mixins import PanelMixin
 from ..blender.name_lists import SEPARATOR, join_names, split_names
 from ..languages import translated
 from ..panels.drawing import draw_sentence, exists, folded, settings_column
+from ..panels.presets import draw_presets
 from ..panels.visibility import shows_armature
 from ..rigs.rigify import is_rigify
 from ..runtime.selection import selected_armature, why_not_read, why_not_retarget
@@ -33,6 +34,9 @@ class RetargetPanel(PanelMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return exists(RETARGET) and shows_armature(context)
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        draw_presets(self.layout, "retarget")
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

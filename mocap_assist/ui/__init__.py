@@ -6,6 +6,7 @@ from ..clean import example_list
 from ..drawing import confidence_switch, overlay_switch, strip_switch
 from ..exporting import export_menu
 from ..importing import import_menu
+from ..panels import presets
 from ..retarget import bone_list
 from ..retarget import panel as retarget_panel
 from ..search import panel as library_panel
@@ -22,6 +23,7 @@ PARTS = (
     source_list,
     library_panel,
     vary_panel,
+    presets,
     sidebar,
     menus,
     import_menu,

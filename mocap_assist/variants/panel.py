@@ -10,6 +10,7 @@ from ...solvers.variation import VarySettings
 from ..blender.mixins import PanelMixin
 from ..blender.name_lists import split_names
 from ..panels.drawing import draw_sentence, exists, settings_column
+from ..panels.presets import draw_presets
 from ..panels.visibility import shows_armature
 from ..retarget.panel import TICK
 from ..runtime.selection import selected_armature
@@ -70,6 +71,9 @@ class VaryPanel(PanelMixin):
     def poll(cls, context: bpy.types.Context) -> bool:
         has_variants = bool(context.scene.mocap_assist.variants.rows)
         return exists(VARY) and (has_variants or shows_armature(context))
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        draw_presets(self.layout, "vary")
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

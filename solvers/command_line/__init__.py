@@ -1,8 +1,18 @@
 """`python -m solvers VERB ...`: the project without Blender.
 
-`arguments_from` and `settings_from_arguments` also serve `blender --command mocap_assist`.
+Its options also serve `blender --command mocap_assist`.
 """
 
-from .options import SentenceParser, arguments_from, settings_from_arguments
+from .options import (
+    SentenceParser,
+    add_preset_option,
+    arguments_from,
+    settings_from_arguments,
+)
 
-__all__ = ["SentenceParser", "arguments_from", "settings_from_arguments"]
+__all__ = [
+    "SentenceParser",
+    "add_preset_option",
+    "arguments_from",
+    "settings_from_arguments",
+]

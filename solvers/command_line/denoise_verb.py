@@ -28,7 +28,7 @@ from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, within
 from .files import add_reading_options, read, read_all, with_body, write
 from .from_library import add_library_option, check_library, learn_bases
-from .options import arguments_from, settings_from_arguments
+from .options import add_preset_option, arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
 
@@ -42,6 +42,7 @@ class LearnedPrior(NamedTuple):
 def add_denoise_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `denoise`."""
     add_reading_options(parser)
+    add_preset_option(parser, "denoise")
     examples = parser.add_mutually_exclusive_group()
     examples.add_argument(
         "--train", nargs="+", type=Path, default=[], metavar="FILE",

@@ -8,6 +8,8 @@ from math import degrees, isfinite, radians
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
+from ..errors import InvalidSettingError
+from ..presets import PRESETS, find_preset
 from ..settings import Described, Settings, former_names
 from .sharing import parse_hook, parse_shard
 
@@ -72,6 +74,23 @@ def arguments_from(parser: argparse._ActionsContainer, *classes: type[Settings])
         parser.add_argument(_option(old), **hidden, default=argparse.SUPPRESS)
 
 
+def add_preset_option(parser: argparse.ArgumentParser, verb: str) -> None:
+    """Add the option for named values of a verb's settings."""
+    names = ", ".join(name.lower().replace(" ", "-") for name in PRESETS[verb])
+
+    def known_preset(name: str) -> str:
+        try:
+            find_preset(verb, name)
+        except InvalidSettingError as error:
+            raise argparse.ArgumentTypeError(str(error)) from error
+        return name
+
+    parser.add_argument(
+        "--preset", type=known_preset, metavar="NAME", default=argparse.SUPPRESS,
+        help=f"Named values of some settings; other options replace them [{names}]",
+    )  # fmt: skip
+
+
 def _option(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
@@ -81,13 +100,19 @@ def settings_from_arguments(
 ) -> SettingsClass:
     """Return settings from the command line, with defaults for missing options.
 
+    Options replace the values of a preset.
+
     Raises
     ------
     InvalidSettingError
         A value is out of its range.
     """
+    given: dict[str, Any] = {}
+    if hasattr(arguments, "preset"):
+        values = find_preset(arguments.verb, arguments.preset).values
+        given = settings_class.values_of(values)
     names = [item.name for item in fields(settings_class)]
-    given = {name: getattr(arguments, name) for name in names if hasattr(arguments, name)}
+    given |= {name: getattr(arguments, name) for name in names if hasattr(arguments, name)}
     return settings_class(**given)
 
 

@@ -26,7 +26,7 @@ from ..workflows import (
 )
 from .files import JOINTS, add_reading_options, read_all, read_recorded, with_body, write
 from .from_library import add_library_option, check_library, collect_postures
-from .options import arguments_from, settings_from_arguments
+from .options import add_preset_option, arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
 
@@ -46,6 +46,7 @@ class RebuiltTake(NamedTuple):
 def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `reconstruct`."""
     add_reading_options(parser)
+    add_preset_option(parser, "reconstruct")
     postures = parser.add_mutually_exclusive_group()
     add_library_option(postures)
     postures.add_argument(

@@ -19,7 +19,7 @@ from ..motion import (
 from ..progress import Progress, within
 from ..retargeting import RetargetSettings, UnbakeSettings, reduce_keys, retarget
 from .files import add_reading_options, read, with_body, write
-from .options import arguments_from, settings_from_arguments
+from .options import add_preset_option, arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
 CENTIMETER = 0.01
@@ -49,6 +49,7 @@ def add_retarget_options(parser: argparse.ArgumentParser) -> None:
         help="Write the map of the target as JSON, to edit it and pass it with --target-map",
     )  # fmt: skip
     add_reading_options(parser)
+    add_preset_option(parser, "retarget")
     arguments_from(parser, RetargetSettings)
 
 

@@ -9,13 +9,14 @@ from ..motion import Motion
 from ..physics import Simulated, SimulateSettings, simulate
 from ..progress import Progress, within
 from .files import add_reading_options, read, write
-from .options import arguments_from, settings_from_arguments
+from .options import add_preset_option, arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
 
 def add_simulate_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `simulate`."""
     add_reading_options(parser)
+    add_preset_option(parser, "simulate")
     arguments_from(parser, SimulateSettings)
 
 

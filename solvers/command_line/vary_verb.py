@@ -12,7 +12,7 @@ from ..recordings import write_bvh
 from ..variation import VarySettings, measure_variation
 from ..workflows import vary_motions
 from .files import add_reading_options, read_all
-from .options import arguments_from, settings_from_arguments
+from .options import add_preset_option, arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
 SHEET = "variants.png"
@@ -35,6 +35,7 @@ def add_vary_options(parser: argparse.ArgumentParser) -> None:
         help="Keep standing feet from sliding",
     )  # fmt: skip
     add_reading_options(parser)
+    add_preset_option(parser, "vary")
     arguments_from(parser, VarySettings)
 
 
