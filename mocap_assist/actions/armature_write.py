@@ -27,7 +27,7 @@ from .unchanged_samples import RecordedChannels, UnchangedSamples
 
 KeyTypes = Mapping[str, NDArray[np.uint8]]
 SUFFIX = ".clean"
-NUMBERED = re.compile(r"\.(clean|physics|reconstructed|retracked)(\.\d{3,})?$")
+NUMBERED = re.compile(r"\.(clean|delta|physics|reconstructed|retracked)(\.\d{3,})?$")
 """As Blender names a second result."""
 
 
@@ -123,11 +123,18 @@ def put_to_use(
         compat.assign(armature, action, slot)
         return
     armature.animation_data.action = None
-    track = armature.animation_data.nla_tracks.new()
+    new_strip(armature.animation_data, (action, slot))
+
+
+def new_strip(animation: bpy.types.AnimData, source: Source) -> bpy.types.NlaStrip:
+    """Put an action on a new NLA track, at its own frames."""
+    action, slot = source
+    track = animation.nla_tracks.new()
     track.name = action.name
     strip = track.strips.new(action.name, int(action.frame_range[0]), action)
     strip.action_slot = slot
     strip.frame_start, strip.frame_end = action.frame_range  # not always whole frames
+    return strip
 
 
 def check_writable(armature: bpy.types.Object) -> None:

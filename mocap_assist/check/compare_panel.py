@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..actions.delta_layer import delta_strip
 from ..blender.mixins import PanelMixin
 from ..exporting.export_menu import EXPORT, draw_export
 from ..languages import translated
@@ -63,3 +64,7 @@ def _draw_actions(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     column.label(text=played[0].name, icon="ACTION", translate=False)
     made_from = translated("Made from {raw}").format(raw=raw.name)
     column.label(text=made_from, icon="BLANK1", translate=False)
+    if strip := delta_strip(selected_subject(context)):
+        row = layout.row()
+        row.use_property_decorate = True  # it can have keys
+        row.prop(strip, "influence", text="Delta Influence", slider=True)

@@ -8,8 +8,15 @@ from numpy.typing import NDArray
 
 from ...solvers.motion import JointLimits
 from ..actions.armature_read import read_take
-from ..actions.armature_write import check_writable, count_modified, put_to_use, write_take
+from ..actions.armature_write import (
+    Output,
+    check_writable,
+    count_modified,
+    put_to_use,
+    write_take,
+)
 from ..actions.contact_keys import animators_contacts, write_contacts
+from ..actions.delta_layer import lay_delta, write_delta
 from ..actions.limits import read_limits
 from ..actions.take import ArmatureTake
 from ..actions.unchanged_samples import RecordedChannels
@@ -18,7 +25,7 @@ from ..blender.time_slices import Steps
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject
 from ..scene import history
-from .button_settings import CleanChoices, Limits
+from .button_settings import CleanChoices, CleanOutput, Limits
 from .solve_cleaning import Cleaned, Recordings, names_of
 
 
@@ -92,5 +99,9 @@ class ArmatureReading(NamedTuple):
                 self.armature, action, slot, take.frames, contacts, detected=detected
             )
         history.record(action, self.played, entry)
-        put_to_use(self.armature, action, slot, choices.result_as)
+        if choices.result_as is CleanOutput.DELTA_LAYER:
+            delta = write_delta(self.armature, self.recorded, (action, slot))
+            lay_delta(self.armature, self.recorded, delta)
+        else:
+            put_to_use(self.armature, action, slot, Output[choices.result_as.name])
         return action.name, n_modified

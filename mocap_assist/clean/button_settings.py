@@ -43,6 +43,17 @@ class Limits(Choice):
     )
 
 
+class CleanOutput(Choice):
+    """Output of Clean."""
+
+    ACTION = Output.ACTION.value, Output.ACTION.help, Output.ACTION.label
+    NLA_TRACK = Output.NLA_TRACK.value, Output.NLA_TRACK.help, Output.NLA_TRACK.label
+    DELTA_LAYER = (
+        "delta layer",
+        "Add the change as an NLA track above the original, with an influence to dial",
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
 class CleanChoices(Settings):
     """Scope, motion model and output of Clean."""
@@ -80,9 +91,9 @@ class CleanChoices(Settings):
         Limits.NONE,
         "Keep joint rotations within soft limits",
     )
-    result_as: Output = setting(
-        Output.ACTION,
-        "Assign the result as a new action, or put it on a new NLA track",
+    result_as: CleanOutput = setting(
+        CleanOutput.ACTION,
+        "Assign the result as a new action, or put it or its change on an NLA track",
         label="Output",
     )
 

@@ -6,13 +6,14 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..actions.armature_write import check_writable, put_to_use
+from ...solvers.errors import InvalidMotionError
+from ..actions.armature_write import Output, check_writable, put_to_use
 from ..actions.marker_take import MarkerTake, read_markers, write_markers
 from ..actions.markers import markers_of
 from ..blender.time_slices import Steps
 from ..runtime.subject import Subject
 from ..scene import history
-from .button_settings import CleanChoices
+from .button_settings import CleanChoices, CleanOutput
 from .solve_cleaning import Cleaned, Recordings
 
 
@@ -28,6 +29,10 @@ class MarkerReading(NamedTuple):
         cls, scene: bpy.types.Scene, holder: bpy.types.Object, choices: CleanChoices
     ) -> "Steps[MarkerReading]":
         """Read what was recorded."""
+        if choices.result_as is CleanOutput.DELTA_LAYER:
+            raise InvalidMotionError(
+                "Delta Layer is for armatures. Choose another output for markers."
+            )
         for marker in markers_of(holder):
             check_writable(marker)
         here = Subject.of(scene, holder)
@@ -64,5 +69,5 @@ class MarkerReading(NamedTuple):
             if source_new[0].name not in names:
                 history.record(source_new[0], source, entry)
             names.add(source_new[0].name)
-            put_to_use(marker, *source_new, choices.result_as)
+            put_to_use(marker, *source_new, Output[choices.result_as.name])
         return ", ".join(sorted(names)), 0

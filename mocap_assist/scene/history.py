@@ -15,6 +15,8 @@ from ..blender.stored_json import load_json, store_json
 HISTORY = "mocap_assist_history"
 SOURCE = "mocap_assist_source"
 GIVEN_BY = "mocap_assist_given_by"
+DELTA_OF = "mocap_assist_delta_of"
+DELTA_FROM = "mocap_assist_delta_from"
 REMADE = ("reconstruct", "simulate", "solve_skeleton", "retarget", "vary", "retrack")
 """Operations whose result counts as raw for Clean."""
 
@@ -96,9 +98,35 @@ def played_result(armature: bpy.types.Object) -> Source | None:
     if animation is None:
         return None
     for player in (animation, *playing_strips(animation)):
-        if player.action is not None and player.action_slot and raw_of(player.action):
-            return player.action, player.action_slot
+        source = source_of(player)
+        if source is not None and raw_of(source[0]):
+            return source
     return None
+
+
+def source_of(player: bpy.types.AnimData | bpy.types.NlaStrip) -> Source | None:
+    """Return the action and slot of an animation or NLA strip; of a delta, those of its result.
+
+    With the action below it, a delta plays the result as far as its influence goes.
+    """
+    if player.action is None or not player.action_slot:
+        return None
+    result = player.action.get(DELTA_OF)
+    if not isinstance(result, bpy.types.Action):
+        return player.action, player.action_slot
+    slot = compat.find_slot(result, player.action_slot.identifier)
+    return None if slot is None else (result, slot)
+
+
+def mark_delta(delta: bpy.types.Action, base: Source, result: Source) -> None:
+    """Note in a delta the actions between which it leads."""
+    delta[DELTA_FROM], delta[DELTA_OF] = base[0], result[0]
+
+
+def base_of_delta(action: bpy.types.Action) -> bpy.types.Action | None:
+    """Return the action below a delta; None for other actions."""
+    base = action.get(DELTA_FROM)
+    return base if isinstance(base, bpy.types.Action) else None
 
 
 def playing_strips(animation: bpy.types.AnimData) -> list[bpy.types.NlaStrip]:

@@ -12,7 +12,7 @@ from ..actions.bone_channels import Curves, location_curves, rotation_curves
 from ..actions.curves import Channel
 from ..actions.rotation_modes import rotation_property
 from ..blender.compat import Source
-from ..scene.history import playing_strips
+from ..scene.history import playing_strips, source_of
 from .tracked_body import (
     REST_TOLERANCE_M,
     TrackedBody,
@@ -33,7 +33,7 @@ def check_in_time(armature: bpy.types.Object, source: Source) -> None:
     action, animation = source[0], armature.animation_data
     if animation.action == action:
         return
-    strip = next(each for each in playing_strips(animation) if each.action == action)
+    strip = next(each for each in playing_strips(animation) if source_of(each) == source)
     action_range = strip.action_frame_start, strip.action_frame_end
     start_shift = strip.frame_start - action_range[0]
     stretch = (strip.scale - 1.0) * (action_range[1] - action_range[0])

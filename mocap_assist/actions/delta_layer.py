@@ -1,0 +1,127 @@
+"""A result as an additive NLA track above the recorded action, with an influence to dial."""
+
+from collections.abc import Iterator
+
+import bpy
+import numpy as np
+
+from ...solvers.arrays import Array
+from ...solvers.rotations import inverse, multiply, unroll
+from ..blender import compat
+from ..blender.compat import Source
+from ..scene import history
+from .armature_write import NUMBERED, check_writable, new_strip
+from .bone_channels import Curves, animated_curves, curves_of, sampled
+from .curves import deselect, write_first
+from .rotation_modes import quaternions_from_channels
+
+SUFFIX = ".delta"
+N_CHANNELS = {
+    "location": 3,
+    "rotation_euler": 3,
+    "rotation_quaternion": 4,
+    "rotation_axis_angle": 4,
+}
+"""Properties of a bone that a result may change, and how many channels each has."""
+MIN_DELTA = 1e-6
+"""Radians, quaternion components or units below which two actions are the same. It bounds what
+keys of 32 bits resolve."""
+
+
+def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Source:
+    """Make an action that leads from the pose of `base` to that of `result` when combined.
+
+    Blender's NLA combines by channel: it multiplies quaternions and adds all else. Channels
+    that are equal are left out. A key of `base` that is no number has no delta.
+    """
+    action = bpy.data.actions.new(NUMBERED.sub("", base[0].name) + SUFFIX)
+    action.use_fake_user = True
+    slot = action.slots.new(armature.id_type, result[1].name_display)
+    bag = compat.ensure_channelbag(action, slot)
+    before, after = animated_curves(*base), animated_curves(*result)
+    for bone in armature.pose.bones:
+        for path, frames, deltas in _deltas(bone, before, after):
+            for index, column in deltas.items():
+                curve = compat.new_curve(bag, path, index, bone.name)
+                write_first(curve, frames, np.nan_to_num(column))
+                deselect(curve)
+    history.mark_delta(action, base, result)
+    return action, slot
+
+
+def _deltas(
+    bone: bpy.types.PoseBone, before: Curves, after: Curves
+) -> Iterator[tuple[str, Array, dict[int, Array]]]:
+    """Yield path, frames and delta by channel of each property of a bone that differs."""
+    for name, n_channels in N_CHANNELS.items():
+        path = bone.path_from_id(name)
+        old, new = (curves_of(each, path, n_channels) for each in (before, after))
+        if not old or not new:
+            continue
+        times = [channel.keys[:, 0] for channel in (*old.values(), *new.values())]
+        frames = np.unique(np.concatenate(times))
+        values = [sampled(each, getattr(bone, name), frames) for each in (old, new)]
+        if np.abs(values[1] - values[0]).max() < MIN_DELTA:
+            continue
+        if name == "rotation_quaternion":
+            raw, clean = (quaternions_from_channels(each, "QUATERNION") for each in values)
+            identity = np.array([[1.0, 0.0, 0.0, 0.0]])
+            delta = unroll(np.concatenate([identity, multiply(inverse(raw), clean)]))[1:]
+            yield path, frames, dict(enumerate(delta.T))
+        else:
+            columns = (values[1] - values[0]).T
+            yield path, frames, {index: columns[index] for index in new}
+
+
+def lay_delta(armature: bpy.types.Object, base: Source, delta: Source) -> None:
+    """Let an armature play the base action on an NLA track, and the delta on one above it.
+
+    Tracks of an earlier delta of the same base are removed. Its influence is a free value: it
+    can be dialed, and keyed.
+
+    Raises
+    ------
+    InvalidMotionError
+        Nothing can be assigned to the armature; see `check_writable`.
+    """
+    check_writable(armature)
+    animation = armature.animation_data
+    remove_deltas(animation)
+    below = new_strip(animation, base)
+    below.blend_type = animation.action_blend_type
+    _free_influence(below, animation.action_influence)
+    animation.action = None
+    strip = new_strip(animation, delta)
+    strip.blend_type = "COMBINE"
+    _free_influence(strip, 1.0)
+
+
+def _free_influence(strip: bpy.types.NlaStrip, value: float) -> None:
+    """Give a strip an influence that can be set and keyed; by default Blender computes it."""
+    strip.use_animated_influence = True
+    for curve in strip.fcurves:
+        if curve.data_path == "influence":
+            for key in list(curve.keyframe_points):  # Blender adds one, of the value 0
+                curve.keyframe_points.remove(key)
+    strip.influence = value
+
+
+def remove_deltas(animation: bpy.types.AnimData) -> None:
+    """Remove all delta tracks, and the tracks of their base actions below them."""
+    tracks = list(animation.nla_tracks)
+    for below, track in zip([None, *tracks], tracks, strict=False):
+        bases = [history.base_of_delta(strip.action) for strip in track.strips if strip.action]
+        if not bases or None in bases:
+            continue
+        animation.nla_tracks.remove(track)
+        if below is not None and [strip.action for strip in below.strips] == bases:
+            animation.nla_tracks.remove(below)
+
+
+def delta_strip(armature: bpy.types.Object) -> bpy.types.NlaStrip | None:
+    """Return the strip of the delta that an armature plays, or None."""
+    animation = armature.animation_data
+    strips = [] if animation is None else history.playing_strips(animation)
+    return next(
+        (each for each in strips if each.action and history.base_of_delta(each.action)), None
+    )

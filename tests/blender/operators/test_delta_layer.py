@@ -1,0 +1,95 @@
+"""Delta Layer: the change of Clean on an additive NLA track above the recorded action."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+ROUNDING = 1e-4
+"""Blender's NLA takes the angle of a delta from a 32-bit arc cosine, which is flat near 1."""
+FRAMES = (1, 17, 40, 60)
+BONES = ("Hips", "Head", "LeftArm", "RightLeg")
+PROPERTIES = {
+    "QUATERNION": "rotation_quaternion",
+    "XYZ": "rotation_euler",
+    "AXIS_ANGLE": "rotation_axis_angle",
+}
+
+
+@pytest.fixture(params=PROPERTIES)
+def shaken(request, make_armature, animate, blank, rng):
+    """A figure in a rotation mode, its channels with noise; quaternions are of any length."""
+    armature = make_armature(mode=request.param)
+    animate(armature)
+    bag = armature.animation_data.action.layers[0].strips[0].channelbags[0]
+    for curve in bag.fcurves:
+        for key in curve.keyframe_points:
+            key.co.y = 1.3 * (key.co.y + rng.normal(scale=0.02))
+        curve.update()
+    return armature
+
+
+@pytest.fixture
+def matrices(blank):
+    """Return the matrices of some bones at some frames."""
+
+    def found(armature):
+        result = []
+        for frame in FRAMES:
+            blank.context.scene.frame_set(frame)
+            result += [np.array(armature.pose.bones[name].matrix) for name in BONES]
+        return np.array(result)
+
+    return found
+
+
+def test_delta_at_full_influence_gives_the_clean_pose_and_at_zero_the_raw_one(
+    shaken, clean, matrices, blank, keys_of
+):
+    raw_action, raw = shaken.animation_data.action, matrices(shaken)
+    keys = keys_of(raw_action)
+    blank.context.scene.frame_start, blank.context.scene.frame_end = 10, 45
+    clean(frame_range="SCENE")
+    cleaned = matrices(shaken)
+    blank.ops.mocap_assist.revert_to_raw()
+
+    clean(frame_range="SCENE", result_as="DELTA_LAYER")
+
+    base, delta = shaken.animation_data.nla_tracks
+    strip = delta.strips[0]
+    assert shaken.animation_data.action is None and strip.blend_type == "COMBINE"
+    assert base.strips[0].action == raw_action and keys_of(raw_action) == keys
+    assert_allclose(matrices(shaken), cleaned, atol=ROUNDING)
+    assert np.abs(cleaned - raw).max() > 0.01
+    strip.influence = 0.0
+    assert_allclose(matrices(shaken), raw, atol=ROUNDING)
+    strip.influence = 0.5
+    assert 1e-3 < np.abs(matrices(shaken) - raw).max() < np.abs(cleaned - raw).max()
+
+
+def test_delta_is_a_result_that_is_replaced_and_reverted(noisy, clean, blank, draw):
+    raw = noisy.animation_data.action
+    own = noisy.animation_data.nla_tracks.new()
+
+    clean(result_as="DELTA_LAYER")
+    clean(result_as="DELTA_LAYER", strength=0.5)
+
+    names = [track.name for track in noisy.animation_data.nla_tracks]
+    assert names == [own.name, "walk", "walk.delta.001"]
+    assert {"walk.clean.001", "Made from walk", "influence"} <= set(draw("MOCAP_PT_compare"))
+    assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
+    assert noisy.animation_data.action == raw
+    assert noisy.animation_data.nla_tracks.values() == [own]
+
+
+def test_delta_of_markers_is_refused(blank):
+    blank.ops.object.empty_add()
+    holder = blank.context.object
+    for number in range(3):
+        blank.ops.object.empty_add()
+        blank.context.object.parent = holder
+        for frame in range(1, 40):
+            blank.context.object.location = number, frame, 0.0
+            blank.context.object.keyframe_insert("location", frame=frame)
+
+    with pytest.raises(RuntimeError, match="Delta Layer is for armatures"):
+        blank.ops.mocap_assist.denoise(result_as="DELTA_LAYER")
