@@ -118,6 +118,7 @@ def settings_table(module: str, name: str) -> str:
     for item in fields(getattr(import_module(module), name)):
         described = item.metadata["described"]
         folded = " *(advanced)*" if described.advanced else ""
+        folded = " *(research)*" if described.research else folded
         allowed = _allowed(item.default, described)
         help_text = described.help.replace("|", "\\|")
         rows.append(

@@ -26,6 +26,8 @@ class Described:
     maximum: float = inf
     advanced: bool = False
     """Folded away in the user interface."""
+    research: bool = False
+    """For comparisons and experiments: the user interface shows it only on request."""
     label: str = ""
     """Label in the user interface; by default made from the name."""
     former: str = ""
@@ -69,6 +71,13 @@ def former_names(settings_class: type["Settings"]) -> dict[str, str]:
         for item in fields(settings_class)
         if item.metadata["described"].former
     }
+
+
+def research_names(settings_class: type["Settings"]) -> tuple[str, ...]:
+    """Return the names of the settings that are shown only on request."""
+    return tuple(
+        item.name for item in fields(settings_class) if item.metadata["described"].research
+    )
 
 
 def with_present_names(

@@ -93,11 +93,11 @@ def _draw_folded(
     header.label(text="Advanced")
     if body is None:
         return
-    for name in folded(DenoiseSettings, (*MAIN, *PARTS)):
+    for name in folded(DenoiseSettings, (*MAIN, *PARTS), clean):
         body.prop(clean, name)
     if not joints:
         return
     feet = body.column()
     feet.active = clean.plant_feet
-    for name in folded(PlantSettings, MAIN):
+    for name in folded(PlantSettings, MAIN, clean):
         feet.prop(clean, name)

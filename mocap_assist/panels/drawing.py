@@ -1,11 +1,13 @@
 """Pieces that several panels draw."""
 
+from collections.abc import Container
 from dataclasses import fields
 
 import bpy
 
-from ...solvers.settings import Settings
+from ...solvers.settings import Settings, research_names
 from ..languages import broken_lines, translated
+from .preference_values import preferred
 
 LETTER_WIDTH_PX = 6.2
 """Mean width of a letter of the interface, in pixels at scale 1."""
@@ -93,6 +95,22 @@ def split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
     return column
 
 
-def folded(settings: type[Settings], shown: tuple[str, ...]) -> list[str]:
-    """Return the names of the settings that a panel folds away."""
-    return [item.name for item in fields(settings) if item.name not in shown]
+def folded(
+    settings: type[Settings], shown: Container[str], group: bpy.types.PropertyGroup
+) -> list[str]:
+    """Return the names of the settings that a panel folds away.
+
+    Research settings are left out, unless the preferences show them or their value in `group`
+    is not the default: what has an effect is never hidden.
+    """
+    hidden = frozenset() if preferred("show_research") else research_names(settings)
+    return [
+        item.name
+        for item in fields(settings)
+        if item.name not in shown
+        and (item.name not in hidden or not _is_default(group, item.name))
+    ]
+
+
+def _is_default(group: bpy.types.PropertyGroup, name: str) -> bool:
+    return bool(getattr(group, name) == group.bl_rna.properties[name].default)

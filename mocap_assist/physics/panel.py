@@ -1,13 +1,12 @@
 """Panel: let a body with mass and muscles make the motion."""
 
-from dataclasses import fields
 from typing import ClassVar
 
 import bpy
 
 from ...solvers.physics import Ground, SimulateSettings
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_sentence, exists, settings_column
+from ..panels.drawing import draw_sentence, exists, folded, settings_column
 from ..panels.presets import draw_presets
 from ..panels.visibility import shows_armature
 from ..runtime.selection import why_not_change
@@ -32,10 +31,10 @@ class PhysicsPanel(PanelMixin):
         layout = self.layout
         column = settings_column(layout, context, "simulate")
         simulate = context.scene.mocap_assist.simulate
-        for item in fields(SimulateSettings):
+        for name in folded(SimulateSettings, (), simulate):
             row = column.row()
-            row.active = item.name != "ground_height" or simulate.ground != Ground.FEET.name
-            row.prop(simulate, item.name)
+            row.active = name != "ground_height" or simulate.ground != Ground.FEET.name
+            row.prop(simulate, name)
         layout.operator(SIMULATE, icon="PHYSICS")
         if reason := why_not_change(context):
             draw_sentence(layout, context, reason, icon="INFO")

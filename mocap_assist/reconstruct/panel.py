@@ -65,9 +65,9 @@ def _draw_folded(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
     header.label(text="Advanced")
     if body is None:
         return
-    for name in ("residuals_file", *folded(ReconstructSettings, ())):
+    for name in ("residuals_file", *folded(ReconstructSettings, (), settings)):
         body.prop(settings, name)
     feet = body.column()
     feet.active = settings.plant_feet
-    for name in folded(PlantSettings, ()):
+    for name in folded(PlantSettings, (), settings):
         feet.prop(settings, name)

@@ -99,7 +99,7 @@ def _draw_folded(column: bpy.types.UILayout, shown: bpy.types.PropertyGroup) -> 
     if body is None:
         return
     on_root = shown.root_motion == RootMotion.ROOT_BONE.name
-    for name in folded(RetargetSettings, MAIN):
+    for name in folded(RetargetSettings, MAIN, shown):
         row = body.row()
         row.active = on_root or name != "turn_root"
         row.prop(shown, name)

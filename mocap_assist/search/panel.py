@@ -112,7 +112,7 @@ def _draw_query(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
     header, body = column.panel("mocap_assist_find_advanced", default_closed=True)
     header.label(text="Advanced")
     if body is not None:
-        for name in ("n_matches", *folded(FindSettings, tuple(SHOWN_APART))):
+        for name in ("n_matches", *folded(FindSettings, SHOWN_APART, find)):
             body.prop(find, name)
     button = column.row()
     button.scale_y = 1.6

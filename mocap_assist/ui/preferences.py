@@ -47,6 +47,12 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         ],
         default=Output.ACTION.name,
     )
+    show_research: bpy.props.BoolProperty(
+        name="Show Research Settings",
+        description="Show methods of papers and parameters of experiments in the panels, too",
+        default=False,
+        update=_redraw,
+    )
     live_port: bpy.props.IntProperty(
         name="Live Stream Port",
         description="UDP port for live joint streams",
@@ -93,7 +99,7 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("tab", "result_as", "live_port", "keep_solver_ready"):
+        for name in ("tab", "result_as", "show_research", "live_port", "keep_solver_ready"):
             layout.prop(self, name)
         overlay = layout.column(heading="Overlay")
         for name in ("raw_color", "clean_color", "line_width"):

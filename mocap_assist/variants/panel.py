@@ -1,6 +1,5 @@
 """Panel: many new actions of a few, and what to do with them."""
 
-from dataclasses import fields
 from typing import Any, ClassVar
 
 import bpy
@@ -9,7 +8,7 @@ from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
 from ..blender.mixins import PanelMixin
 from ..blender.name_lists import split_names
-from ..panels.drawing import draw_sentence, exists, settings_column
+from ..panels.drawing import draw_sentence, exists, folded, settings_column
 from ..panels.presets import draw_presets
 from ..panels.visibility import shows_armature
 from ..retarget.panel import TICK
@@ -129,13 +128,12 @@ def _draw_folded(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) -> N
         return
     for name in OTHERS:
         body.prop(vary, name)
-    for item in fields(VarySettings):
-        if item.name not in SHOWN_APART:
-            body.prop(vary, item.name)
+    for name in folded(VarySettings, SHOWN_APART, vary):
+        body.prop(vary, name)
     feet = body.column()
     feet.active = vary.plant_feet
-    for item in fields(PlantSettings):
-        feet.prop(vary, item.name)
+    for name in folded(PlantSettings, (), vary):
+        feet.prop(vary, name)
 
 
 def _draw_variants(column: bpy.types.UILayout, context: bpy.types.Context) -> None:

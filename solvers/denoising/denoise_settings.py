@@ -25,6 +25,7 @@ class DenoiseSettings(Settings):
         DenoiseMethod.DEFAULT,
         "Denoising method; the default performed best in tests",
         advanced=True,
+        research=True,
     )
     strength: float = setting(
         1.0, "Blend from recorded to cleaned motion; gaps are filled at any strength",

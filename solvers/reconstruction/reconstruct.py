@@ -91,6 +91,7 @@ class ReconstructSettings(Settings):
     method: ReconstructMethod = setting(
         ReconstructMethod.BOTH,
         "Choose what to rebuild, and how",
+        research=True,
     )
     smoothing: float = setting(
         0.05, "Remove jitter shorter than about this; higher is smoother but blurs motion",
@@ -98,13 +99,15 @@ class ReconstructSettings(Settings):
     )  # fmt: skip
     n_neighbors: int = setting(
         30, "Number of clean poses that each rebuilt pose is made of; more gives more variety",
-        minimum=2, maximum=200, label="Neighbors", former="n_neighbours",
+        minimum=2, maximum=200, label="Neighbors", former="n_neighbours", research=True,
     )  # fmt: skip
     inferred: float = setting(
         0.5, "Weight of joints that the sensor only guessed; 0 rebuilds them all",
         minimum=0.0, maximum=1.0, label="Weight of Inferred Joints",
     )  # fmt: skip
-    causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
+    causal: bool = setting(
+        False, "Use only earlier frames, as in a live system; less smooth", research=True
+    )
     shift: bool = setting(
         True, "Correct the constant joint offsets of a known sensor; off keeps its mean joint"
         " positions",

@@ -31,7 +31,7 @@ class VarySettings(Settings):
     method: VaryMethod = setting(
         VaryMethod.MIXTURE, "Choose how to generate variants; the default performed best in"
         " tests",
-        advanced=True,
+        advanced=True, research=True,
     )  # fmt: skip
     amount: float = setting(
         1.0, "Amount of variation; 0 copies an example, 1 varies as the examples do, 2"

@@ -198,8 +198,54 @@ def clean_again_with_other_settings(armature):
     settings.strength, settings.plant_feet = 1.0, True
 
 
+def presets_and_body_parts():
+    """The presets of the panel, and the strengths with their dots for keys."""
+    clean = bpy.context.scene.mocap_assist.clean
+    yield from bgui.scan()
+    column, row = bgui.at("mocap_assist.denoise")
+    bgui.move(column, row)
+    with bgui.override("WINDOW"):
+        bpy.ops.wm.call_panel(name="MOCAP_PT_clean_presets", keep_open=True)
+    yield 1.0
+    bgui.shot("15-presets.png")
+    yield from bgui.dismiss()
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.use_preset(group="clean", preset="Light")
+    assert clean.strength == 0.5 and not clean.hold_rotation
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.use_preset(group="clean", preset="Normal")
+    yield from bgui.scan()
+    column, row = bgui.at("clean.plant_feet")
+    yield from bgui.click(column, row - ROW)
+    yield from settle(pointer=AWAY)
+    bgui.shot("16-body-parts.png")
+    yield from bgui.click(column, row - ROW)
+
+
+def delta_layer(armature):
+    """The change above the recording, and its influence in the panel Compare."""
+    settings = bpy.context.scene.mocap_assist.clean
+    settings.result_as = "DELTA_LAYER"
+    yield from press("mocap_assist.denoise")
+    yield 1.0
+    yield from wait_until_done()
+    strip = armature.animation_data.nla_tracks[-1].strips[0]
+    assert strip.blend_type == "COMBINE" and strip.influence == 1.0
+    yield from scroll(WHEEL_DOWN)
+    yield from bgui.scan()
+    assert bgui.at(".influence")
+    strip.influence = 0.5
+    yield from settle(pointer=AWAY)
+    bgui.shot("17-delta.png")
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.revert_to_raw()
+    settings.result_as = "ACTION"
+    assert not armature.animation_data.nla_tracks
+
+
 def revert_and_compare(armature):
     """Back to the recorded action; the overlay still shows both."""
+    yield from scroll(WHEEL_DOWN)
     yield from press("mocap_assist_overlay")
     yield from settle(pointer=AWAY)
     bgui.shot("5-overlay.png")
@@ -281,9 +327,11 @@ def steps():
     yield from clean(armature)
     yield from the_redo_panel(armature)
     yield from the_manual()
+    yield from presets_and_body_parts()
     yield from revert_and_compare(armature)
     yield from check()
     yield from clean_again_with_other_settings(armature)
+    yield from delta_layer(armature)
     yield from other_editors()
     yield from bgui.open_sidebar("Mocap")
     yield from wide_sidebar_with_examples()

@@ -44,7 +44,7 @@ class FindSettings(Settings):
 
     method: FindMethod = setting(
         FindMethod.WORDS, "Search method; the default is faster and performed best in tests",
-        advanced=True,
+        advanced=True, research=True,
     )  # fmt: skip
 
     n_matches: int = setting(
@@ -58,28 +58,29 @@ class FindSettings(Settings):
     right_leg: bool = setting(True, "Compare the right leg")
     busy: float = setting(
         0.5, "Weight body parts by their motion in the query; at 0 all parts count the same",
-        minimum=0.0, maximum=4.0, advanced=True, label="Weight by Motion",
+        minimum=0.0, maximum=4.0, advanced=True, research=True, label="Weight by Motion",
     )  # fmt: skip
     stance: float = setting(
         MEAN_POSTURE_WEIGHT,
         "Weight of the mean pose relative to the motion; at most 0.4 for sensor recordings",
-        minimum=0.0, maximum=1.0, advanced=True, label="Pose Weight",
+        minimum=0.0, maximum=1.0, advanced=True, research=True, label="Pose Weight",
     )  # fmt: skip
     n_warped: int = setting(
         128, "Number of best clips to compare in time as well; more is slower",
-        minimum=0, maximum=2_000, advanced=True, label="Time-Aligned Clips",
+        minimum=0, maximum=2_000, advanced=True, research=True, label="Time-Aligned Clips",
     )  # fmt: skip
     warping: float = setting(
         3.0, "Weight of timing relative to poses",
-        minimum=0.0, maximum=100.0, advanced=True, label="Timing Weight",
+        minimum=0.0, maximum=100.0, advanced=True, research=True, label="Timing Weight",
     )  # fmt: skip
     n_neighbors: int = setting(
         8, "Similar clips that also vote on each result; at most one in twenty clips",
-        minimum=0, maximum=100, advanced=True, label="Neighbors", former="n_alike",
+        minimum=0, maximum=100, advanced=True, research=True, label="Neighbors",
+        former="n_alike",
     )  # fmt: skip
     n_aligned: int = setting(
         8, "Number of best matches to align frame by frame with the query",
-        minimum=0, maximum=10_000, advanced=True, label="Aligned Matches",
+        minimum=0, maximum=10_000, advanced=True, research=True, label="Aligned Matches",
     )  # fmt: skip
 
     def for_sensor(self) -> "FindSettings":

@@ -37,7 +37,7 @@ def test_panel_shows_index_and_find_without_matches(draw, blank):
     assert "Select an animated armature" in " ".join(shown)
 
 
-def test_panel_shows_every_search_setting_once(draw, blank, actor):
+def test_panel_shows_every_search_setting_once(draw, blank, actor, show_research):
     find = blank.context.scene.mocap_assist.find
 
     shown = draw("MOCAP_PT_library")

@@ -2,9 +2,19 @@
 
 import dataclasses
 import typing
+from collections import Counter
 
 import pytest
 
+RESEARCH = {
+    "clean": {"method"},
+    "reconstruct": {"method", "n_neighbors", "causal"},
+    "retarget": set(),
+    "physics": set(),
+    "library": {"method", "busy", "stance", "n_warped", "warping", "n_neighbors"},
+    "vary": {"method"},
+    "check": set(),
+}
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
 PANELS = ("import", "fix", "clean", "check", "compare", "feet", "retarget")
 
@@ -27,7 +37,7 @@ def test_clean_panel_names_what_to_select_without_an_armature(draw):
     assert "Select an animated armature" in " ".join(shown)
 
 
-def test_clean_panel_shows_every_setting_once(blank, draw, actor):
+def test_clean_panel_shows_every_setting_once(blank, draw, actor, show_research):
     clean = blank.context.scene.mocap_assist.clean
     hidden = {"examples", "learned_file", "unswap"}  # the last one is for markers
 
@@ -37,6 +47,21 @@ def test_clean_panel_shows_every_setting_once(blank, draw, actor):
         name for name in shown if name in type(clean).setting_names
     )
     assert "Select an animated armature" not in " ".join(shown)
+
+
+def test_research_settings_are_shown_only_on_request(blank, draw, actor, request):
+    vary = blank.context.scene.mocap_assist.vary
+    shown = {name: draw(f"MOCAP_PT_{name}") for name in RESEARCH}
+    vary.method = "PUBLISHED"
+    assert "method" in draw("MOCAP_PT_vary")  # since it has an effect
+    vary.property_unset("method")
+
+    request.getfixturevalue("show_research")
+
+    for name, settings in RESEARCH.items():
+        added = Counter(draw(f"MOCAP_PT_{name}"))
+        added.subtract(shown[name])
+        assert {each for each, count in added.items() if count} == settings
 
 
 def test_pattern_source_is_shown_only_when_used(blank, draw, actor):
