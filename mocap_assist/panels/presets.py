@@ -66,6 +66,8 @@ class PresetMenu(PresetPanel):
     """The shipped presets, then the animator's own, with fields to add and remove them."""
 
     group: ClassVar[str]
+    preset_subdir: ClassVar[str]
+    preset_add_operator: ClassVar[str]
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -74,7 +76,19 @@ class PresetMenu(PresetPanel):
             button = layout.operator(USE, text=name)
             button.group, button.preset = self.group, name
         layout.separator()
-        PresetPanel.draw(self, context)
+        if bpy.utils.preset_paths(self.preset_subdir):
+            PresetPanel.draw(self, context)
+        else:
+            self._draw_first(context)
+
+    def _draw_first(self, context: bpy.types.Context) -> None:
+        """Draw the fields for the first own preset; Blender would report a missing folder."""
+        manager = context.window_manager
+        row = self.layout.row()
+        field = row.row()
+        field.emboss = "NORMAL"
+        field.prop(manager, "preset_name", text="")
+        row.operator(self.preset_add_operator, text="", icon="ADD").name = manager.preset_name
 
 
 class OwnPreset(AddPresetBase):

@@ -224,11 +224,8 @@ def presets_and_body_parts():
 
 def delta_layer(armature):
     """The change above the recording, and its influence in the panel Compare."""
-    settings = bpy.context.scene.mocap_assist.clean
-    settings.result_as = "DELTA_LAYER"
-    yield from press("mocap_assist.denoise")
-    yield 1.0
-    yield from wait_until_done()
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.denoise(result_as="DELTA_LAYER")
     strip = armature.animation_data.nla_tracks[-1].strips[0]
     assert strip.blend_type == "COMBINE" and strip.influence == 1.0
     yield from scroll(WHEEL_DOWN)
@@ -239,7 +236,6 @@ def delta_layer(armature):
     bgui.shot("17-delta.png")
     with bgui.override("WINDOW"):
         bpy.ops.mocap_assist.revert_to_raw()
-    settings.result_as = "ACTION"
     assert not armature.animation_data.nla_tracks
 
 

@@ -29,7 +29,7 @@ def test_preset_sets_its_settings_and_resets_those_of_others(blank, load, group)
     assert shown.settings() == before
 
 
-def test_own_preset_is_stored_where_blender_stores_presets(blank, draw):
+def test_own_preset_is_stored_where_blender_stores_presets(blank):
     clean, ops = blank.context.scene.mocap_assist.clean, blank.ops
     clean.strength, clean.joint_limits, clean.examples = 0.25, "CONSTRAINTS", "run"
     kind = blank.types.MOCAP_PT_clean_presets
