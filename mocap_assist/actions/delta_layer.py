@@ -24,8 +24,8 @@ N_CHANNELS = {
 }
 """Properties of a bone that a result may change, and how many channels each has."""
 MIN_DELTA = 1e-6
-"""Radians, quaternion components or units below which two actions are the same. It bounds what
-keys of 32 bits resolve."""
+"""Radians, quaternion components or units below which two actions are the same. It bounds the
+rounding of keys, which have 32 bits."""
 
 
 def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Source:

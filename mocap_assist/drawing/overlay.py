@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from ...solvers.arrays import Array
 from ...solvers.rotations import inverse, multiply, rotate
 from ..actions.bone_channels import read_bone
-from ..actions.key_store import Keys, curves_near, read_keys
 from ..actions.take import BoneChannels
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
 from ..scene.rig import Rig, read_rig
+from .key_store import Keys, curves_near, read_keys
 
 BLOCK_POSES = 2**13
 """Number of bone poses that are computed at once. It bounds the delay of the drawing."""

@@ -12,13 +12,13 @@ from mathutils import Matrix
 from ...solvers.arrays import Array
 from ...solvers.motion import HUMANOID_ROLES, HumanoidMap, Motion, Skeleton
 from ...solvers.rotations import IDENTITY, inverse, multiply, quaternion_from_matrix, rotate
-from ..actions.animated_values import values_kept
 from ..actions.take import ArmatureTake
 from ..blender import compat
 from ..blender.block_references import BlockReference, SourceReference
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene.rig import placement_of
+from .animated_values import values_kept
 from .rigify import original_of
 
 ABOVE = {

@@ -7,57 +7,27 @@ pytest's: pictures are for eyes. What can be asserted is.
 """
 
 import json
-import tempfile
 import webbrowser
-from importlib import import_module
 from pathlib import Path
 from urllib.parse import unquote, urlparse
 
 import bgui
 import bpy
-from driver_scene import WHEEL_DOWN, empty_scene, scroll, settle
+from driver_scene import (
+    PACKAGE,
+    WHEEL_DOWN,
+    empty_scene,
+    import_noisy_walk,
+    look_at_figure,
+    lose_arm,
+    scroll,
+    settle,
+)
 
-PACKAGE = "bl_ext.user_default.mocap_assist"
 AWAY = (500, 500)
-SECONDS = 8.0  # of the take
-MISSING = ("RightArm", range(120, 180))
 ROW = 23  # pixels from one row of a panel to the next
 EDITORS = {"FCURVES": "GRAPH_EDITOR", "DOPESHEET": "DOPESHEET_EDITOR"}
 UNTIL_DONE = 600  # half seconds
-
-
-def import_noisy_walk():
-    """Make a walk with jitter, spikes, sliding feet and a missing arm, and import it."""
-    samples = import_module(f"{PACKAGE}.solvers.samples")
-    write_bvh = import_module(f"{PACKAGE}.solvers.recordings").write_bvh
-    walk = samples.walking_gait(samples.GaitSettings(duration=SECONDS, frame_rate=30.0))
-    wrong = samples.CorruptionSettings(
-        jitter=3.0, spikes=0.004, root_jitter=0.004, root_sway=0.03
-    )
-    path = Path(tempfile.mkdtemp()) / "walk.bvh"
-    write_bvh(samples.corrupt(walk, wrong), path)
-    with bgui.override("WINDOW"):
-        bpy.ops.import_anim.bvh(
-            filepath=str(path),
-            global_scale=0.01,
-            rotate_mode="NATIVE",
-            update_scene_fps=True,
-            update_scene_duration=True,
-        )
-    return bpy.context.view_layer.objects.active
-
-
-def lose_arm(armature):
-    """Remove the keys of one arm for two seconds."""
-    action, slot = armature.animation_data.action, armature.animation_data.action_slot
-    bone = armature.pose.bones[MISSING[0]]
-    names = [bone.name, *(each.name for each in bone.children_recursive)]
-    for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
-        if any(f'bones["{name}"]' in curve.data_path for name in names):
-            for key in reversed(curve.keyframe_points):
-                if round(key.co.x) in MISSING[1]:
-                    curve.keyframe_points.remove(key, fast=True)
-            curve.update()
 
 
 def set_the_stage():
@@ -70,16 +40,6 @@ def set_the_stage():
     with bgui.override("WINDOW"):
         bpy.ops.object.mode_set(mode="POSE")
     return armature
-
-
-def look_at_figure():
-    """Rotate the view to the figure at the current frame."""
-    view = bgui.area().spaces.active.region_3d
-    hips = bpy.context.object.pose.bones[0]
-    view.view_location = bpy.context.object.matrix_world @ hips.head
-    view.view_rotation = (0.76, 0.6, 0.15, 0.2)
-    view.view_distance = 4.0
-    view.view_perspective = "ORTHO"
 
 
 def job():
@@ -224,6 +184,7 @@ def presets_and_body_parts():
 
 def delta_layer(armature):
     """The change above the recording, and its influence in the panel Compare."""
+    bpy.context.scene.mocap_assist.issues.clear()  # or its list would be scrolled
     with bgui.override("WINDOW"):
         bpy.ops.mocap_assist.denoise(result_as="DELTA_LAYER")
     strip = armature.animation_data.nla_tracks[-1].strips[0]
@@ -327,10 +288,10 @@ def steps():
     yield from revert_and_compare(armature)
     yield from check()
     yield from clean_again_with_other_settings(armature)
-    yield from delta_layer(armature)
     yield from other_editors()
     yield from bgui.open_sidebar("Mocap")
     yield from wide_sidebar_with_examples()
+    yield from delta_layer(armature)
     yield from the_preferences()
 
 

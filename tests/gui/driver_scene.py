@@ -1,7 +1,15 @@
 """What the drivers have in common. Runs in the Blender with a window, as they do."""
 
+import tempfile
+from importlib import import_module
+from pathlib import Path
+
 import bgui
 import bpy
+
+PACKAGE = "bl_ext.user_default.mocap_assist"
+SECONDS = 8.0  # of the noisy walk
+MISSING = ("RightArm", range(120, 180))
 
 PANELS = "MOCAP_PT_"
 UNTIL_DONE = 1800  # tenths of a second
@@ -54,3 +62,47 @@ def until_done():
         if not job.running:
             return
     raise AssertionError(f"{job.message} {job.fraction}")
+
+
+def import_noisy_walk():
+    """Make a walk with jitter, spikes, sliding feet and a missing arm, and import it."""
+    samples = import_module(f"{PACKAGE}.solvers.samples")
+    write_bvh = import_module(f"{PACKAGE}.solvers.recordings").write_bvh
+    walk = samples.walking_gait(samples.GaitSettings(duration=SECONDS, frame_rate=30.0))
+    wrong = samples.CorruptionSettings(
+        jitter=3.0, spikes=0.004, root_jitter=0.004, root_sway=0.03
+    )
+    path = Path(tempfile.mkdtemp()) / "walk.bvh"
+    write_bvh(samples.corrupt(walk, wrong), path)
+    with bgui.override("WINDOW"):
+        bpy.ops.import_anim.bvh(
+            filepath=str(path),
+            global_scale=0.01,
+            rotate_mode="NATIVE",
+            update_scene_fps=True,
+            update_scene_duration=True,
+        )
+    return bpy.context.view_layer.objects.active
+
+
+def lose_arm(armature):
+    """Remove the keys of one arm for two seconds."""
+    action, slot = armature.animation_data.action, armature.animation_data.action_slot
+    bone = armature.pose.bones[MISSING[0]]
+    names = [bone.name, *(each.name for each in bone.children_recursive)]
+    for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
+        if any(f'bones["{name}"]' in curve.data_path for name in names):
+            for key in reversed(curve.keyframe_points):
+                if round(key.co.x) in MISSING[1]:
+                    curve.keyframe_points.remove(key, fast=True)
+            curve.update()
+
+
+def look_at_figure():
+    """Rotate the view to the figure at the current frame."""
+    view = bgui.area().spaces.active.region_3d
+    hips = bpy.context.object.pose.bones[0]
+    view.view_location = bpy.context.object.matrix_world @ hips.head
+    view.view_rotation = (0.76, 0.6, 0.15, 0.2)
+    view.view_distance = 4.0
+    view.view_perspective = "ORTHO"

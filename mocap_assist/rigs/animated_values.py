@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import bpy
 
+from ..actions.bone_channels import animated_curves
 from ..blender.compat import Source
-from .bone_channels import animated_curves
 
 
 @contextmanager
