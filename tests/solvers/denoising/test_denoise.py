@@ -15,8 +15,7 @@ from solvers.denoising import (
     limit_excess,
     load_filter_bases,
 )
-from solvers.errors import InvalidMotionError
-from solvers.motion import Motion, Skeleton, Tracks, joint_parts
+from solvers.motion import Motion, Skeleton, Tracks
 from solvers.recordings import read_bvh
 from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
@@ -121,30 +120,6 @@ def test_strength_zero_fills_gaps_and_changes_nothing_else(swinging_leg, rng):
 
     assert np.array_equal(cleaned.rotations[observed], noisy.rotations[observed])
     assert cleaned.observed.all()
-
-
-def test_part_of_strength_zero_keeps_its_samples_and_no_other_part_changes(rng):
-    noisy = shaken(walking_gait(GaitSettings(duration=2.0, frame_rate=30.0)), rng, 0.05)
-    noisy.rotations[30:40, noisy.skeleton.names.index("LeftForeArm")] = np.nan
-    arms = np.array([part == "arms" for part in joint_parts(noisy.skeleton)])
-    observed = np.isfinite(noisy.rotations[:, arms])
-
-    cleaned = denoise(noisy, settings=DenoiseSettings(strength_arms=0.0)).recording
-
-    all_cleaned = denoise(noisy).recording
-    assert np.array_equal(
-        cleaned.rotations[:, arms][observed], noisy.rotations[:, arms][observed]
-    )
-    assert cleaned.observed.all()
-    assert np.array_equal(cleaned.rotations[:, ~arms], all_cleaned.rotations[:, ~arms])
-    assert np.array_equal(cleaned.root_positions, all_cleaned.root_positions)
-
-
-def test_points_have_no_body_parts():
-    points = Tracks(("a",), np.zeros((60, 1, 3)), 30.0)
-
-    with pytest.raises(InvalidMotionError, match="Points have no body parts"):
-        denoise(points, settings=DenoiseSettings(strength_legs=0.5))
 
 
 def test_finds_the_spikes(swinging_leg, rng):
