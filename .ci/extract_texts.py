@@ -12,10 +12,12 @@ NOT_SHOWN = ("mocap_assist/batch/", "mocap_assist/languages/")
 LABELED = {
     "mocap_assist/check/checking.py": {"_summary"},
     "mocap_assist/check/compare_panel.py": {"HOLD"},
+    "mocap_assist/check/panel.py": {"_draw_figures"},
     "mocap_assist/check/held_operator.py": {"HELD", "CLICKED"},
     "mocap_assist/clean/report.py": {"clean_report"},
     "mocap_assist/drawing/strip_ranges.py": {"Row", "Mark"},
     "mocap_assist/exporting/export_menu.py": {"ENTRY"},
+    "mocap_assist/fix/panel.py": {"_draw_card"},
     "mocap_assist/importing/import_menu.py": {"ENTRY"},
     "mocap_assist/library/background.py": {"message_of"},
     "mocap_assist/live/listening.py": {"MODES"},

@@ -51,7 +51,7 @@ def _draw_main(
 ) -> None:
     """Draw what everybody needs; markers have neither joint limits nor feet."""
     column.row().prop(clean, "bones", text="Bones" if joints else "Markers", expand=True)
-    column.prop(clean, "prior", text="Motion Model")
+    column.prop(clean, "prior")
     if clean.prior == Prior.EXAMPLES.name:
         draw_examples(column, clean)
     if clean.prior in {Prior.EXAMPLES.name, Prior.LEARNED.name}:

@@ -84,7 +84,7 @@ def _draw_library(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     if body is not None:
         body.use_property_decorate = False
         draw_sources(body, library)
-        body.prop(library, "tags", text="Tags")
+        body.prop(library, "tags")
         body.prop(library, "rig_file", text="Rig")
         body.prop(library, "library_file", text="File")
         row = body.row(align=True)
@@ -154,7 +154,7 @@ def _draw_chosen(
     switch.prop(context.window_manager, "mocap_assist_ghost", toggle=True, icon="GHOST_ENABLED")
     load = context.scene.mocap_assist.load
     column.prop(load, "part")
-    column.prop(load, "at_query", text="Place at Query")
+    column.prop(load, "at_query")
     block = column.column(align=True)
     row = block.row(align=True)
     row.operator(LOAD, text="Append", icon="ACTION").result_as = "ACTION"
