@@ -46,7 +46,7 @@ class FixPanel(PanelMixin):
 def _draw_card(
     box: bpy.types.UILayout, context: bpy.types.Context, card: dict[str, Any]
 ) -> None:
-    """Draw the figures, the three buttons, and the steps if they are unfolded."""
+    """Draw figures, the most important remark, the buttons, and the steps if unfolded."""
     table = box.column(align=True)
     table.scale_y = 0.9
     rows = figure_texts(card["before"], card["after"])
@@ -56,6 +56,8 @@ def _draw_card(
         values = names.split(factor=0.5)
         values.label(text=translated(before), translate=False)
         values.label(text=translated(after), translate=False)
+    if headline := str(card.get("headline", "")):
+        draw_sentence(box, context, headline, icon="INFO")
     row = box.row(align=True)
     row.operator(ACCEPT)
     row.prop(context.window_manager, DETAILS, text="Details", toggle=True)

@@ -9,6 +9,8 @@ from ..workflows import (
     FixedTake,
     FixSettings,
     TakeOrigin,
+    describe_missing_points,
+    drop_missing_points,
     figure_texts,
     find_origin,
     fix_take,
@@ -28,9 +30,11 @@ def perform_fix(task: Task, prepared: None, progress: Progress) -> Outcome:
     """Fix one take, write its motion and report what was done."""
     recording = read_recorded(task.source, task.arguments, within(progress, 0.0, 0.1))
     if find_origin(recording) is TakeOrigin.POINTS:
+        _, never_observed = drop_missing_points(recording)
+        missing = describe_missing_points(never_observed)
         raise InvalidMotionError(
             f"{task.source} holds points of no marker set that a skeleton can be solved from."
-            " Use denoise, which cleans them as points."
+            f" {missing} Use denoise, which cleans them as points.".replace("  ", " ")
         )
     settings = settings_from_arguments(task.arguments, FixSettings)
     fixed = fix_take(recording, settings=settings, progress=within(progress, 0.1, 0.95))

@@ -90,7 +90,10 @@ def _describe(n_smoothed: int, n_predicted: int) -> str:
     sentences = []
     if n_smoothed:
         joints = _joints(n_smoothed)
-        sentences.append(f"Smoothing and the motion mixture were weighted higher for {joints}.")
+        sentences.append(
+            f"For {joints}, plain smoothing and typical human movement fit better than the"
+            " patterns of the take."
+        )
     if n_predicted:
         sentences.append(
             f"Filled long gaps of {_joints(n_predicted)} from the rest of the body."

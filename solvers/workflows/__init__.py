@@ -2,7 +2,18 @@
 
 from .capture_recording import CapturedMotion, capture_actor, capture_recording
 from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
-from .fix_chains import ChainResult, TakeOrigin, TrackedMotion, find_origin
+from .fix_chains import ChainResult
+from .fix_report import (
+    UNKNOWN,
+    TakeFigures,
+    TakeOrigin,
+    TrackedMotion,
+    describe_missing_points,
+    drop_missing_points,
+    figure_texts,
+    find_origin,
+    measure_take,
+)
 from .fix_take import FixedTake, FixSettings, fix_take
 from .index_files import IndexReport, index_files
 from .live_session import LiveSession
@@ -16,7 +27,6 @@ from .reconstruct_from_library import (
 )
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
-from .take_figures import UNKNOWN, TakeFigures, figure_texts, measure_take
 from .vary_motions import Variants, vary_motions
 
 __all__ = [
@@ -42,6 +52,8 @@ __all__ = [
     "capture_actor",
     "capture_recording",
     "clean_from_library",
+    "describe_missing_points",
+    "drop_missing_points",
     "figure_texts",
     "find_origin",
     "fix_take",

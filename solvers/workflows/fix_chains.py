@@ -2,10 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Flags
 from ..denoising import Denoised, Planted, PlantSettings, denoise
@@ -13,7 +11,6 @@ from ..markers import Unswapped, find_marker_set, solve_skeleton, unswap_markers
 from ..motion import (
     JointRecording,
     Motion,
-    Sensor,
     Tracks,
     describe_low_confidence,
     explain_roles,
@@ -21,44 +18,14 @@ from ..motion import (
     joint_parents,
     motion_from_points,
 )
-from ..motion.humanoid import naming_scheme
 from ..progress import Progress, within
 from ..signals import find_runs
+from .fix_report import Take, TakeOrigin, TrackedMotion, find_origin, observed_samples
 from .motion_from_markers import MarkerMotion, motion_from_markers
 from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 from .standard_joints import standardize_joint_names
-
-VIDEO_SCHEMES = {"SMPL", "SMPL in robotics", "SOMA", "MHR"}
-"""Names of joints that video models write."""
-
-
-class TakeOrigin(Enum):
-    """Origin of a take, as its content shows."""
-
-    SKELETON = "suit or file of a skeleton"
-    VIDEO = "video model"
-    CAMERA = "joints of a depth camera"
-    MARKERS = "optical markers"
-    POINTS = "points without a known marker set"
-
-
-@dataclass(frozen=True, eq=False)
-class TrackedMotion:
-    """A motion that was solved from the joints of a depth camera.
-
-    Attributes are those of `reconstruct_motion`.
-    """
-
-    motion: Motion
-    source: JointRecording | None = None
-    tracking_state: NDArray[np.int8] | None = None
-    sensor: Sensor = Sensor.OTHER
-    resize: bool = False
-
-
-Take = Motion | Tracks | JointRecording | TrackedMotion
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -71,28 +38,18 @@ class ChainResult:
         Without gaps.
     steps : tuple of str
         Sentences for the animator: what was done, and why.
+    notices : tuple of str
+        Those of the steps that the animator should act on, the most important first.
     """
 
     recording: Motion | Tracks
     steps: tuple[str, ...]
+    notices: tuple[str, ...] = ()
     planted: Planted | None = None
     denoised: Denoised | None = None
     unswapped: Unswapped | None = None
     rebuilt: RebuiltMotion | ReconstructedMotion | None = None
     solved: MarkerMotion | None = None
-
-
-def find_origin(take: Take) -> TakeOrigin:
-    """Identify the origin of a take by its kind and the names of its joints or markers."""
-    match take:
-        case JointRecording() | TrackedMotion():
-            return TakeOrigin.CAMERA
-        case Motion():
-            is_video = naming_scheme(take.skeleton.names) in VIDEO_SCHEMES
-            return TakeOrigin.VIDEO if is_video else TakeOrigin.SKELETON
-        case Tracks():
-            known = find_marker_set(take.names)
-            return TakeOrigin.POINTS if known.missing_landmarks() else TakeOrigin.MARKERS
 
 
 def clean_motion(
@@ -110,14 +67,16 @@ def clean_motion(
         if is_video
         else "The take has a skeleton: Clean removes jitter and spikes and fills gaps."
     )
+    low_confidence = _low_confidence_of_legs(motion) if planting else []
     return ChainResult(
         recording=planting_result.motion,
         steps=(
             reason,
             *_cleaned(motion, denoised),
             *_planted(planting_result),
-            *(_low_confidence_of_legs(motion) if planting else ()),
+            *low_confidence,
         ),
+        notices=(*planting_result.remarks, *low_confidence, *_unfinished(denoised)),
         planted=planting_result.planted,
         denoised=denoised,
     )
@@ -136,6 +95,7 @@ def clean_points(tracks: Tracks, progress: Progress) -> ChainResult:
     return ChainResult(
         recording=denoised.recording,
         steps=steps,
+        notices=(reason, *_unfinished(denoised)),
         denoised=denoised,
         unswapped=unswapped,
     )
@@ -163,6 +123,7 @@ def solve_markers(
     return ChainResult(
         recording=planting_result.motion,
         steps=tuple(steps),
+        notices=tuple(planting_result.remarks),
         planted=planting_result.planted,
         solved=solved,
     )
@@ -178,6 +139,7 @@ def reconstruct_joints(
     return ChainResult(
         recording=rebuilt.motion,
         steps=_rebuilt(fraction, rebuilt.remarks, planting_result),
+        notices=(*planting_result.remarks, *rebuilt.remarks),
         planted=rebuilt.planted,
         rebuilt=rebuilt,
     )
@@ -208,6 +170,7 @@ def reconstruct_tracked(
     return ChainResult(
         recording=planting_result.motion,
         steps=_rebuilt(rebuilt.rebuilt_fraction, rebuilt.remarks, planting_result),
+        notices=(*planting_result.remarks, *rebuilt.remarks),
         planted=planting_result.planted,
         rebuilt=rebuilt,
     )
@@ -234,17 +197,21 @@ def take_before(take: Take, chain: ChainResult, progress: Progress) -> Motion | 
 
 
 def _cleaned(start: Motion | Tracks, denoised: Denoised) -> list[str]:
-    filled = _observed(denoised.recording) & ~_observed(start)
+    filled = observed_samples(denoised.recording) & ~observed_samples(start)
     n_spikes, n_gaps = _n_runs(denoised.outliers), _n_runs(filled)
     done = f"Clean corrected {_counted(n_spikes, 'spike')} and filled"
     # The first sentence says that there are no examples, which is so for every take here.
     _, _, remarks = denoised.prior_used.partition(". ")
-    unfinished = "Clean stopped before the result converged; a part of the take may go better."
     return [
         f"{done} {_counted(n_gaps, 'gap')}.",
         *[remarks] * bool(remarks),
-        *[unfinished] * (not denoised.converged),
+        *_unfinished(denoised),
     ]
+
+
+def _unfinished(denoised: Denoised) -> list[str]:
+    unfinished = "Clean stopped before the result converged; a part of the take may go better."
+    return [] if denoised.converged else [unfinished]
 
 
 def _low_confidence_of_legs(motion: Motion) -> list[str]:
@@ -253,15 +220,6 @@ def _low_confidence_of_legs(motion: Motion) -> list[str]:
     evidence = explain_roles(motion.skeleton, humanoid)
     legs = {r: each for r, each in evidence.items() if "Leg" in r or r.endswith("Foot")}
     return list(filter(None, [describe_low_confidence(humanoid, legs)]))
-
-
-def _observed(recording: Motion | Tracks) -> Flags:
-    """Return what was observed of the points, or of the joints that can rotate."""
-    if isinstance(recording, Tracks):
-        return recording.visible
-    skeleton = recording.skeleton
-    rotating = [not skeleton.is_end_site(joint) for joint in range(recording.n_joints)]
-    return np.asarray(recording.observed[:, rotating])
 
 
 def _rebuilt(

@@ -9,21 +9,28 @@ from ..arrays import Flags
 from ..denoising import PlantSettings
 from ..motion import JointLimits, JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched, within
+from ..recordings.conventions import question_of_size
 from ..settings import Settings, setting
 from .fix_chains import (
     ChainResult,
-    Take,
-    TakeOrigin,
-    TrackedMotion,
     clean_motion,
     clean_points,
-    find_origin,
     reconstruct_joints,
     reconstruct_tracked,
     solve_markers,
     take_before,
 )
-from .take_figures import TakeFigures, measure_take
+from .fix_report import (
+    Take,
+    TakeFigures,
+    TakeOrigin,
+    TrackedMotion,
+    describe_empty_frames,
+    describe_missing_points,
+    drop_missing_points,
+    find_origin,
+    measure_take,
+)
 
 FIXED, COMPARED, MEASURED = 0.7, 0.8, 0.9
 """Fractions of the time until the take is fixed, until there is what to compare it with, and
@@ -51,12 +58,18 @@ class FixedTake:
         The fixed recording, and the result of each step.
     before, after : TakeFigures
         Of the take as it came and of the result, at the same contacts of the feet.
+    missing : tuple of str
+        Sentences on markers and frames without any data, and what was done about them.
+    size_question : str
+        Asks whether an actor of an odd size is right; otherwise empty.
     """
 
     origin: TakeOrigin
     chain: ChainResult
     before: TakeFigures
     after: TakeFigures
+    missing: tuple[str, ...] = ()
+    size_question: str = ""
 
     @property
     def recording(self) -> Motion | Tracks:
@@ -66,17 +79,29 @@ class FixedTake:
     @property
     def steps(self) -> tuple[str, ...]:
         """Sentences for the animator: what was done, why, and what to look at."""
+        size = [self.size_question] if self.size_question else []
+        return (*size, *self.chain.steps, *self.missing, *self._spikes_left)
+
+    @property
+    def headline(self) -> str:
+        """The most important sentence of `steps` for the animator to act on, or nothing."""
+        size = [self.size_question] if self.size_question else []
+        notices = (*size, *self.chain.notices, *self.missing, *self._spikes_left)
+        return notices[0] if notices else ""
+
+    @property
+    def _spikes_left(self) -> list[str]:
         n_left = self.after.n_spikes
         if self.chain.denoised is None or not n_left:
-            return self.chain.steps
+            return []
         left = "1 spike is" if n_left == 1 else f"{n_left} spikes are"
-        sentence = f"{left} left that Clean takes for fast movement; Check lists where."
-        return (*self.chain.steps, sentence)
+        return [f"{left} left that Clean takes for fast movement; Check lists where."]
 
     def figures(self) -> dict[str, Any]:
         """Return the report as JSON-ready values."""
         return {
             "origin": self.origin.value,
+            "headline": self.headline,
             "steps": list(self.steps),
             "before": self.before.figures(),
             "after": self.after.figures(),
@@ -96,7 +121,7 @@ def fix_take(
     A skeleton is cleaned, and its feet are planted. Joints of a depth camera are reconstructed:
     on 53 takes of UI-PRMD a clean on top leaves the error at 1.6 cm and doubles the jerk, so
     there is none. Optical markers get correct labels, filled gaps, a skeleton and planted feet;
-    points of no known marker set are only cleaned.
+    points of no known marker set are only cleaned. Points that are never observed are left out.
 
     Parameters
     ----------
@@ -122,6 +147,7 @@ def fix_take(
         Raised by `progress`.
     """
     planting = PlantSettings() if settings.plant_feet else None
+    recording, never_observed = drop_missing_points(recording)
     chain = _fix(recording, planting, contacts, within(progress, 0.0, FIXED))
     start = take_before(recording, chain, within(progress, FIXED, COMPARED))
     if chain.planted is not None:
@@ -132,7 +158,15 @@ def fix_take(
         contacts = np.stack([foot.contact for foot in after.quality.feet], axis=1)
     step = within(progress, MEASURED, 1.0)
     before = measure_take(start, contacts=contacts, limits=limits, progress=step)
-    return FixedTake(find_origin(recording), chain, before, after)
+    missing = (describe_missing_points(never_observed), describe_empty_frames(recording))
+    return FixedTake(
+        find_origin(recording), chain, before, after, tuple(filter(None, missing)), _size(start)
+    )
+
+
+def _size(start: Motion | Tracks) -> str:
+    question = question_of_size(start)
+    return f"{question}." if question else ""
 
 
 def _fix(

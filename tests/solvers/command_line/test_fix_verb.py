@@ -64,3 +64,14 @@ def test_fix_refuses_points_of_no_marker_set_in_one_sentence(call, tmp_path):
 
     assert status == 2 and "Use denoise" in err
     assert not (tmp_path / "points.bvh").exists()
+
+
+def test_fix_names_a_marker_that_is_never_seen(call, walk, tmp_path):
+    markers = markers_on(walk)
+    positions = markers.positions.copy()
+    positions[:, markers.names.index("LKNE")] = np.nan
+    write_trc(markers.with_positions(positions), tmp_path / "markers.trc")
+
+    status, _, err = call("fix", tmp_path / "markers.trc", tmp_path / "fixed.bvh")
+
+    assert status == 2 and "LKNE was never seen" in err

@@ -129,7 +129,7 @@ def test_skeleton_without_legs_is_cleaned_all_the_same():
     result = fix_take(Motion(skeleton, rotations, np.zeros((60, 3)), 30.0))
 
     assert result.chain.planted is None
-    assert any(step.startswith("Feet were not planted.") for step in result.steps)
+    assert result.headline.startswith("Feet were not planted.")
     assert result.after.quality.rotation_noise < 0.2 * result.before.quality.rotation_noise
     assert result.figures()["after"]["longest_foot_slide_cm"] is None
 
@@ -186,6 +186,51 @@ def test_markers_become_a_skeleton_with_correct_labels(walk):
     assert any("1 swapped label" in step for step in result.steps)
     assert isinstance(result.recording, Motion) and result.recording.observed.all()
     assert result.after.n_spikes < result.before.n_spikes
+
+
+def test_markers_that_are_never_seen_are_left_out(walk):
+    markers = markers_on(walk)
+    positions = markers.positions.copy()
+    positions[:, [markers.names.index(name) for name in ("LFIN", "RFIN")]] = np.nan
+
+    result = fix_take(markers.with_positions(positions))
+
+    assert result.origin is TakeOrigin.MARKERS and result.recording.observed.all()
+    assert "LFIN, RFIN were never seen and left out." in result.steps
+
+
+def test_take_without_an_essential_marker_is_cleaned_as_points(walk):
+    markers = markers_on(walk.slice(0, 40))
+    positions = markers.positions.copy()
+    positions[:, markers.names.index("LKNE")] = np.nan
+
+    result = fix_take(markers.with_positions(positions))
+
+    assert result.origin is TakeOrigin.POINTS
+    assert "LKNE" not in result.recording.names and len(result.recording.names) == 40
+    assert result.headline.endswith("missing are LKNE.")
+
+
+def test_frames_without_data_are_filled_and_reported(noisy):
+    rotations, positions = noisy.rotations.copy(), noisy.root_positions.copy()
+    for values in (rotations, positions):
+        values[30:36] = values[100:103] = np.nan
+
+    result = fix_take(noisy.with_poses(rotations, positions))
+
+    assert result.recording.observed.all()
+    sentence = "9 frames have no data at all, up to 0.2 s in a row; they are filled"
+    assert result.headline.startswith(sentence) and result.headline in result.steps
+
+
+def test_odd_size_of_the_actor_comes_first(noisy):
+    skeleton = noisy.skeleton
+    giant = Skeleton(skeleton.names, skeleton.parents, 8.0 * skeleton.offsets)
+    moved = Motion(giant, noisy.rotations, 8.0 * noisy.root_positions, noisy.frame_rate)
+
+    headline = fix_take(moved).headline
+
+    assert headline.startswith("The actor is ") and "set Unit or Scale" in headline
 
 
 def test_points_of_no_marker_set_are_cleaned(rng):

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Flags
-from ..denoising import Issue, IssueSettings, Quality, find_worst_issues, measure_quality
-from ..motion import JointLimits, Motion, Tracks
-from ..progress import Progress, unwatched, within
-from ..signals import find_runs
+from ...arrays import Flags
+from ...denoising import Issue, IssueSettings, Quality, find_worst_issues, measure_quality
+from ...motion import JointLimits, Motion, Tracks
+from ...progress import Progress, unwatched, within
+from ...signals import find_runs
 
 MAX_ISSUES = IssueSettings().max_issues
 """Number of issues at which Check stops to list them, by definition."""

@@ -1,0 +1,77 @@
+"""Find what a take lacks: markers that are never observed, and frames without any data."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...arrays import Flags
+from ...motion import JointRecording, Motion, Tracks
+from ...signals import find_runs
+from .take_origin import Take, TrackedMotion
+
+MAX_NAMES = 5
+"""Number of markers that a sentence names. Chosen by hand: two lines of a default sidebar."""
+
+
+def drop_missing_points(take: Take) -> tuple[Take, tuple[str, ...]]:
+    """Return the take without the points that are never observed, and their names.
+
+    If none is ever observed, and for motions and joints, the take is returned as it is.
+    """
+    if not isinstance(take, Tracks):
+        return take, ()
+    observed = take.visible.any(axis=0)
+    if observed.all() or not observed.any():
+        return take, ()
+    names = np.array(take.names)
+    confidence = None if take.confidence is None else take.confidence[:, observed]
+    kept = Tracks(
+        tuple(map(str, names[observed])),
+        take.positions[:, observed],
+        take.frame_rate,
+        confidence,
+    )
+    return kept, tuple(map(str, names[~observed]))
+
+
+def describe_missing_points(names: Sequence[str]) -> str:
+    """Return a sentence about markers that were left out, or an empty text."""
+    if not names:
+        return ""
+    listed = ", ".join(names[:MAX_NAMES])
+    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    verb = "was" if len(names) == 1 else "were"
+    return f"{listed}{more} {verb} never seen and left out."
+
+
+def describe_empty_frames(take: Take) -> str:
+    """Return a sentence about the frames without any data and what fills them, or nothing."""
+    empty = ~_observed(take).any(axis=1)
+    runs = find_runs(empty)
+    if not runs or empty.all():
+        return ""
+    n_frames, longest = int(empty.sum()), max(stop - start for start, stop in runs)
+    rate = take.motion.frame_rate if isinstance(take, TrackedMotion) else take.frame_rate
+    counted = "1 frame has" if n_frames == 1 else f"{n_frames} frames have"
+    where = f"up to {longest / rate:.1f} s in a row; " if n_frames > 1 else ""
+    those = "it is" if n_frames == 1 else "they are"
+    return f"{counted} no data at all, {where}{those} filled from the frames before and after."
+
+
+def observed_samples(recording: Motion | Tracks) -> Flags:
+    """Return what was observed of the points, or of the joints that can rotate."""
+    if isinstance(recording, Tracks):
+        return recording.visible
+    skeleton = recording.skeleton
+    rotating = [not skeleton.is_end_site(joint) for joint in range(recording.n_joints)]
+    return np.asarray(recording.observed[:, rotating])
+
+
+def _observed(take: Take) -> Flags:
+    match take:
+        case TrackedMotion():
+            return observed_samples(take.motion)
+        case JointRecording():
+            return observed_samples(take.tracks)
+        case _:
+            return observed_samples(take)
