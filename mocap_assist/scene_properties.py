@@ -11,7 +11,7 @@ from .blender.settings_properties import settings_from
 from .check.button_settings import CheckBundle
 from .clean.button_settings import CleanBundle
 from .exporting.button_settings import ExportPanelBundle
-from .fix.fixing import FixBundle
+from .fix.button_settings import FixBundle
 from .library.button_settings import FindBundle, LibraryBundle, LoadBundle, UseBundle
 from .markers.solving import SolveBundle
 from .physics.simulating import SimulateBundle

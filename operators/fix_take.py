@@ -3,7 +3,8 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.fix.fixing import FixBundle, read_fixing, why_not_fix, write_fixed
+from ..mocap_assist.fix.button_settings import FixBundle
+from ..mocap_assist.fix.fixing import read_fixing, selected_take, why_not_fix, write_fixed
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
@@ -12,10 +13,11 @@ class MOCAP_OT_fix_take(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.fix_take"
     bl_label = "Fix My Take"
     bl_description = (
-        "Clean, solve or reconstruct the take, whatever its origin; writes a new action"
+        "Track, clean, solve or reconstruct the take, whatever its origin; writes a new action"
     )
     settings_group = "fix"
-    why_not, read_scene, write_scene = why_not_fix, read_fixing, write_fixed
+    selected, why_not = selected_take, why_not_fix
+    read_scene, write_scene = read_fixing, write_fixed
 
     def draw(self, context: bpy.types.Context) -> None:
         """Offer nothing in the redo panel: every change there would solve again."""

@@ -14,6 +14,7 @@ from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssist
 from ...solvers.files import reason_of, write_atomically
 from ...solvers.processes import add_threads_option
 from ..actions.markers import markers_of
+from ..depth.depth_preview import shows_depth
 from ..scene import history
 from .capture_verb import HELP as CAPTURE_HELP
 from .capture_verb import add_capture_options, perform_capture
@@ -27,7 +28,7 @@ from .pictures import draw_result
 from .report_verb import HELP as REPORT_HELP
 from .report_verb import add_report_options, perform_report
 from .saving import STDOUT, add_output_options, check_folder, save, target_file
-from .verbs import VERBS
+from .verbs import VERBS, Verb
 
 PROG = "blender FILE --command mocap_assist"
 FAILED = 2
@@ -147,7 +148,7 @@ def _parser() -> SentenceParser:
 def _work(arguments: argparse.Namespace, screen: Screen) -> None:
     verb = VERBS[arguments.verb]
     excluded_armature = verb.excluded_armature(arguments)
-    subjects = _subjects(arguments.armature, excluded_armature, on_markers=verb.on_markers)
+    subjects = _subjects(arguments.armature, excluded_armature, verb)
     target = target_file(arguments) if verb.writes else None
     verb.check(arguments, subjects)
     figures_file = None if arguments.json in {None, STDOUT} else check_folder(arguments.json)
@@ -166,17 +167,20 @@ def _work(arguments: argparse.Namespace, screen: Screen) -> None:
             part.write_text("".join(lines), encoding="utf-8")
     if arguments.picture is not None:
         made = bpy.data.objects.get(excluded_armature, subjects[0])
+        if shows_depth(made):
+            made = bpy.context.view_layer.objects.active  # the armature that was tracked
         draw_result(bpy.context.scene, made, arguments.picture)
 
 
-def _subjects(
-    name: str | None, excluded_armature: str, *, on_markers: bool
-) -> list[bpy.types.Object]:
-    """Return the armatures, or parents of markers, to process."""
+def _subjects(name: str | None, excluded_armature: str, verb: Verb) -> list[bpy.types.Object]:
+    """Return the armatures, parents of markers, or points of depth images to process."""
     objects = list(bpy.context.scene.objects)
     armatures = [each for each in objects if each.type == "ARMATURE"]
     holders = [
-        each for each in objects if on_markers and each.type == "EMPTY" and markers_of(each)
+        each
+        for each in objects
+        if (verb.on_markers and each.type == "EMPTY" and markers_of(each))
+        or (verb.on_depth and shows_depth(each))
     ]
     if name is None:
         found = [

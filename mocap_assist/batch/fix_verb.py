@@ -6,7 +6,8 @@ from typing import Any
 import bpy
 
 from ...solvers.progress import Progress
-from ..fix.fixing import FixBundle, fixed_subject, read_fixing, write_fixed
+from ..fix.button_settings import FixBundle
+from ..fix.fixing import fixed_subject, read_fixing, write_fixed
 from ..runtime.selection import played_source
 from ..scene import history
 from .bundles import add_bundle_options, bundle_from_arguments

@@ -68,6 +68,8 @@ class Verb:
     """Name of an armature to skip."""
     on_markers: bool = True
     """Whether it also works on the markers below an empty."""
+    on_depth: bool = False
+    """Whether it also works on the points of an imported depth recording."""
     solves: bool = True
     """Whether it solves, and has the option --threads."""
 
@@ -174,9 +176,10 @@ def _convert(
 
 VERBS = {
     "fix": Verb(
-        "Fix takes of any origin with the steps that suit them: clean, solve or reconstruct.",
+        "Fix takes of any origin by what suits them: track, clean, solve or reconstruct.",
         add_fix_options,
         perform_fix,
+        on_depth=True,
     ),
     "denoise": Verb(
         "Remove jitter and spikes from actions, fill gaps and plant feet.",

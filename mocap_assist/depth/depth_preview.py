@@ -131,6 +131,11 @@ def build_preview(
     return preview
 
 
+def shows_depth(shown: bpy.types.Object) -> bool:
+    """Return whether an object shows a depth recording."""
+    return shown.type == "MESH" and KEY in shown.data
+
+
 def previews() -> list[bpy.types.Mesh]:
     """Return the meshes of this file that show recordings and can be changed."""
     meshes = [mesh for mesh in bpy.data.meshes if KEY in mesh and mesh.library is None]

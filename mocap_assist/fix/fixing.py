@@ -2,17 +2,19 @@
 
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import bpy
+import numpy as np
 
 from ...solvers.denoising import DenoiseSettings, PlantSettings
+from ...solvers.depth_scene import ForegroundSettings
+from ...solvers.depth_tracking.capturing import CaptureSettings
 from ...solvers.markers import SolveSettings
 from ...solvers.motion import JointLimits, Tracks
 from ...solvers.reconstruction import ReconstructSettings
 from ...solvers.workflows import (
     UNKNOWN,
-    FixSettings,
     MarkerMotion,
     MarkerMotionSettings,
     TakeOrigin,
@@ -20,41 +22,59 @@ from ...solvers.workflows import (
     find_origin,
 )
 from ..actions.armature_read import read_take
+from ..actions.contact_keys import write_contacts
 from ..actions.limits import has_limits, read_limits
 from ..blender.time_slices import Sliced, Steps
 from ..check.checking import list_issues, read_played
 from ..clean.button_settings import CleanBundle, CleanChoices
 from ..clean.cleaning import read_cleaning, write_cleaned
 from ..clean.solve_cleaning import Cleaned
+from ..depth.depth_preview import Shown, recording_of, shows_depth
 from ..markers.solving import SolveBundle, read_solving, write_solved
 from ..panels.fix_card import keep_card
 from ..reconstruct.button_settings import ReconstructBundle, ReconstructChoices
 from ..reconstruct.reconstructing import read_reconstructing, write_reconstructed
 from ..reconstruct.solve_reconstructing import Rebuilt
-from ..runtime.selection import played_source, selected_armature, why_not_clean
+from ..retarget.retargeting import target_called
+from ..runtime.selection import (
+    played_source,
+    selected_armature,
+    selected_subject,
+    why_not_clean,
+)
 from ..runtime.subject import Subject
 from ..scene import history
 from ..scene.origin import was_tracked
-from ..track.tracking import selected_preview
-from .solve_fixing import Fixed, fix
+from ..track.tracking import (
+    FixedMotion,
+    TrackBundle,
+    TrackChoices,
+    selected_preview,
+    why_not_track,
+    write_tracked,
+)
+from .button_settings import FixBundle
+from .retargeting import retargeted
+from .solve_fixing import Fixed, FixedDepth, fix
 
-DEPTH = "This is a depth recording. Press Track, then Fix My Take on the armature."
 CLEAN = CleanBundle(CleanChoices(), DenoiseSettings(), PlantSettings())
 RECONSTRUCT = ReconstructBundle(ReconstructChoices(), ReconstructSettings(), PlantSettings())
 SOLVE = SolveBundle(MarkerMotionSettings(), SolveSettings())
+TRACK = TrackBundle(
+    TrackChoices(plant_feet=False), CaptureSettings(), ForegroundSettings(), PlantSettings()
+)
 """Settings of the buttons whose steps run: their defaults."""
 
 
-class FixBundle(NamedTuple):
-    """Settings of the button."""
-
-    fixing: FixSettings
+def selected_take(context: bpy.types.Context) -> bpy.types.Object | None:
+    """Return the points of a depth recording, the armature or the parent of the markers."""
+    return selected_preview(context) or selected_subject(context)
 
 
 def why_not_fix(context: bpy.types.Context) -> str:
     """Return why the selection cannot be fixed, or an empty text."""
     if selected_preview(context) is not None:
-        return DEPTH
+        return why_not_track(context)
     return why_not_clean(context)
 
 
@@ -62,8 +82,12 @@ def why_not_fix(context: bpy.types.Context) -> str:
 def read_fixing(
     scene: bpy.types.Scene, subject: bpy.types.Object, settings: FixBundle
 ) -> "Steps[partial[Fixed]]":
-    """Read what an armature or markers play; return the picklable solve."""
+    """Read what an armature, markers or points of depth images show; return the solve."""
     here = Subject.of(scene, subject)
+    if settings.choices.rig:
+        target_called(scene, settings.choices.rig, subject)  # before any work
+    if shows_depth(subject):
+        return partial(fix, recording_of(subject.data), settings.fixing)
     if subject.type != "ARMATURE":
         solve = yield from read_solving.steps(scene, subject, SOLVE)
         tracks: Tracks = solve.args[0]
@@ -103,6 +127,9 @@ def write_fixed(
             choices=replace(RECONSTRUCT.choices, plant_feet=plant_feet)
         )
         yield from write_reconstructed.steps(scene, subject, rebuilding, written, solved_digest)
+    elif isinstance(written, FixedDepth):
+        entry = {"operation": "fix", "settings": history.plain(*settings)}
+        _write_depth(scene, subject, written, entry, solved_digest)
     else:
         yield from write_solved.steps(scene, subject, SOLVE, written, solved_digest)
     scene, subject = here.find()
@@ -112,17 +139,39 @@ def write_fixed(
     scene, subject = here.find()
     list_issues(scene, subject, take.frames, fixed.issues, fixed.quality)
     action, _ = played_source(subject)
-    keep_card(action, fixed.report)
-    return f"{action.name}: {_summary(fixed.report)}."
+    report = fixed.report
+    if settings.choices.rig:
+        report = yield from retargeted(here, settings.choices.rig, report)
+    keep_card(action, report)
+    return f"{action.name}: {_summary(report)}."
 
 
 def fixed_subject(subject: bpy.types.Object, fixed: Fixed) -> bpy.types.Object:
-    """Return what plays the result: the subject, or the new armature made of its markers."""
-    if not isinstance(fixed.written, MarkerMotion):
+    """Return what plays the result: the subject, or the new armature made of it."""
+    if not isinstance(fixed.written, MarkerMotion | FixedDepth):
         return subject
     armature = selected_armature(bpy.context)
     assert armature is not None
     return armature
+
+
+def _write_depth(
+    scene: bpy.types.Scene,
+    preview: bpy.types.Object,
+    written: FixedDepth,
+    entry: dict[str, Any],
+    solved_digest: str | None,
+) -> None:
+    """Add the armature that Track makes, and key the contacts at which feet were planted."""
+    fixed = FixedMotion(written.motion, entry)
+    write_tracked(scene, preview, TRACK, written.tracked, solved_digest, fixed)
+    if written.contacts is None:
+        return
+    armature, shown = selected_armature(bpy.context), Shown.read(preview.data)
+    assert armature is not None
+    frames = shown.start + shown.step * np.arange(written.motion.n_frames)
+    source = played_source(armature)
+    write_contacts(armature, *source, frames, written.contacts, detected=True)
 
 
 def _limits_of(here: Subject) -> Steps[JointLimits | None]:

@@ -8,7 +8,7 @@ from ...solvers.workflows import TakeOrigin, figure_texts
 from ..blender.mixins import PanelMixin
 from ..check.reverting import why_not_revert
 from ..languages import translated
-from ..panels.drawing import draw_job, draw_sentence, exists
+from ..panels.drawing import draw_job, draw_sentence, exists, split_column
 from ..panels.fix_card import shown_card
 from ..panels.visibility import shows_take
 from ..track.tracking import selected_preview
@@ -17,6 +17,7 @@ from .fixing import why_not_fix
 FIX, ACCEPT, REVERT = (
     f"mocap_assist.{name}" for name in ("fix_take", "accept_fix", "revert_to_raw")
 )
+LAST_STEPS = ("plant_feet", "physics")
 DETAILS = "mocap_assist_fix_details"
 UNDO = "To revert, undo: the markers are as they were recorded."
 
@@ -34,13 +35,28 @@ class FixPanel(PanelMixin):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         draw_job(layout, context, "fix")
+        reason = why_not_fix(context)
         button = layout.row()
         button.scale_y = 2.0
         button.operator(FIX, icon="SHADERFX")
-        if reason := why_not_fix(context):
+        _draw_last_steps(layout, context)
+        if reason:
             draw_sentence(layout, context, reason, icon="INFO")
         elif card := shown_card(context):
             _draw_card(layout.box(), context, card)
+
+
+def _draw_last_steps(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what else the button can do, folded: feet, physics and another armature."""
+    header, body = layout.panel("mocap_assist_fix_last_steps", default_closed=True)
+    header.label(text="Last Steps")
+    if body is None:
+        return
+    shown = context.scene.mocap_assist.fix
+    column = split_column(body)
+    for name in LAST_STEPS:
+        column.prop(shown, name)
+    column.prop_search(shown, "rig", context.scene, "objects", icon="ARMATURE_DATA")
 
 
 def _draw_card(

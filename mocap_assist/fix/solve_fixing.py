@@ -5,6 +5,7 @@ from typing import Any
 
 from ...solvers.arrays import Flags
 from ...solvers.denoising import Denoised, Issue, denoise
+from ...solvers.depth_scene import DepthRecording
 from ...solvers.markers import Swap
 from ...solvers.motion import JointLimits, Motion, Tracks
 from ...solvers.progress import Progress, unwatched, within
@@ -18,6 +19,7 @@ from ...solvers.workflows import (
 )
 from ..clean.solve_cleaning import Cleaned, Problem, Solution, names_of
 from ..reconstruct.solve_reconstructing import RebuildProblem, Rebuilt, read_source
+from ..track.solve_tracking import Tracked, build_tracked
 
 TREE_FRACTION = 0.9
 """Fraction of the time until the body is fixed. It only moves the progress bar: chosen by hand
@@ -25,11 +27,20 @@ for one or two props."""
 
 
 @dataclass(frozen=True, eq=False)
+class FixedDepth:
+    """What Track would write, the motion after the other steps, and contacts of the feet."""
+
+    tracked: Tracked
+    motion: Motion
+    contacts: Flags | None
+
+
+@dataclass(frozen=True, eq=False)
 class Fixed:
     """A fixed take, and what the card shows."""
 
-    written: Cleaned | Rebuilt | MarkerMotion
-    """What Clean, Reconstruct or Make Skeleton would write."""
+    written: Cleaned | Rebuilt | MarkerMotion | FixedDepth
+    """What Clean, Reconstruct, Make Skeleton or Track would write."""
     report: dict[str, Any]
     """Origin, steps and figures: `FixedTake.figures`."""
     issues: tuple[Issue, ...]
@@ -39,14 +50,14 @@ class Fixed:
 
 
 def fix(
-    problem: Problem | RebuildProblem | Tracks,
+    problem: Problem | RebuildProblem | Tracks | DepthRecording,
     settings: FixSettings,
     *,
     contacts: Flags | None = None,
     limits: JointLimits | None = None,
     progress: Progress = unwatched,
 ) -> Fixed:
-    """Fix a take: that of Clean, of Reconstruct, or the markers of Make Skeleton."""
+    """Fix a take: that of Clean, of Reconstruct, of Make Skeleton or of Track."""
     fixed = fix_take(
         _take_of(problem),
         settings=settings,
@@ -56,18 +67,22 @@ def fix(
     )
     match problem:
         case Problem():
-            written: Cleaned | Rebuilt | MarkerMotion = _cleaned(
+            written: Cleaned | Rebuilt | MarkerMotion | FixedDepth = _cleaned(
                 problem, fixed, within(progress, TREE_FRACTION, 1.0)
             )
         case RebuildProblem():
             written = _rebuilt(fixed)
         case Tracks():
             written = _solved(fixed)
+        case DepthRecording():
+            written = _tracked(fixed)
     progress(1.0, "Done")
     return Fixed(written, fixed.figures(), fixed.after.issues, fixed.after.quality.report())
 
 
-def _take_of(problem: Problem | RebuildProblem | Tracks) -> Motion | Tracks | TrackedMotion:
+def _take_of(
+    problem: Problem | RebuildProblem | Tracks | DepthRecording,
+) -> Motion | Tracks | TrackedMotion | DepthRecording:
     match problem:
         case Problem():
             return problem.recordings[0]
@@ -79,7 +94,7 @@ def _take_of(problem: Problem | RebuildProblem | Tracks) -> Motion | Tracks | Tr
                 problem.sensor,
                 problem.resize,
             )
-        case Tracks():
+        case _:
             return problem
 
 
@@ -122,3 +137,13 @@ def _solved(fixed: FixedTake) -> MarkerMotion:
     solved = fixed.chain.solved
     assert solved is not None and isinstance(fixed.recording, Motion)
     return replace(solved, motion=fixed.recording)
+
+
+def _tracked(fixed: FixedTake) -> FixedDepth:
+    captured, planted = fixed.chain.captured, fixed.chain.planted
+    assert captured is not None and isinstance(fixed.recording, Motion)
+    tracked = build_tracked(
+        0, captured.motion, captured.captured, captured.actor.floor, captured.remarks
+    )
+    contacts = None if planted is None else planted.contacts
+    return FixedDepth(tracked, fixed.recording, contacts)

@@ -72,7 +72,7 @@ def track_recording(
         on_pose=PosePreviewSender(show),
         progress=within(progress, ACTOR_FRACTION, 1.0),
     )
-    return _build_tracked(0, done.motion, done.captured, actor_only.floor, done.remarks)
+    return build_tracked(0, done.motion, done.captured, actor_only.floor, done.remarks)
 
 
 def partial_result(
@@ -88,16 +88,17 @@ def partial_result(
     first, captured = unfinished_capture(poses, rate, floor=floor, settings=settings)
     n_frames = captured.motion.n_frames
     remark = f"Stopped early: {n_frames} of {recording.n_frames} frames tracked."
-    return _build_tracked(first, captured.motion, captured, floor, (remark,))
+    return build_tracked(first, captured.motion, captured, floor, (remark,))
 
 
-def _build_tracked(
+def build_tracked(
     first: int,
     motion: Motion,
     captured: Capture,
     floor: FloorPlane | None,
     remarks: tuple[str, ...],
 ) -> Tracked:
+    """Return the result of a capture whose motion starts at the depth image `first`."""
     joints = captured.joints
     columns = joints.confidence
     confidence = {} if columns is None else dict(zip(joints.names, columns.T, strict=True))

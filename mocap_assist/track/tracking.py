@@ -13,13 +13,15 @@ from ...solvers.denoising import PlantSettings
 from ...solvers.depth_scene import FloorPlane, ForegroundSettings
 from ...solvers.depth_tracking.body import scene_from_camera
 from ...solvers.depth_tracking.capturing import CaptureSettings
+from ...solvers.motion import Motion
 from ...solvers.settings import Settings, setting
 from ...solvers.version import version
 from ..actions.armature_build import build_armature
+from ..actions.armature_write import SUFFIX
 from ..actions.new_action import write_motion
 from ..actions.reliability_curves import write_reliability
 from ..blender.stored_json import store_json
-from ..depth.depth_preview import KEY, Shown, problem_of, recording_of
+from ..depth.depth_preview import Shown, problem_of, recording_of, shows_depth
 from ..jobs.protocol import PreviewSolve
 from ..runtime.subject import check_unchanged
 from ..scene import history
@@ -78,11 +80,17 @@ class TrackBundle(NamedTuple):
     escaping: EscChoices = EscChoices()
 
 
+class FixedMotion(NamedTuple):
+    """A motion made of the tracked one, and what its action remembers of how."""
+
+    motion: Motion
+    entry: dict[str, Any]
+
+
 def selected_preview(context: bpy.types.Context) -> bpy.types.Object | None:
     """Return the active object if it shows a depth recording."""
     active = context.view_layer.objects.active
-    shows = active is not None and active.type == "MESH" and KEY in active.data
-    return active if shows else None
+    return active if active is not None and shows_depth(active) else None
 
 
 def why_not_track(context: bpy.types.Context) -> str:
@@ -125,8 +133,11 @@ def write_tracked(
     settings: TrackBundle,
     result: Tracked,
     solved_digest: str | None = None,
+    fixed: FixedMotion | None = None,
 ) -> str:
     """Add an armature with the actor's motion over the points; return a message.
+
+    If the motion was `fixed`, the armature plays that; the tracked action is its recorded one.
 
     Raises InvalidMotionError if the points show another recording than the one that was solved.
     """
@@ -140,6 +151,13 @@ def write_tracked(
             context, name, result.motion.skeleton, meters_per_unit, MODE
         )
         source = write_motion(armature, bones, result.motion, frames, meters_per_unit)
+        if fixed is not None:
+            name = source[0].name + SUFFIX
+            played, _ = write_motion(
+                armature, bones, fixed.motion, frames, meters_per_unit, name=name
+            )
+            played.use_fake_user = True
+            history.record(played, source, fixed.entry)
         armature.matrix_world = _scene_from_motion(preview, result.floor) @ Matrix.Scale(
             meters_per_unit, 4
         )

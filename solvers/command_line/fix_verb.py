@@ -1,10 +1,13 @@
 """`fix`: fix takes of any origin with the steps that suit each."""
 
 import argparse
+from pathlib import Path
 
+from ..depth_scene import DepthRecording
 from ..errors import InvalidMotionError
-from ..motion import Motion
+from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, within
+from ..recordings import depth_takes_in, is_depth_recording, read_depth, recordings_in
 from ..workflows import (
     FixedTake,
     FixSettings,
@@ -28,7 +31,7 @@ def add_fix_options(parser: argparse.ArgumentParser) -> None:
 
 def perform_fix(task: Task, prepared: None, progress: Progress) -> Outcome:
     """Fix one take, write its motion and report what was done."""
-    recording = read_recorded(task.source, task.arguments, within(progress, 0.0, 0.1))
+    recording = _read(task, within(progress, 0.0, 0.1))
     if find_origin(recording) is TakeOrigin.POINTS:
         _, never_observed = drop_missing_points(recording)
         missing = describe_missing_points(never_observed)
@@ -40,6 +43,22 @@ def perform_fix(task: Task, prepared: None, progress: Progress) -> Outcome:
     fixed = fix_take(recording, settings=settings, progress=within(progress, 0.1, 0.95))
     write(fixed.recording, task.target, within(progress, 0.95, 1.0))
     return Outcome(_summary(fixed), _figures(fixed))
+
+
+def list_takes(folder: Path) -> list[Path]:
+    """Return the recordings in a folder and below, depth images included, by name.
+
+    A folder of depth images is one recording: files in it are none.
+    """
+    depth = depth_takes_in(folder)
+    others = [path for path in recordings_in(folder) if not {path, *path.parents} & set(depth)]
+    return sorted([*others, *depth])
+
+
+def _read(task: Task, progress: Progress) -> Motion | Tracks | JointRecording | DepthRecording:
+    if is_depth_recording(task.source):
+        return read_depth(task.source, progress=progress)
+    return read_recorded(task.source, task.arguments, progress)
 
 
 def _summary(fixed: FixedTake) -> str:

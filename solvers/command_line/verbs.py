@@ -15,7 +15,7 @@ from .batch import report_folder
 from .capture_verb import add_capture_options, perform_capture, read_body
 from .denoise_verb import add_denoise_options, learn_prior, perform_denoise
 from .files import add_reading_options, convert, read, read_all
-from .fix_verb import add_fix_options, perform_fix
+from .fix_verb import add_fix_options, list_takes, perform_fix
 from .library_verbs import add_find_options, add_index_options, perform_find, perform_index
 from .options import arguments_from, settings_from_arguments
 from .postures_verb import add_postures_options, perform_postures
@@ -92,10 +92,11 @@ def _report_options(parser: argparse.ArgumentParser) -> None:
 
 VERBS = {
     "fix": Verb(
-        "Fix takes of any origin with the steps that suit them: clean, solve or reconstruct.",
+        "Fix takes of any origin by what suits them: track, clean, solve or reconstruct.",
         add_fix_options,
         perform_fix,
         writes_motions=True,
+        list_recordings=list_takes,
     ),
     "denoise": Verb(
         "Remove jitter, spikes and gaps from recordings, and plant standing feet.",

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..arrays import Flags
 from ..denoising import Denoised, Planted, PlantSettings, denoise
+from ..depth_scene import DepthRecording
 from ..markers import Unswapped, find_marker_set, solve_skeleton, unswap_markers
 from ..motion import (
     JointRecording,
@@ -20,6 +21,7 @@ from ..motion import (
 )
 from ..progress import Progress, within
 from ..signals import find_runs
+from .capture_recording import CapturedMotion
 from .fix_report import Take, TakeOrigin, TrackedMotion, find_origin, observed_samples
 from .motion_from_markers import MarkerMotion, motion_from_markers
 from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
@@ -50,6 +52,7 @@ class ChainResult:
     unswapped: Unswapped | None = None
     rebuilt: RebuiltMotion | ReconstructedMotion | None = None
     solved: MarkerMotion | None = None
+    captured: CapturedMotion | None = None
 
 
 def clean_motion(
@@ -180,7 +183,7 @@ def take_before(take: Take, chain: ChainResult, progress: Progress) -> Motion | 
     """Return the take as it came, in the form of the result.
 
     Markers become the skeleton that is solved without correct labels and filled gaps, joints
-    of a camera the skeleton that Import makes of them.
+    of a camera the skeleton that Import makes of them, depth images the tracked body.
     """
     match take:
         case TrackedMotion():
@@ -188,6 +191,9 @@ def take_before(take: Take, chain: ChainResult, progress: Progress) -> Motion | 
         case JointRecording():
             standardized = standardize_joint_names(take)
             return motion_from_points(standardized.tracks, joint_parents(standardized.names))
+        case DepthRecording():
+            assert chain.captured is not None
+            return chain.captured.motion
         case Tracks() if chain.solved is not None:
             if chain.solved.swaps or chain.solved.filled.any():
                 return solve_skeleton(take, progress=progress).motion

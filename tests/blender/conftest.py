@@ -92,6 +92,7 @@ IN_ONE_BLENDER = {
     "test_job_endings.py": (5, 2),
     "tracking/test_body.py": (5, 2),
     "tracking/test_capture_command.py": (5, 2),
+    "tracking/test_fix_depth.py": (4, 5),
     "tracking/test_live_preview.py": (5, 2),
     "tracking/test_other_scenes.py": (4, 5),
     "tracking/test_retrack.py": (4, 5),

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...arrays import Flags
+from ...depth_scene import DepthRecording
 from ...motion import JointRecording, Motion, Tracks
 from ...signals import find_runs
 from .take_origin import Take, TrackedMotion
@@ -45,7 +46,12 @@ def describe_missing_points(names: Sequence[str]) -> str:
 
 
 def describe_empty_frames(take: Take) -> str:
-    """Return a sentence about the frames without any data and what fills them, or nothing."""
+    """Return a sentence about the frames without any data and what fills them, or nothing.
+
+    Track itself reports images without an actor.
+    """
+    if isinstance(take, DepthRecording):
+        return ""
     empty = ~_observed(take).any(axis=1)
     runs = find_runs(empty)
     if not runs or empty.all():
@@ -67,7 +73,7 @@ def observed_samples(recording: Motion | Tracks) -> Flags:
     return np.asarray(recording.observed[:, rotating])
 
 
-def _observed(take: Take) -> Flags:
+def _observed(take: Motion | Tracks | JointRecording | TrackedMotion) -> Flags:
     match take:
         case TrackedMotion():
             return observed_samples(take.motion)

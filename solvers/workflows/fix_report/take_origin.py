@@ -6,6 +6,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from ...depth_scene import DepthRecording
 from ...markers import find_marker_set
 from ...motion import JointRecording, Motion, Sensor, Tracks
 from ...motion.humanoid import naming_scheme
@@ -20,6 +21,7 @@ class TakeOrigin(Enum):
     SKELETON = "suit or file of a skeleton"
     VIDEO = "video model"
     CAMERA = "joints of a depth camera"
+    DEPTH = "depth images"
     MARKERS = "optical markers"
     POINTS = "points without a known marker set"
 
@@ -38,7 +40,7 @@ class TrackedMotion:
     resize: bool = False
 
 
-Take = Motion | Tracks | JointRecording | TrackedMotion
+Take = Motion | Tracks | JointRecording | TrackedMotion | DepthRecording
 
 
 def find_origin(take: Take) -> TakeOrigin:
@@ -49,6 +51,8 @@ def find_origin(take: Take) -> TakeOrigin:
     match take:
         case JointRecording() | TrackedMotion():
             return TakeOrigin.CAMERA
+        case DepthRecording():
+            return TakeOrigin.DEPTH
         case Motion():
             is_video = naming_scheme(take.skeleton.names) in VIDEO_SCHEMES
             return TakeOrigin.VIDEO if is_video else TakeOrigin.SKELETON

@@ -89,7 +89,7 @@ def test_revert_plays_the_recorded_action_and_closes_the_card(sample, fix, blank
     assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
 
     assert sample.animation_data.action == raw
-    assert draw("MOCAP_PT_fix") == ["mocap_assist.fix_take"]
+    assert "mocap_assist.accept_fix" not in draw("MOCAP_PT_fix")
 
 
 def test_accept_keeps_the_result_and_closes_the_card(sample, fix, blank, draw):
@@ -101,7 +101,7 @@ def test_accept_keeps_the_result_and_closes_the_card(sample, fix, blank, draw):
 
     assert "Jitter (°)" in draw("MOCAP_PT_check")
     assert sample.animation_data.action == action and CARD not in action
-    assert draw("MOCAP_PT_fix") == ["mocap_assist.fix_take"]
+    assert "mocap_assist.accept_fix" not in draw("MOCAP_PT_fix")
     assert not blank.ops.mocap_assist.accept_fix.poll()
 
 
@@ -121,12 +121,27 @@ def test_card_shows_four_figures_and_steps_on_request(sample, fix, blank, draw):
         blank.context.window_manager.mocap_assist_fix_details = False
 
 
+def test_fixed_motion_is_retargeted_on_request(sample, fix, blank):
+    raw = sample.animation_data.action
+    assert blank.ops.mocap_assist.load_sample() == {"FINISHED"}
+    rig = blank.context.object
+    blank.context.view_layer.objects.active = sample
+
+    action, card = fix(rig=rig.name, plant_feet=False)
+
+    assert rig.animation_data.action.name == f"{action.name}.{rig.name}"
+    assert "retargeted" in card["steps"][-1] and sample.animation_data.action == action
+    with pytest.raises(RuntimeError, match="no armature Hero"):
+        fix(rig="Hero")
+    assert raw.users
+
+
 def test_damaged_card_is_not_shown(sample, fix, draw):
     action, _ = fix()
 
     for text in ("{", "[]", '{"before": 1, "after": {}, "steps": []}'):
         action[CARD] = text
-        assert draw("MOCAP_PT_fix") == ["mocap_assist.fix_take"]
+        assert "mocap_assist.accept_fix" not in draw("MOCAP_PT_fix")
 
 
 def test_contacts_that_the_animator_keyed_are_used(sample, fix, load):

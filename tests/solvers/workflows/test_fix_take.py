@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from drawn_bodies import recorded, waving
 from kinect_walks import tracked_walk, true_positions
 from marked_bodies import markers_on
 from numpy.testing import assert_allclose
@@ -12,6 +13,7 @@ from solvers.denoising import denoise, find_worst_issues, measure_quality, plant
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Skeleton, Tracks, motion_from_points
 from solvers.motion.humanoid import posture_joints
+from solvers.physics import simulate
 from solvers.rotations.representations import angle_between
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 from solvers.workflows import (
@@ -245,6 +247,35 @@ def test_points_of_no_marker_set_are_cleaned(rng):
     off = [np.sqrt(np.mean((each - path) ** 2)) for each in (noisy, result.recording.positions)]
     assert off[1] < 0.5 * off[0]
     assert result.figures()["before"]["jitter_deg"] is None
+
+
+def test_actor_in_depth_images_is_tracked_and_cleaned():
+    result = fix_take(recorded(waving(6)))
+
+    tracked = result.chain.captured.motion
+    assert result.origin is TakeOrigin.DEPTH and result.chain.denoised is not None
+    cleaned = denoise(tracked).recording
+    assert_allclose(result.recording.rotations, plant_feet(cleaned).motion.rotations, atol=1e-9)
+    assert result.headline == "No floor is visible, so the camera is assumed to be level."
+
+
+def test_physics_comes_last_on_request(noisy):
+    settings = FixSettings(physics=True, plant_feet=False)
+    short = noisy.slice(0, 40)
+
+    result = fix_take(short, settings=settings)
+
+    expected = simulate(fix_take(short, settings=FixSettings(plant_feet=False)).recording)
+    assert_allclose(result.recording.rotations, expected.motion.rotations, atol=1e-9)
+    assert any(step.startswith("Physics: ") for step in result.steps)
+
+
+def test_physics_of_points_is_skipped(rng):
+    points = Tracks(("a", "b"), rng.normal(size=(30, 2, 3)), 30.0)
+
+    steps = fix_take(points, settings=FixSettings(physics=True)).steps
+
+    assert any(step.startswith("Physics was skipped") for step in steps)
 
 
 def test_take_without_observations_is_refused(walk):
