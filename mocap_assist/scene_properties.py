@@ -12,6 +12,9 @@ from .check.button_settings import CheckBundle
 from .clean.button_settings import CleanBundle
 from .exporting.button_settings import ExportPanelBundle
 from .fix.button_settings import FixBundle
+from .fix.queue import QUEUE
+from .fix.queue_properties import PROPERTIES as QUEUE_PROPERTIES
+from .fix.queue_properties import MOCAP_PG_fix_queue
 from .library.button_settings import FindBundle, LibraryBundle, LoadBundle, UseBundle
 from .markers.solving import SolveBundle
 from .physics.simulating import SimulateBundle
@@ -213,6 +216,7 @@ CLASSES = (
     MOCAP_PG_issue,
     MOCAP_PG_scene,
     MOCAP_PG_job,
+    *QUEUE_PROPERTIES,
 )
 
 
@@ -223,6 +227,7 @@ def register() -> None:
     bpy.types.Scene.mocap_assist = bpy.props.PointerProperty(type=MOCAP_PG_scene)
     manager = bpy.types.WindowManager
     manager.mocap_assist_job = bpy.props.PointerProperty(type=MOCAP_PG_job)
+    setattr(manager, QUEUE, bpy.props.PointerProperty(type=MOCAP_PG_fix_queue))
     manager.mocap_assist_all_panels = bpy.props.BoolProperty(
         name="All Panels", description="Show all panels, whatever is selected"
     )
@@ -236,6 +241,7 @@ def unregister() -> None:
     manager = bpy.types.WindowManager
     del manager.mocap_assist_fix_details, manager.mocap_assist_all_panels
     del manager.mocap_assist_job
+    delattr(manager, QUEUE)
     del bpy.types.Scene.mocap_assist
     for each in reversed(CLASSES):
         bpy.utils.unregister_class(each)

@@ -10,7 +10,9 @@ from .denoise import MOCAP_OT_denoise
 from .draw_variants import MOCAP_OT_draw_variants
 from .export_take import MOCAP_OT_export_take
 from .find_similar import MOCAP_OT_find_similar
+from .fix_folder import MOCAP_OT_fix_folder
 from .fix_take import MOCAP_OT_fix_take
+from .fix_takes import MOCAP_OT_fix_takes
 from .import_job import MOCAP_OT_import_job
 from .import_recording import MOCAP_OT_import_recording
 from .index_library import MOCAP_OT_index_library
@@ -48,6 +50,8 @@ OPERATORS = (
     MOCAP_OT_cancel_solve,
     MOCAP_OT_load_sample,
     MOCAP_OT_fix_take,
+    MOCAP_OT_fix_takes,
+    MOCAP_OT_fix_folder,
     MOCAP_OT_accept_fix,
     MOCAP_OT_change_axes,
     MOCAP_OT_show_depth,

@@ -13,13 +13,37 @@ from ..panels.fix_card import shown_card
 from ..panels.visibility import shows_take
 from ..track.tracking import selected_preview
 from .fixing import why_not_fix
+from .queue import Status, selected_takes, shown_queue
 
 FIX, ACCEPT, REVERT = (
     f"mocap_assist.{name}" for name in ("fix_take", "accept_fix", "revert_to_raw")
 )
+FIX_TAKES, FIX_FOLDER = "mocap_assist.fix_takes", "mocap_assist.fix_folder"
+MAX_ROWS = 6
+"""Rows of the list of takes; more scroll. Chosen by hand for a default sidebar."""
 LAST_STEPS = ("plant_feet", "physics")
 DETAILS = "mocap_assist_fix_details"
 UNDO = "To revert, undo: the markers are as they were recorded."
+
+
+class MOCAP_UL_takes(bpy.types.UIList):
+    """Takes that are fixed one after another, and the status of each."""
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: object,
+        item: Any,
+        icon: int,
+        active_data: object,
+        active_property: str,
+        index: int,
+    ) -> None:
+        title, symbol = Status[item.status].value
+        row = layout.split(factor=0.65)
+        row.label(text=item.name, icon=symbol, translate=False)
+        row.label(text=title)
 
 
 class FixPanel(PanelMixin):
@@ -39,11 +63,35 @@ class FixPanel(PanelMixin):
         button = layout.row()
         button.scale_y = 2.0
         button.operator(FIX, icon="SHADERFX")
+        _draw_many(layout, context)
         _draw_last_steps(layout, context)
         if reason:
             draw_sentence(layout, context, reason, icon="INFO")
         elif card := shown_card(context):
             _draw_card(layout.box(), context, card)
+
+
+def _draw_many(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the buttons for several takes, and the list of those of the last press."""
+    row = layout.row(align=True)
+    if len(selected_takes(context)) > 1:
+        row.operator(FIX_TAKES)
+    row.operator(FIX_FOLDER, text="Fix Folder...", icon="FILE_FOLDER")
+    queue = shown_queue()
+    if not len(queue.takes):
+        return
+    n_done = sum(each.status == Status.DONE.name for each in queue.takes)
+    header, body = layout.panel("mocap_assist_fix_queue", default_closed=False)
+    header.label(text=f"{n_done} of {len(queue.takes)} Fixed", translate=False)
+    if body is None:
+        return
+    rows = min(len(queue.takes), MAX_ROWS)
+    body.template_list("MOCAP_UL_takes", "", queue, "takes", queue, "active_take", rows=rows)
+    if context.window_manager.mocap_assist_job.running:
+        text, icon = ("Continue", "PLAY") if queue.paused else ("Pause", "PAUSE")
+        body.prop(queue, "paused", text=text, icon=icon, toggle=True)
+    if note := queue.takes[min(queue.active_take, len(queue.takes) - 1)].note:
+        draw_sentence(body, context, note)
 
 
 def _draw_last_steps(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -70,9 +70,13 @@ class SolverOperator(SettingsMixin):
             if hasattr(shown, name) and not self.properties.is_property_set(name):
                 setattr(self, name, getattr(shown, name))
 
+    def remember(self, context: bpy.types.Context) -> None:
+        """Remember the subject in a form that survives undo."""
+        self._subject = Subject.of(context.scene, type(self).selected(context))
+
     def execute(self, context: bpy.types.Context) -> set[str]:
         if not hasattr(self, "_subject"):  # otherwise a redo, for the same subject
-            self._subject = Subject.of(context.scene, type(self).selected(context))
+            self.remember(context)
         try:
             result = run(type(self).read_scene(*self._read_arguments()))
             message = type(self).write_scene(*self._read_arguments(), result, None)
@@ -84,7 +88,7 @@ class SolverOperator(SettingsMixin):
         self.prepare(context)
         if in_background():
             return self.execute(context)
-        self._subject = Subject.of(context.scene, type(self).selected(context))
+        self.remember(context)
         self._started = monotonic()
         self._acts = self._perform()
         try:

@@ -10,6 +10,7 @@ CHAPTERS = {
     "bpy.types.windowmanager.mocap_assist_all_panels*": "import",
     "bpy.ops.mocap_assist.*fix*": "fix",
     "bpy.types.mocap_pg_fix*": "fix",
+    "bpy.types.mocap_pg_queued*": "fix",
     "bpy.types.windowmanager.mocap_assist_fix_details*": "fix",
     "bpy.ops.mocap_assist.change_axes*": "import",
     "bpy.ops.mocap_assist.show_depth*": "import",

@@ -8,6 +8,8 @@ BUTTONS = (
     "mocap_assist.import_recording",
     "mocap_assist.load_sample",
     "mocap_assist.fix_take",
+    "mocap_assist.fix_takes",
+    "mocap_assist.fix_folder",
     "mocap_assist.accept_fix",
     "mocap_assist.track_depth",
     "mocap_assist.retrack",

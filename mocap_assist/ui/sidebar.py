@@ -6,7 +6,7 @@ from ..check.compare_panel import ComparePanel
 from ..check.panel import CheckPanel, MOCAP_UL_issues
 from ..clean.feet_panel import FeetPanel
 from ..clean.panel import CleanPanel
-from ..fix.panel import FixPanel
+from ..fix.panel import FixPanel, MOCAP_UL_takes
 from ..importing.panel import ImportPanel
 from ..live.panel import PerformPanel
 from ..markers.panel import MarkersPanel
@@ -57,12 +57,14 @@ BODIES = (
     PerformPanel,
 )
 """In the order of the work, each after the one that it is within."""
+LISTS = (MOCAP_UL_issues, MOCAP_UL_takes)
 PANELS = [panel for body in BODIES for panel in _in_every_editor(body)]
 
 
 def register() -> None:
     """Show the panels, on the tab that the preferences name."""
-    bpy.utils.register_class(MOCAP_UL_issues)
+    for each in LISTS:
+        bpy.utils.register_class(each)
     tab = preferred("tab").strip() or TAB
     for panel in PANELS:
         panel.bl_category = tab
@@ -73,7 +75,8 @@ def unregister() -> None:
     """Take the panels away."""
     for panel in reversed(PANELS):
         bpy.utils.unregister_class(panel)
-    bpy.utils.unregister_class(MOCAP_UL_issues)
+    for each in LISTS:
+        bpy.utils.unregister_class(each)
 
 
 def move_to_tab() -> None:

@@ -40,6 +40,7 @@ IN_ONE_BLENDER = {
     "exporting/test_linked_and_nla.py": (4, 5),
     "exporting/test_rigs_and_meshes.py": (4, 5),
     "fixing/test_fix_take.py": (5, 2),
+    "fixing/test_many_takes.py": (5, 2),
     "importing/test_failing_readers.py": (5, 2),
     "importing/test_import_to_retarget.py": (4, 5),
     "importing/test_joint_recordings.py": (5, 2),

@@ -1,0 +1,104 @@
+"""Fix many takes one after another: pause between two, go on after a failure, stop on Esc."""
+
+from collections.abc import Generator
+from time import monotonic, sleep
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.errors import MocapAssistError, SolveCancelled
+from ..blender.path_properties import FOLDER, HIDDEN, absolute, path_property
+from ..jobs.job import POLL_INTERVAL_S
+from ..runtime.solver_operator import SolverOperator
+from .queue import QueuedTake, Status, show_status, show_takes, shown_queue, takes_of
+
+POINTER = {"MOUSEMOVE", "LEFTMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN"}
+"""Events that the sidebar receives during the work, for its button Pause."""
+
+
+def always(context: bpy.types.Context) -> str:
+    """Return an empty text: the button is never gray, and a folder needs no selection."""
+    return ""
+
+
+class QueueOperator(SolverOperator):
+    """Mix in like SolverOperator: its button works on each take of a queue.
+
+    Each fixed take is an undo step of its own, so that one can be undone without the others.
+    """
+
+    bl_options: ClassVar = {"REGISTER"}
+    directory: path_property(FOLDER, HIDDEN)
+
+    def remember(self, context: bpy.types.Context) -> None:
+        """List the takes."""
+        folder = absolute(self.directory) if self.directory else None
+        self._takes: list[QueuedTake] = takes_of(context, folder)
+        show_takes(self._takes)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        try:
+            return super().invoke(context, event)
+        except MocapAssistError as error:  # of the folder
+            return self._give_up(error)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            self.remember(context)
+            acts = self._perform()
+            while True:
+                next(acts)
+                sleep(POLL_INTERVAL_S)
+        except StopIteration as end:
+            return self._finish(end.value)
+        except MocapAssistError as error:
+            return self._give_up(error)
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        is_escape = event.type == "ESC" and event.value == "PRESS"
+        if event.type == "TIMER" or is_escape or not self._watch.is_on:
+            return super().modal(context, event)
+        passes = shown_queue().paused or (event.type in POINTER and _over_sidebar(event))
+        return {"PASS_THROUGH"} if passes else {"RUNNING_MODAL"}
+
+    def _perform(self) -> Generator[tuple[float, str], None, str]:
+        n_failed = 0
+        for index, take in enumerate(self._takes):
+            while shown_queue().paused:
+                yield 0.0, "Paused"
+            show_status(index, Status.RUNNING)
+            try:
+                self._started = monotonic()
+                self._subject = yield from take.bring(bpy.context)
+                message = yield from super()._perform()
+            except SolveCancelled:
+                take.discard(bpy.context)
+                for left in range(index, len(self._takes)):
+                    show_status(left, Status.CANCELLED)
+                raise
+            except (MocapAssistError, MemoryError) as error:
+                n_failed += 1
+                show_status(index, Status.FAILED, str(error) or "Memory ran out.")
+            else:
+                show_status(index, Status.DONE, message)
+                _push_undo(take.name)
+        n_fixed = len(self._takes) - n_failed
+        failed = f" {n_failed} failed: see the list." if n_failed else ""
+        return f"Fixed {n_fixed} of {len(self._takes)} takes.{failed}"
+
+
+def _push_undo(name: str) -> None:
+    if bpy.ops.ed.undo_push.poll():
+        bpy.ops.ed.undo_push(message=f"Fix {name}")
+
+
+def _over_sidebar(event: bpy.types.Event) -> bool:
+    """Return whether the pointer is over a sidebar."""
+    return any(
+        region.type == "UI"
+        and 0 <= event.mouse_x - region.x < region.width
+        and 0 <= event.mouse_y - region.y < region.height
+        for window in bpy.context.window_manager.windows
+        for area in window.screen.areas
+        for region in area.regions
+    )
