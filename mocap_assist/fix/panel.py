@@ -47,7 +47,7 @@ class MOCAP_UL_takes(bpy.types.UIList):
 
 
 class FixPanel(PanelMixin):
-    """The button Fix My Take, and the card."""
+    """The buttons, the card, the list of several takes, and the last steps."""
 
     bl_label = "Fix"
 
@@ -63,20 +63,20 @@ class FixPanel(PanelMixin):
         button = layout.row()
         button.scale_y = 2.0
         button.operator(FIX, icon="SHADERFX")
-        _draw_many(layout, context)
-        _draw_last_steps(layout, context)
+        row = layout.row(align=True)
+        if len(selected_takes(context)) > 1:
+            row.operator(FIX_TAKES)
+        row.operator(FIX_FOLDER, text="Fix Folder...", icon="FILE_FOLDER")
         if reason:
             draw_sentence(layout, context, reason, icon="INFO")
         elif card := shown_card(context):
             _draw_card(layout.box(), context, card)
+        _draw_queue(layout, context)
+        _draw_last_steps(layout, context)
 
 
-def _draw_many(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the buttons for several takes, and the list of those of the last press."""
-    row = layout.row(align=True)
-    if len(selected_takes(context)) > 1:
-        row.operator(FIX_TAKES)
-    row.operator(FIX_FOLDER, text="Fix Folder...", icon="FILE_FOLDER")
+def _draw_queue(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the takes of the last press of Fix Selected Takes or Fix Folder."""
     queue = shown_queue()
     if not len(queue.takes):
         return

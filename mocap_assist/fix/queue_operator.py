@@ -57,7 +57,9 @@ class QueueOperator(SolverOperator):
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         is_escape = event.type == "ESC" and event.value == "PRESS"
         if event.type == "TIMER" or is_escape or not self._watch.is_on:
-            return super().modal(context, event)
+            status = super().modal(context, event)
+            # The sidebar's buttons need the timer of their tooltips.
+            return {"PASS_THROUGH"} if status == {"RUNNING_MODAL"} else status
         passes = shown_queue().paused or (event.type in POINTER and _over_sidebar(event))
         return {"PASS_THROUGH"} if passes else {"RUNNING_MODAL"}
 

@@ -124,8 +124,49 @@ def other_languages():
         translate = bpy.app.translations.pgettext_iface
         assert translate("Clean", "Mocap Assist") == clean
         yield from settle(pointer=AWAY)
-        bgui.shot(f"8-{language}.png")
+        bgui.shot(f"11-{language}.png")
     view.language = "en_US"
+
+
+def fix_several(armature):
+    """Two takes, a pause between them, and the list with their status."""
+    with bgui.override("WINDOW"):
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.ops.mocap_assist.load_sample()
+    second = bpy.context.view_layer.objects.active
+    with bgui.override("WINDOW"):
+        bpy.ops.object.mode_set(mode="OBJECT")
+    armature.select_set(True)
+    second.select_set(True)
+    yield from settle(pointer=AWAY)
+    bgui.shot("8-several.png")
+    yield from press("mocap_assist.fix_takes")
+    queue = bpy.context.window_manager.mocap_assist_queue
+    queue.paused = True  # the takes are too short to find the button meanwhile
+    while job().message != "Paused":
+        yield 0.2
+    assert [each.status for each in queue.takes] == ["DONE", "WAITING"]
+    yield from settle(pointer=AWAY)
+    bgui.shot("9-paused.png")
+    yield from press("paused")
+    yield 0.3
+    assert not queue.paused and job().running
+    yield from bgui.click(*bgui.at("paused"))
+    yield 0.3
+    assert queue.paused and job().running  # the sidebar takes clicks during the work
+    yield from until_done()
+    assert [each.status for each in queue.takes] == ["DONE", "DONE"]
+    yield from settle(pointer=AWAY)
+    bgui.shot("10-several-done.png")
+
+
+def undo_takes_back_one_take():
+    names = {each.animation_data.action.name for each in bpy.data.objects}
+    with bgui.override("WINDOW"):
+        bpy.ops.ed.undo()
+    yield 0.5
+    left = {each.animation_data.action.name for each in bpy.data.objects}
+    assert len(names - left) == 1, (names, left)
 
 
 def steps():
@@ -139,6 +180,8 @@ def steps():
     armature = yield from undo_is_one_step(armature)
     yield from revert(armature)
     yield from accept(armature)
+    yield from fix_several(armature)
+    yield from undo_takes_back_one_take()
     yield from other_languages()
 
 
