@@ -66,15 +66,16 @@ class QueueOperator(SolverOperator):
     def _perform(self) -> Generator[tuple[float, str], None, str]:
         n_failed = 0
         for index, take in enumerate(self._takes):
-            while shown_queue().paused:
-                yield 0.0, "Paused"
-            show_status(index, Status.RUNNING)
             try:
+                while shown_queue().paused:
+                    yield 0.0, "Paused"
+                show_status(index, Status.RUNNING)
                 self._started = monotonic()
                 self._subject = yield from take.bring(bpy.context)
                 message = yield from super()._perform()
-            except SolveCancelled:
-                take.discard(bpy.context)
+            except (SolveCancelled, GeneratorExit) as end:
+                if isinstance(end, SolveCancelled):  # otherwise the file is closed
+                    take.discard(bpy.context)
                 for left in range(index, len(self._takes)):
                     show_status(left, Status.CANCELLED)
                 raise

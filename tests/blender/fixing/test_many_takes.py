@@ -1,7 +1,16 @@
 """Fix My Take on several takes: a list with the status of each, pause, and Esc."""
 
+import time
+
 import pytest
-from modal_events import event, nothing_is_left, wait
+from modal_events import event, nothing_is_left
+
+
+def wait(button, window, until):
+    """Let time pass until something has happened."""
+    while not until():
+        assert button.modal(window.context, event("TIMER")) == {"PASS_THROUGH"}
+        time.sleep(0.005)
 
 
 @pytest.fixture
@@ -80,3 +89,16 @@ def test_pause_waits_between_two_takes_and_esc_keeps_what_is_done(
     assert listed() == [("a.bvh", "DONE"), ("b.bvh", "FAILED"), ("c.bvh", "CANCELLED")]
     assert list(blank.data.objects.keys()) == ["a"] and nothing_is_left(window)
     assert blank.data.objects["a"].animation_data.action.name == "a.clean"
+
+
+def test_esc_during_a_pause_cancels_what_waits(queue_button, window, listed, folder, load):
+    for name in ("a", "c"):
+        (folder / f"{name}.bvh").write_text("HIERARCHY\nROOT", encoding="utf-8")
+    assert queue_button.invoke(window.context, None) == {"RUNNING_MODAL"}
+    load("mocap_assist.fix.queue").shown_queue().paused = True
+    wait(queue_button, window, until=lambda: window.status[-1].startswith("Paused"))
+
+    assert queue_button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+
+    assert [status for _, status in listed()] == ["FAILED", "CANCELLED", "CANCELLED"]
+    assert nothing_is_left(window)

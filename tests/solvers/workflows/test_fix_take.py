@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from drawn_bodies import recorded, waving
 from kinect_walks import tracked_walk, true_positions
 from marked_bodies import markers_on
 from numpy.testing import assert_allclose
@@ -13,7 +12,6 @@ from solvers.denoising import denoise, find_worst_issues, measure_quality, plant
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Skeleton, Tracks, motion_from_points
 from solvers.motion.humanoid import posture_joints
-from solvers.physics import simulate
 from solvers.rotations.representations import angle_between
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 from solvers.workflows import (
@@ -190,51 +188,6 @@ def test_markers_become_a_skeleton_with_correct_labels(walk):
     assert result.after.n_spikes < result.before.n_spikes
 
 
-def test_markers_that_are_never_seen_are_left_out(walk):
-    markers = markers_on(walk)
-    positions = markers.positions.copy()
-    positions[:, [markers.names.index(name) for name in ("LFIN", "RFIN")]] = np.nan
-
-    result = fix_take(markers.with_positions(positions))
-
-    assert result.origin is TakeOrigin.MARKERS and result.recording.observed.all()
-    assert "LFIN, RFIN were never seen and left out." in result.steps
-
-
-def test_take_without_an_essential_marker_is_cleaned_as_points(walk):
-    markers = markers_on(walk.slice(0, 40))
-    positions = markers.positions.copy()
-    positions[:, markers.names.index("LKNE")] = np.nan
-
-    result = fix_take(markers.with_positions(positions))
-
-    assert result.origin is TakeOrigin.POINTS
-    assert "LKNE" not in result.recording.names and len(result.recording.names) == 40
-    assert result.headline.endswith("missing are LKNE.")
-
-
-def test_frames_without_data_are_filled_and_reported(noisy):
-    rotations, positions = noisy.rotations.copy(), noisy.root_positions.copy()
-    for values in (rotations, positions):
-        values[30:36] = values[100:103] = np.nan
-
-    result = fix_take(noisy.with_poses(rotations, positions))
-
-    assert result.recording.observed.all()
-    sentence = "9 frames have no data at all, up to 0.2 s in a row; they are filled"
-    assert result.headline.startswith(sentence) and result.headline in result.steps
-
-
-def test_odd_size_of_the_actor_comes_first(noisy):
-    skeleton = noisy.skeleton
-    giant = Skeleton(skeleton.names, skeleton.parents, 8.0 * skeleton.offsets)
-    moved = Motion(giant, noisy.rotations, 8.0 * noisy.root_positions, noisy.frame_rate)
-
-    headline = fix_take(moved).headline
-
-    assert headline.startswith("The actor is ") and "set Unit or Scale" in headline
-
-
 def test_points_of_no_marker_set_are_cleaned(rng):
     time = np.arange(90)[:, None, None] / 30.0
     path = np.sin(time + np.arange(4)[None, :, None]) * np.array([0.3, 0.2, 0.1])
@@ -247,35 +200,6 @@ def test_points_of_no_marker_set_are_cleaned(rng):
     off = [np.sqrt(np.mean((each - path) ** 2)) for each in (noisy, result.recording.positions)]
     assert off[1] < 0.5 * off[0]
     assert result.figures()["before"]["jitter_deg"] is None
-
-
-def test_actor_in_depth_images_is_tracked_and_cleaned():
-    result = fix_take(recorded(waving(6)))
-
-    tracked = result.chain.captured.motion
-    assert result.origin is TakeOrigin.DEPTH and result.chain.denoised is not None
-    cleaned = denoise(tracked).recording
-    assert_allclose(result.recording.rotations, plant_feet(cleaned).motion.rotations, atol=1e-9)
-    assert result.headline == "No floor is visible, so the camera is assumed to be level."
-
-
-def test_physics_comes_last_on_request(noisy):
-    settings = FixSettings(physics=True, plant_feet=False)
-    short = noisy.slice(0, 40)
-
-    result = fix_take(short, settings=settings)
-
-    expected = simulate(fix_take(short, settings=FixSettings(plant_feet=False)).recording)
-    assert_allclose(result.recording.rotations, expected.motion.rotations, atol=1e-9)
-    assert any(step.startswith("Physics: ") for step in result.steps)
-
-
-def test_physics_of_points_is_skipped(rng):
-    points = Tracks(("a", "b"), rng.normal(size=(30, 2, 3)), 30.0)
-
-    steps = fix_take(points, settings=FixSettings(physics=True)).steps
-
-    assert any(step.startswith("Physics was skipped") for step in steps)
 
 
 def test_take_without_observations_is_refused(walk):
