@@ -23,9 +23,10 @@ LABELED = {
     "mocap_assist/live/listening.py": {"MODES"},
     "mocap_assist/panels/figure_rows.py": {"FIGURES"},
     "mocap_assist/retarget/bone_list.py": {"PRESETS"},
+    "mocap_assist/runtime/watch.py": {"time_left"},
     "solvers/denoising/quality/worst_issues.py": {"_spikes", "_gaps", "_jitter", "_slides",
                                                   "_beyond_limits", "_cuts"},
-    "solvers/workflows/take_figures.py": {"_texts"},
+    "solvers/workflows/fix_report/take_figures.py": {"_texts"},
 }  # fmt: skip
 """By file: constants, enums and functions with texts that are no full sentences."""
 TAKES_TEXT = {
@@ -99,9 +100,9 @@ def _not_shown(tree: ast.Module) -> Iterator[ast.AST]:
 
 
 def _describes_class(node: ast.AST) -> bool:
-    """Whether this is bl_description, or a name or description of a property."""
+    """Whether this is bl_description, or a name or description of a property, or an icon."""
     if isinstance(node, ast.keyword):
-        return node.arg in {"description", "name"}
+        return node.arg in {"description", "name", "icon"}
     return isinstance(node, ast.Assign) and _name_of(node).startswith("bl_")
 
 
