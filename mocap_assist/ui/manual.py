@@ -15,6 +15,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.change_axes*": "import",
     "bpy.ops.mocap_assist.show_depth*": "import",
     "bpy.ops.mocap_assist.denoise*": "clean",
+    "bpy.ops.mocap_assist.cancel_solve*": "clean",
     "bpy.ops.mocap_assist.learn_patterns*": "clean",
     "bpy.ops.mocap_assist.*_preset*": "presets",
     "bpy.ops.mocap_assist.*_example*": "clean",
