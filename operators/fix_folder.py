@@ -22,7 +22,11 @@ class MOCAP_OT_fix_folder(ChoosesFolder, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         # Blender frees an operator that the file browser has executed, so another one waits.
-        status: set[str] = bpy.ops.mocap_assist.fix_takes(
-            "INVOKE_DEFAULT", directory=self.directory
-        )
+        try:
+            status: set[str] = bpy.ops.mocap_assist.fix_takes(
+                "INVOKE_DEFAULT", directory=self.directory
+            )
+        except RuntimeError as error:  # its own sentence, such as that the folder is empty
+            self.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
+            return {"CANCELLED"}
         return status & {"CANCELLED"} or {"FINISHED"}

@@ -12,6 +12,7 @@ from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
 from ..blender import compat
 from ..blender.compat import Source
+from ..scene import history
 from .bone_channels import (
     animated_curves,
     bone_path,
@@ -113,17 +114,37 @@ def put_to_use(
 ) -> None:
     """Let the armature play a result: as its action, or on an NLA track of its own.
 
+    The delta layer of an earlier result of the same take is removed: it would be added.
+
     Raises
     ------
     InvalidMotionError
         Nothing can be assigned to the armature; see `check_writable`.
     """
     check_writable(armature)
+    raw = history.raw_of(action, slot)
+    if raw and armature.animation_data is not None:
+        remove_deltas(armature.animation_data, raw[0])
     if output is Output.ACTION:
         compat.assign(armature, action, slot)
         return
     armature.animation_data.action = None
     new_strip(armature.animation_data, (action, slot))
+
+
+def remove_deltas(animation: bpy.types.AnimData, base: bpy.types.Action) -> None:
+    """Remove the delta tracks of a recorded action, and the tracks below that play it."""
+    removed = []
+    below = None
+    for track in animation.nla_tracks:
+        actions = [strip.action for strip in track.strips if strip.action]
+        if actions and all(history.base_of_delta(action) == base for action in actions):
+            removed.append(track)
+            if below is not None and {strip.action for strip in below.strips} == {base}:
+                removed.append(below)
+        below = track
+    for track in removed:
+        animation.nla_tracks.remove(track)
 
 
 def new_strip(animation: bpy.types.AnimData, source: Source) -> bpy.types.NlaStrip:

@@ -10,7 +10,7 @@ from ...solvers.rotations import inverse, multiply, unroll
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
-from .armature_write import NUMBERED, check_writable, new_strip
+from .armature_write import NUMBERED, check_writable, new_strip, remove_deltas
 from .bone_channels import Curves, animated_curves, curves_of, sampled
 from .curves import deselect, write_first
 from .rotation_modes import quaternions_from_channels
@@ -76,8 +76,8 @@ def _deltas(
 def lay_delta(armature: bpy.types.Object, base: Source, delta: Source) -> None:
     """Let an armature play the base action on an NLA track, and the delta on one above it.
 
-    Tracks of an earlier delta of the same base are removed. Its influence is a free value: it
-    can be dialed, and keyed.
+    Tracks of an earlier delta of the same base are removed; its influence stays. The influence
+    is a free value: it can be dialed, and keyed.
 
     Raises
     ------
@@ -86,14 +86,20 @@ def lay_delta(armature: bpy.types.Object, base: Source, delta: Source) -> None:
     """
     check_writable(armature)
     animation = armature.animation_data
-    remove_deltas(animation)
+    influence = _dialed_influence(armature)
+    remove_deltas(animation, base[0])
     below = new_strip(animation, base)
     below.blend_type = animation.action_blend_type
     _free_influence(below, animation.action_influence)
     animation.action = None
     strip = new_strip(animation, delta)
     strip.blend_type = "COMBINE"
-    _free_influence(strip, 1.0)
+    _free_influence(strip, influence)
+
+
+def _dialed_influence(armature: bpy.types.Object) -> float:
+    strip = delta_strip(armature)
+    return 1.0 if strip is None else float(strip.influence)
 
 
 def _free_influence(strip: bpy.types.NlaStrip, value: float) -> None:
@@ -104,18 +110,6 @@ def _free_influence(strip: bpy.types.NlaStrip, value: float) -> None:
             for key in list(curve.keyframe_points):  # Blender adds one, of the value 0
                 curve.keyframe_points.remove(key)
     strip.influence = value
-
-
-def remove_deltas(animation: bpy.types.AnimData) -> None:
-    """Remove all delta tracks, and the tracks of their base actions below them."""
-    tracks = list(animation.nla_tracks)
-    for below, track in zip([None, *tracks], tracks, strict=False):
-        bases = [history.base_of_delta(strip.action) for strip in track.strips if strip.action]
-        if not bases or None in bases:
-            continue
-        animation.nla_tracks.remove(track)
-        if below is not None and [strip.action for strip in below.strips] == bases:
-            animation.nla_tracks.remove(below)
 
 
 def delta_strip(armature: bpy.types.Object) -> bpy.types.NlaStrip | None:

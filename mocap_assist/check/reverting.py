@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..actions.delta_layer import remove_deltas
+from ..actions.armature_write import remove_deltas
 from ..blender import compat
 from ..blender.compat import Source
 from ..runtime.selection import animated_objects, played_result, selected_subject
@@ -39,7 +39,7 @@ def revert(subject: bpy.types.Object) -> str:
 def _revert(player: bpy.types.Object, raw: Source) -> None:
     """Assign the recorded action and slot; remove NLA tracks of its results."""
     tracks = player.animation_data.nla_tracks
-    remove_deltas(player.animation_data)
+    remove_deltas(player.animation_data, raw[0])
     for track in list(tracks):
         sources = [
             strip.action and history.raw_of(strip.action, strip.action_slot)

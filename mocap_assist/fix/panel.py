@@ -82,7 +82,8 @@ def _draw_queue(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         return
     n_done = sum(each.status == Status.DONE.name for each in queue.takes)
     header, body = layout.panel("mocap_assist_fix_queue", default_closed=False)
-    header.label(text=f"{n_done} of {len(queue.takes)} Fixed", translate=False)
+    shown = translated(f"{n_done} of {len(queue.takes)} Fixed")
+    header.label(text=shown, translate=False)
     if body is None:
         return
     rows = min(len(queue.takes), MAX_ROWS)

@@ -9,6 +9,7 @@ import bpy
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ..blender.path_properties import FOLDER, HIDDEN, absolute, path_property
 from ..jobs.job import POLL_INTERVAL_S
+from ..languages import translated
 from ..runtime.solver_operator import SolverOperator
 from .queue import QueuedTake, Status, show_status, show_takes, shown_queue, takes_of
 
@@ -29,6 +30,7 @@ class QueueOperator(SolverOperator):
 
     bl_options: ClassVar = {"REGISTER"}
     directory: path_property(FOLDER, HIDDEN)
+    _is_paused = False
 
     def remember(self, context: bpy.types.Context) -> None:
         """List the takes."""
@@ -55,20 +57,27 @@ class QueueOperator(SolverOperator):
             return self._give_up(error)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        is_escape = event.type == "ESC" and event.value == "PRESS"
+        is_escape = event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS"
+        is_escape = is_escape or (self._watch.is_on and self._watch.is_cancelled)
         if event.type == "TIMER" or is_escape or not self._watch.is_on:
             status = super().modal(context, event)
             # The sidebar's buttons need the timer of their tooltips.
             return {"PASS_THROUGH"} if status == {"RUNNING_MODAL"} else status
-        passes = shown_queue().paused or (event.type in POINTER and _over_sidebar(event))
+        passes = self._is_paused or (event.type in POINTER and _over_sidebar(event))
+        passes = passes or self.lets_pass(context, event)
         return {"PASS_THROUGH"} if passes else {"RUNNING_MODAL"}
+
+    def _wait_while_paused(self) -> Generator[tuple[float, str], None, None]:
+        while shown_queue().paused:
+            self._is_paused = True
+            yield 0.0, translated("Paused")
+        self._is_paused = False
 
     def _perform(self) -> Generator[tuple[float, str], None, str]:
         n_failed = 0
         for index, take in enumerate(self._takes):
             try:
-                while shown_queue().paused:
-                    yield 0.0, "Paused"
+                yield from self._wait_while_paused()
                 show_status(index, Status.RUNNING)
                 self._started = monotonic()
                 self._subject = yield from take.bring(bpy.context)
@@ -81,13 +90,22 @@ class QueueOperator(SolverOperator):
                 raise
             except (MocapAssistError, MemoryError) as error:
                 n_failed += 1
+                _push_undo(take.name)  # its import stays
                 show_status(index, Status.FAILED, str(error) or "Memory ran out.")
             else:
                 show_status(index, Status.DONE, message)
                 _push_undo(take.name)
-        n_fixed = len(self._takes) - n_failed
-        failed = f" {n_failed} failed: see the list." if n_failed else ""
-        return f"Fixed {n_fixed} of {len(self._takes)} takes.{failed}"
+        return _summary(len(self._takes), n_failed)
+
+
+def _summary(n_takes: int, n_failed: int) -> str:
+    """Return what was done, in the language of the window."""
+    n_fixed = n_takes - n_failed
+    message = translated(f"Fixed {n_fixed} of {n_takes} takes.")
+    if not n_failed:
+        return message
+    failed = translated(f"{n_failed} failed: see the list.")
+    return f"{message} {failed}"
 
 
 def _push_undo(name: str) -> None:
@@ -98,7 +116,8 @@ def _push_undo(name: str) -> None:
 def _over_sidebar(event: bpy.types.Event) -> bool:
     """Return whether the pointer is over a sidebar."""
     return any(
-        region.type == "UI"
+        area.type == "VIEW_3D"
+        and region.type == "UI"
         and 0 <= event.mouse_x - region.x < region.width
         and 0 <= event.mouse_y - region.y < region.height
         for window in bpy.context.window_manager.windows

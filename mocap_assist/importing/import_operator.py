@@ -10,6 +10,7 @@ from ..blender.mixins import SettingsMixin
 from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
 from ..languages import translated
 from ..panels.drawing import draw_lines
+from ..runtime.navigation import is_in_status_bar
 from ..runtime.solver_operator import in_background
 from ..runtime.watch import why_busy
 from .body_choice import bodies_to_choose, body_items, number_of, text_of
@@ -115,7 +116,8 @@ class WaitingImport(FilesOperator):
             self.report({"INFO"}, translated("Cancelled."))
             return {"CANCELLED"}
         if event.type != "TIMER":
-            return {"RUNNING_MODAL"}
+            passes = is_in_status_bar(context, event)
+            return {"PASS_THROUGH"} if passes else {"RUNNING_MODAL"}
         try:
             ended = job.step(context)
         except BaseException:

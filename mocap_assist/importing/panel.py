@@ -31,12 +31,12 @@ class ImportPanel(PanelMixin):
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
         """Offer the panels that the selection does not need."""
+        note_drawing()  # Headers are drawn of folded panels, too.
         self.layout.prop(
             context.window_manager, ALL_PANELS, text="", icon="COLLAPSEMENU", emboss=False
         )
 
     def draw(self, context: bpy.types.Context) -> None:
-        note_drawing()
         layout = self.layout
         draw_job(layout, context, "import")
         layout.operator(IMPORT, text="Import Motion Capture", icon="IMPORT")

@@ -10,13 +10,18 @@ from .child_process import ChildProcess
 
 _waiting: list[ChildProcess] = []
 """None or one."""
+_died_unused = [False]
+"""Whether the last one ended by itself: none is started then until the next solve."""
 
 
 def keep_waiting() -> None:
     """Start a process that waits, unless one does; without room for it nothing happens."""
     if _waiting and _waiting[0].is_waiting():
         return
+    _died_unused[0] = _died_unused[0] or bool(_waiting)
     end_waiting()
+    if _died_unused[0]:
+        return
     with suppress(MocapAssistError, OSError, MemoryError):
         child = ChildProcess()
         try:
@@ -29,6 +34,7 @@ def keep_waiting() -> None:
 
 def take_waiting() -> ChildProcess | None:
     """Return the process that waits, for one solve; None if there is none."""
+    _died_unused[0] = False
     if not _waiting:
         return None
     if _waiting[0].is_waiting():

@@ -3,6 +3,9 @@
 These events reach Blender's editors; all others do not, so that nothing is edited meanwhile.
 """
 
+from collections.abc import Iterable
+from typing import Any
+
 import bpy
 
 ALWAYS = {
@@ -25,36 +28,47 @@ SCRUB_HEIGHT_PX = 23
 def may_pass(context: bpy.types.Context, event: bpy.types.Event) -> bool:
     """Return whether an event only moves a view or the frame, or is for the status bar."""
     if event.type == "LEFTMOUSE":
-        return _is_in_status_bar(context, event) or _is_on_frame_numbers(context, event)
+        return is_in_status_bar(context, event) or _is_on_frame_numbers(context, event)
     if event.ctrl or event.alt or event.oskey:  # with these, wheel and keys change values
         return bool(event.type == "MIDDLEMOUSE")
     if event.type in ALWAYS:
         return True
-    area = _area_below(context, event)
-    return area is not None and area.type in MOTION_EDITORS and event.type in IN_MOTION_EDITORS
+    return event.type in IN_MOTION_EDITORS and _view_below(context, event) is not None
 
 
-def _is_in_status_bar(context: bpy.types.Context, event: bpy.types.Event) -> bool:
-    """Return whether the pointer is below all editors."""
+def is_in_status_bar(context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Return whether an event of the pointer is below all editors: Cancel is there."""
+    if event.type not in {"LEFTMOUSE", "MOUSEMOVE"}:
+        return False
     return bool(event.mouse_y < min(area.y for area in context.screen.areas))
 
 
 def _is_on_frame_numbers(context: bpy.types.Context, event: bpy.types.Event) -> bool:
-    area = _area_below(context, event)
-    if area is None or area.type not in SCRUBBED:
+    region = _view_below(context, event)
+    if (
+        region is None or event.shift or event.ctrl or event.alt
+    ):  # with these, keys are selected
         return False
     height = SCRUB_HEIGHT_PX * context.preferences.system.ui_scale
-    for region in area.regions:
-        if region.type == "WINDOW":
-            top = region.y + region.height
-            inside_x = region.x <= event.mouse_x < region.x + region.width
-            return bool(inside_x and top - height <= event.mouse_y < top)
-    return False
+    area = _at_pointer(context.screen.areas, event)
+    is_scrubbed = area is not None and area.type in SCRUBBED
+    return is_scrubbed and bool(event.mouse_y >= region.y + region.height - height)
 
 
-def _area_below(context: bpy.types.Context, event: bpy.types.Event) -> bpy.types.Area | None:
-    for area in context.screen.areas:
-        inside_x = area.x <= event.mouse_x < area.x + area.width
-        if inside_x and area.y <= event.mouse_y < area.y + area.height:
-            return area
+def _view_below(context: bpy.types.Context, event: bpy.types.Event) -> bpy.types.Region | None:
+    """Return the view of a motion editor below the pointer; None on its bars and lists."""
+    area = _at_pointer(context.screen.areas, event)
+    if area is None or area.type not in MOTION_EDITORS:
+        return None
+    others = [region for region in area.regions if region.type != "WINDOW"]
+    views = [region for region in area.regions if region.type == "WINDOW"]
+    # Bars may lie over the view.
+    return None if _at_pointer(others, event) else _at_pointer(views, event)
+
+
+def _at_pointer(rectangles: Iterable[Any], event: bpy.types.Event) -> Any:
+    for each in rectangles:
+        inside_x = each.x <= event.mouse_x < each.x + each.width
+        if inside_x and each.y <= event.mouse_y < each.y + each.height:
+            return each
     return None

@@ -13,7 +13,7 @@ from ..blender.mixins import SettingsMixin
 from ..blender.time_slices import Work
 from ..jobs.job import Job, ShortSolve, run
 from ..languages import translated
-from .navigation import may_pass
+from .navigation import is_in_status_bar, may_pass
 from .redo import fingerprint
 from .selection import selected_subject
 from .subject import Subject
@@ -109,8 +109,7 @@ class SolverOperator(SettingsMixin):
         escaped = event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS"
         escaped = escaped or watch.is_cancelled
         if not escaped and event.type != "TIMER":
-            looks = self._is_solving and may_pass(context, event)
-            return {"PASS_THROUGH"} if looks else {"RUNNING_MODAL"}
+            return {"PASS_THROUGH"} if self.lets_pass(context, event) else {"RUNNING_MODAL"}
         try:
             acts = self._acts
             progress = acts.throw(SolveCancelled("Cancelled.")) if escaped else next(acts)
@@ -125,6 +124,11 @@ class SolverOperator(SettingsMixin):
             raise
         watch.show(context, *progress)
         return {"RUNNING_MODAL"}
+
+    def lets_pass(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+        """Return whether an event reaches Blender's editors now."""
+        is_cancel = is_in_status_bar(context, event)
+        return is_cancel or (self._is_solving and may_pass(context, event))
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Stop because Blender loads another file or closes the window."""

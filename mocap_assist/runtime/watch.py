@@ -56,6 +56,8 @@ class Watch:
     def show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
         """Show the progress."""
         state = context.window_manager.mocap_assist_job
+        if not state.running or fraction < state.fraction:  # a new phase, or take
+            self._began = monotonic()
         state.running, state.fraction, state.message = True, fraction, message
         left = time_left(fraction, monotonic() - self._began)
         parts = [f"{translated(message)} {fraction:.0%}", translated(left)]

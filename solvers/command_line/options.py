@@ -80,10 +80,10 @@ def add_preset_option(parser: argparse.ArgumentParser, verb: str) -> None:
 
     def known_preset(name: str) -> str:
         try:
-            find_preset(verb, name)
+            found = find_preset(verb, name)
         except InvalidSettingError as error:
             raise argparse.ArgumentTypeError(str(error)) from error
-        return name
+        return next(known for known, preset in PRESETS[verb].items() if preset is found)
 
     parser.add_argument(
         "--preset", type=known_preset, metavar="NAME", default=argparse.SUPPRESS,

@@ -61,11 +61,19 @@ def run_tasks(
                 if finished.is_held or (finished.crashed and not has_failed):
                     again.append(finished.task)
                 else:
-                    yield record_end(finished) if finished.crashed else finished
+                    yield _recorded(finished, workers.batch)
         if n_held:
             screen.note(f"Waiting for takes that lost workers have claimed: {n_held}.")
             sleep(RENEWAL_INTERVAL_S)
         remaining = again
+
+
+def _recorded(finished: FinishedTask, batch: str) -> FinishedTask:
+    """Record a crash; the claim of a lost worker is that of this batch."""
+    if not finished.crashed:
+        return finished
+    task = finished.task
+    return record_end(finished._replace(task=task._replace(batch=batch)))._replace(task=task)
 
 
 def _groups(

@@ -66,8 +66,8 @@ def names():
 def cancel_leaves_the_scene_as_it_was(armature):
     raw, before = armature.animation_data.action, names()
     yield from press("mocap_assist.denoise")
-    yield 1.5
-    assert job().running
+    while not job().running:
+        yield 0.05
     yield from bgui.key("Escape")
     yield 0.5
     assert not job().running

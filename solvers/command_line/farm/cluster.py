@@ -119,7 +119,7 @@ def cluster_workers(address: str, folder: Path) -> Iterator[Cluster]:
     try:
         asyncio.run(_try_connection(address))
         client = Client(address, timeout=CONNECTION_TIMEOUT_S, set_as_default=False)
-    except (OSError, ValueError):
+    except (OSError, ValueError, TypeError, RuntimeError):
         raise InvalidSettingError(
             f"There is no scheduler at {address}, or it cannot be reached. Start one with dask"
             " scheduler, or correct the address."
@@ -131,15 +131,21 @@ def cluster_workers(address: str, folder: Path) -> Iterator[Cluster]:
 
 async def _try_connection(address: str) -> None:
     """Raise an OSError or ValueError at once where a client would wait for ever."""
+    from distributed import Security
     from distributed.comm import connect
 
+    keys = Security().get_connection_args("client")
     async with asyncio.timeout(CONNECTION_TIMEOUT_S):
-        connection = await connect(address, timeout=CONNECTION_TIMEOUT_S)
+        connection = await connect(address, timeout=CONNECTION_TIMEOUT_S, **keys)
     await connection.close()
 
 
 def _check_workers(client: "Client", folder: Path) -> None:
     answers = client.run(_check_worker, version(), folder, on_error="return")
+    if not answers:
+        raise InvalidSettingError(
+            "The scheduler has no workers. Start some: dask worker, and its address."
+        )
     for worker, answer in sorted(answers.items()):
         if isinstance(answer, ImportError):
             raise InvalidSettingError(_has_no_package(f"The worker {worker}"))

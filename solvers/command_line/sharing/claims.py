@@ -100,11 +100,12 @@ def _created(file: Path, batch: str) -> bool:
     part = file.with_name(f".{token_hex(8)}.claim.part")
     try:
         part.write_text(own, encoding="utf-8")
-        os.link(part, file)
-    except FileExistsError:
-        return False
-    except OSError:  # Some shares have no links: a process killed just here leaves it empty.
-        return _created_empty(file, own)
+        try:
+            os.link(part, file)
+        except FileExistsError:
+            return False
+        except OSError:  # Some shares have no links: a process killed there leaves it empty.
+            return _created_empty(file, own)
     finally:
         part.unlink(missing_ok=True)
     return True
@@ -112,10 +113,15 @@ def _created(file: Path, batch: str) -> bool:
 
 def _created_empty(file: Path, content: str) -> bool:
     try:
-        with file.open("x", encoding="utf-8") as stream:
-            stream.write(content)
+        stream = file.open("x", encoding="utf-8")
     except FileExistsError:
         return False
+    try:
+        with stream:
+            stream.write(content)
+    except OSError:  # The disk is full: an empty claim would keep all others from the output.
+        file.unlink(missing_ok=True)
+        raise
     return True
 
 

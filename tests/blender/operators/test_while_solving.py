@@ -13,7 +13,10 @@ def context():
     areas = [
         SimpleNamespace(
             type=kind, x=x, y=y, width=500, height=200,
-            regions=[SimpleNamespace(type="WINDOW", x=x, y=y, width=500, height=200)],
+            regions=[
+                SimpleNamespace(type="WINDOW", x=x, y=y, width=500, height=200),
+                SimpleNamespace(type="UI", x=x + 400, y=y, width=100, height=200),
+            ],
         )
         for kind, (x, y) in EDITORS.items()
     ]  # fmt: skip
@@ -24,7 +27,7 @@ def context():
 
 
 def event(kind, x, y, **held):
-    keys = dict.fromkeys(("ctrl", "alt", "oskey"), False) | held
+    keys = dict.fromkeys(("ctrl", "alt", "oskey", "shift"), False) | held
     return SimpleNamespace(type=kind, mouse_x=x, mouse_y=y, **keys)
 
 
@@ -38,6 +41,8 @@ def event(kind, x, y, **held):
         ("NUMPAD_1", (100, 400), {}, True),
         ("NUMPAD_0", (100, 400), {"ctrl": True, "alt": True}, False),  # moves the camera
         ("RIGHT_ARROW", (100, 200), {}, True),
+        ("RIGHT_ARROW", (450, 400), {}, False),  # a list in the sidebar
+        ("LEFTMOUSE", (100, 290), {"shift": True}, False),  # selects keys
         ("DOWN_ARROW", (600, 200), {}, False),  # selects the next object of the list
         ("LEFTMOUSE", (100, 400), {}, False),
         ("LEFTMOUSE", (100, 290), {}, True),  # the frame numbers
