@@ -44,15 +44,13 @@ def is_in_status_bar(context: bpy.types.Context, event: bpy.types.Event) -> bool
 
 
 def _is_on_frame_numbers(context: bpy.types.Context, event: bpy.types.Event) -> bool:
-    region = _view_below(context, event)
-    if (
-        region is None or event.shift or event.ctrl or event.alt
-    ):  # with these, keys are selected
+    area, region = _at_pointer(context.screen.areas, event), _view_below(context, event)
+    if region is None or area.type not in SCRUBBED:
+        return False
+    if event.shift or event.ctrl or event.alt:  # with these, a click selects keys
         return False
     height = SCRUB_HEIGHT_PX * context.preferences.system.ui_scale
-    area = _at_pointer(context.screen.areas, event)
-    is_scrubbed = area is not None and area.type in SCRUBBED
-    return is_scrubbed and bool(event.mouse_y >= region.y + region.height - height)
+    return bool(event.mouse_y >= region.y + region.height - height)
 
 
 def _view_below(context: bpy.types.Context, event: bpy.types.Event) -> bpy.types.Region | None:
