@@ -139,8 +139,7 @@ def _run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
         raise InvalidSettingError(f"jobs is {n_jobs}; it must be at least 1.")
     if getattr(arguments, "cluster", None) and hasattr(arguments, "threads"):
         raise InvalidSettingError(
-            "The workers of a cluster choose their threads: leave out --threads, and set"
-            " OMP_NUM_THREADS where they start."
+            "The workers of a cluster choose their threads. Leave out --threads."
         )
     folder: Path | None = getattr(arguments, "output_folder", None)
     reporting = getattr(arguments, "report", False)
