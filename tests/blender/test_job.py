@@ -2,7 +2,6 @@
 
 import os
 import signal
-import subprocess
 import sys
 import tempfile
 import time
@@ -11,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from process_checks import is_running, wait_until_gone
+from process_checks import is_running, start_with_extension, wait_until_gone
 
 
 @pytest.fixture
@@ -146,18 +145,7 @@ time.sleep(100)
 
 def test_child_ends_when_blender_is_killed(job, extension, tmp_path):
     """Even in the middle of a step that reports no progress."""
-    folder = Path(extension.__file__).parent
-    script = WAITING.format(
-        jobs=str(folder / "mocap_assist" / "jobs"),
-        package=extension.__name__,
-        extension=str(folder),
-    )
-    environment = os.environ | {
-        "TMPDIR": str(tmp_path), "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
-    }  # fmt: skip
-    with subprocess.Popen(
-        [sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=environment
-    ) as blender:
+    with start_with_extension(WAITING, extension, tmp_path) as blender:
         child = int(blender.stdout.readline())
         assert is_running(child) and folders()
         blender.kill()

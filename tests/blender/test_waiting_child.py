@@ -1,15 +1,12 @@
 """A process that waits for the next solve: used once, ended with Blender, never missed."""
 
 import operator
-import os
-import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
 
 import pytest
-from process_checks import is_running, wait_until_gone
+from process_checks import is_running, start_with_extension, wait_until_gone
 
 OWN_PID = "lambda progress: __import__('os').getpid()"
 MODULES = "lambda progress: sorted(__import__('sys').modules)"
@@ -138,18 +135,7 @@ def test_other_programs_and_threads_start_their_own(waiting, job):
 
 
 def test_process_that_waits_ends_when_blender_is_killed(extension, tmp_path):
-    folder = Path(extension.__file__).parent
-    script = KEEPER.format(
-        jobs=str(folder / "mocap_assist" / "jobs"),
-        package=extension.__name__,
-        extension=str(folder),
-    )
-    environment = os.environ | {
-        "TMPDIR": str(tmp_path), "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
-    }  # fmt: skip
-    with subprocess.Popen(
-        [sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=environment
-    ) as blender:
+    with start_with_extension(KEEPER, extension, tmp_path) as blender:
         child = int(blender.stdout.readline())
         assert is_running(child)
         blender.kill()

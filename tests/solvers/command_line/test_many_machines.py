@@ -118,7 +118,7 @@ def test_claim_of_another_machine_lasts_while_it_is_renewed(tmp_path, seconds, h
 
 
 def test_claim_never_stands_without_its_holder(tmp_path, monkeypatch):
-    """A process killed at any moment leaves no claim that nobody can be asked about."""
+    """A process killed at any moment leaves no claim without a holder."""
     claim, link, seen = tmp_path / "take.1.claim", os.link, []
 
     def look(source, target):
