@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ...solvers.errors import InvalidMotionError
+from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.retargeting import RetargetSettings
 from ..blender.time_slices import Steps
 from ..retarget.button_settings import RetargetBundle, RetargetChoices
@@ -24,7 +24,9 @@ def retargeted(here: Subject, rig: str, report: dict[str, Any]) -> Steps[dict[st
     try:
         solve = yield from read_retarget.steps(scene, subject, bundle)
         sentence = yield from write_retargeted.steps(*here.find(), bundle, solve())
-    except InvalidMotionError as error:
+    except SolveCancelled:
+        raise
+    except MocapAssistError as error:  # the fixed action is written already
         return _reported(report, f"Not retargeted. {error}", is_notice=True)
     return _reported(report, sentence, is_notice=False)
 

@@ -14,10 +14,9 @@ from pathlib import Path
 import bgui
 import bpy
 import numpy as np
-from driver_scene import empty_scene, settle, unfold_alone, until_done
+from driver_scene import empty_scene, lose_arm, settle, unfold_alone, until_done
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
-MISSING = ("RightArm", range(120, 180))
 N_BONES, N_FRAMES = 100, 10_000
 N_TIMES = 20
 GENERATED = 5
@@ -41,15 +40,7 @@ def import_walk():
     yield 0.5
     yield from until_done()
     armature = bpy.context.view_layer.objects.active
-    action, slot = armature.animation_data.action, armature.animation_data.action_slot
-    arm = armature.pose.bones[MISSING[0]]
-    names = [arm.name, *(each.name for each in arm.children_recursive)]
-    for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
-        if any(f'bones["{name}"]' in curve.data_path for name in names):
-            for key in reversed(curve.keyframe_points):
-                if round(key.co.x) in MISSING[1]:
-                    curve.keyframe_points.remove(key, fast=True)
-            curve.update()
+    lose_arm(armature)
 
 
 def press(button):
