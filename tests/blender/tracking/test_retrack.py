@@ -158,7 +158,7 @@ def test_retracking_has_a_preview_and_esc_restores_the_pose(
     posed = bone.matrix_basis.copy()
 
     button = press()
-    wait(button, window, until=lambda: button._view.drawn is not None)
+    wait(button, window, until=lambda: button._view and button._view.drawn)
     drawn = button._view.drawn.points
     shown = blank.context.scene.frame_current  # on a busy machine not the first one
     body = load("mocap_assist.track.body_overlay").body_at(tracked, shown).points
