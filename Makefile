@@ -209,7 +209,7 @@ sensitivity: .venv-4.5/ready  ## halve and double each tuned constant; ARGUMENTS
 
 # --- The extension ---
 
-.PHONY: extension extension-per-python extension-plain zip
+.PHONY: extension extension-per-python extension-plain zip repository
 extension: .venv-4.5/ready  ## the zips of all platforms, with their wheels: dist
 	$(PYTHON_4.5) .ci/build_extension.py
 
@@ -222,11 +222,25 @@ extension-plain: .venv-4.5/ready  ## a zip without wheels, for a Blender of anot
 zip: .venv-4.5/ready  ## the zip for Linux, which the tests install
 	@$(PYTHON_4.5) .ci/build_extension.py --platform linux-x64
 
+repository: .venv-4.5/ready  ## what a studio serves to its Blenders from a share: dist/repository
+	$(PYTHON_4.5) .ci/build_repository.py $(ARGUMENTS)
+
 # --- The Python package ---
 
 .PHONY: wheel
 wheel: .venv-wheel/ready  ## the solvers as a package for pip: dist
 	@.venv-wheel/bin/python -m hatchling build --target wheel --directory dist
+
+# --- A release ---
+
+.PHONY: version release
+version: .venv-4.5/ready  ## write the next version where it stands: make version NUMBER=0.3.0
+	$(PYTHON_4.5) .ci/release.py version "$(NUMBER)"
+
+release: .venv-4.5/ready  ## check this commit, and gather all files of its release; TESTED=yes
+	$(PYTHON_4.5) .ci/release.py check $(if $(TESTED),--tested)
+	@$(MAKE) --no-print-directory extension extension-per-python wheel
+	$(PYTHON_4.5) .ci/release.py collect
 
 # --- Environments ---
 

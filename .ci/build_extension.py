@@ -16,11 +16,11 @@ import subprocess
 import sys
 import tempfile
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
 WHEELS = ROOT / "wheels"
@@ -67,7 +67,7 @@ class Wheel(NamedTuple):
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Build what the command line asks for; the paths of the zips are printed."""
-    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
+    manifest = read_manifest()
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--platform", action="append", choices=manifest["platforms"])
     kind = parser.add_mutually_exclusive_group()
@@ -77,22 +77,35 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
 
     platforms = [] if options.plain else options.platform or manifest["platforms"]
+    for path in build_zips(manifest, platforms, options.output, per_python=options.per_python):
+        print(path)
+
+
+def read_manifest(root: Path = ROOT) -> dict[str, Any]:
+    """Return the manifest of a checkout."""
+    return tomllib.loads((root / "blender_manifest.toml").read_text(encoding="utf-8"))
+
+
+def build_zips(
+    manifest: dict[str, Any], platforms: Sequence[str], output: Path, *, per_python: bool
+) -> Iterator[Path]:
+    """Build a zip for each platform, or one without wheels if there is none; yield each."""
     wheels = [
         wheel
         for wheel in map(Wheel.from_path, manifest["wheels"])
         if any(wheel.serves(platform) for platform in platforms)
     ]
     fetch(wheels)
-    options.output.mkdir(parents=True, exist_ok=True)
+    output.mkdir(parents=True, exist_ok=True)
     stem = f"{manifest['id']}-{manifest['version']}"
-    for python in BLENDERS if options.per_python else (None,):
+    for python in BLENDERS if per_python else (None,):
         fitting = [wheel for wheel in wheels if python is None or wheel.fits(python)]
         ending = ".zip" if python is None else f"-python{python}.zip"
-        with tempfile.TemporaryDirectory(dir=options.output) as folder:
+        with tempfile.TemporaryDirectory(dir=output) as folder:
             staging = Path(folder) / "source"
             stage(staging, platforms, fitting, python)
             for path in build(staging, Path(folder), stem, platforms):
-                print(path.replace(options.output / f"{path.stem}{ending}"))
+                yield path.replace(output / f"{path.stem}{ending}")
 
 
 def fetch(wheels: Sequence[Wheel]) -> None:
@@ -145,21 +158,24 @@ def restricted(
 
 def build(staging: Path, output: Path, stem: str, platforms: Sequence[str]) -> list[Path]:
     """Run Blender's own tool over the staged copy, then over each zip; return the zips."""
-    tool = [sys.executable, str(build_tool())]
     if platforms:
         names = [f"{stem}-{platform.replace('-', '_')}.zip" for platform in platforms]
         target = ["--output-dir", str(output), "--split-platforms"]
     else:
         names = [f"{stem}-plain.zip"]
         target = ["--output-filepath", str(output / names[0])]
-    for command in (
-        [*tool, "build", "--source-dir", str(staging), *target],
-        *([*tool, "validate", str(output / name)] for name in names),
-    ):
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode:
-            sys.exit(f"{done.stdout}{done.stderr}")
+    run_tool("build", "--source-dir", str(staging), *target)
+    for name in names:
+        run_tool("validate", str(output / name))
     return [output / name for name in names]
+
+
+def run_tool(*words: str) -> None:
+    """Run a command of Blender's tool; what it prints appears only if it fails."""
+    command = [sys.executable, str(build_tool()), *words]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        sys.exit(f"{done.stdout}{done.stderr}")
 
 
 def build_tool() -> Path:
