@@ -7,6 +7,7 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ..languages import translated
+from .last_press import note_press
 from .mixins import OperatorMixin
 
 
@@ -34,7 +35,9 @@ class ActOperator(OperatorMixin):
         try:
             message = self.act(context)
         except MocapAssistError as error:
+            note_press(self, error)
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
+        note_press(self)
         self.report({"INFO"}, translated(message))
         return {"FINISHED"}

@@ -6,6 +6,7 @@ import bpy
 from bpy.props import CollectionProperty, EnumProperty, StringProperty
 
 from ...solvers.errors import MocapAssistError
+from ..blender.last_press import note_press
 from ..blender.mixins import SettingsMixin
 from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
 from ..languages import translated
@@ -56,6 +57,7 @@ class FilesOperator(SettingsMixin):
     def end(self, context: bpy.types.Context, imported: Imported) -> set[str]:
         """Report what became of the files."""
         self.note = imported.note
+        note_press(self, sentence=imported.sentence if imported.failed else "")
         self.report({"ERROR"} if imported.failed else {"INFO"}, translated(imported.sentence))
         return {"FINISHED"} if imported.made else {"CANCELLED"}
 

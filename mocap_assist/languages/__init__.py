@@ -4,7 +4,7 @@ import bpy
 
 from .catalog import CONTEXT, LANGUAGES, catalog_path, read_catalog, write_catalog
 from .line_breaks import broken_lines
-from .sentences import placeholders, translate_sentence, translated, words_of
+from .sentences import placeholders, template_of, translate_sentence, translated, words_of
 
 __all__ = [
     "CONTEXT",
@@ -14,6 +14,7 @@ __all__ = [
     "placeholders",
     "read_catalog",
     "register",
+    "template_of",
     "translate_sentence",
     "translated",
     "unregister",

@@ -19,6 +19,8 @@ Translate = Callable[[str], str]
 MAX_CACHED = 256
 """Number of sentences that are kept translated. It only bounds memory: a redraw shows about
 ten."""
+UNKNOWN = "…"
+"""What stands for a sentence whose names cannot be recognized."""
 SENTENCE_END = re.compile(r"(?<=[.!?]) (?=\S)")
 GROUP = r"(?P<{name}>(?:(?!\. [A-Z]).)*?\.?)"
 """What stands for a placeholder: nothing, a name, a figure or one sentence, but not several."""
@@ -68,6 +70,30 @@ def _translated_whole(text: str, translate: Translate) -> str | None:
         if (values := pattern.values_in(text)) is not None:
             return translate(pattern.template).format_map(_translated_parts(values, translate))
     return None
+
+
+def template_of(text: str) -> str:
+    """Return a message with placeholders for the names and figures in it.
+
+    What the catalogs lack, such as what a solver says of a file, becomes an ellipsis.
+    """
+    if not text:
+        return ""
+    sentences = SENTENCE_END.split(text)
+    for n_first in range(len(sentences), 0, -1):
+        first = _template_of_whole(" ".join(sentences[:n_first]))
+        if first:
+            break
+    else:
+        first, n_first = UNKNOWN, 1
+    return " ".join(filter(None, [first, template_of(" ".join(sentences[n_first:]))]))
+
+
+def _template_of_whole(text: str) -> str:
+    if text in _texts():
+        return text
+    found = (each.template for each in _patterns() if each.values_in(text) is not None)
+    return next(found, "")
 
 
 def placeholders(text: str) -> set[str]:
@@ -126,8 +152,13 @@ def _expression(template: str) -> str:
 
 
 @cache
+def _texts() -> frozenset[str]:
+    """Return the English texts of the catalogs."""
+    return frozenset(read_catalog(catalog_path(next(iter(LANGUAGES)))))
+
+
+@cache
 def _patterns() -> tuple["Pattern", ...]:
     """Return the texts with placeholders, those with the most words first."""
-    texts = read_catalog(catalog_path(next(iter(LANGUAGES))))
-    filled = [text for text in texts if placeholders(text)]
+    filled = [text for text in _texts() if placeholders(text)]
     return tuple(map(Pattern, sorted(filled, key=lambda text: -len(words_of(text)))))

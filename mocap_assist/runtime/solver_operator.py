@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import bpy
 
 from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
+from ..blender.last_press import note_press
 from ..blender.mixins import SettingsMixin
 from ..blender.time_slices import Work
 from ..jobs.job import Job, ShortSolve, run
@@ -119,7 +120,8 @@ class SolverOperator(SettingsMixin):
         except (MocapAssistError, MemoryError) as error:
             watch.end(context)
             return self._give_up(error)
-        except BaseException:
+        except BaseException as error:
+            note_press(self, error)
             watch.end(context)
             raise
         watch.show(context, *progress)
@@ -190,6 +192,7 @@ class SolverOperator(SettingsMixin):
         return (*self._subject.find(), self.settings())
 
     def _finish(self, message: str) -> set[str]:
+        note_press(self)
         self.report({"INFO"}, translated(message))
         return {"FINISHED"}
 
@@ -197,5 +200,6 @@ class SolverOperator(SettingsMixin):
         if isinstance(error, MemoryError):
             error = OutOfMemoryError()
         cancelled = isinstance(error, SolveCancelled)
+        note_press(self, error)
         self.report({"INFO"} if cancelled else {"ERROR"}, translated(str(error)))
         return {"CANCELLED"}

@@ -12,10 +12,11 @@ from ..retarget import panel as retarget_panel
 from ..search import panel as library_panel
 from ..search import source_list
 from ..variants import panel as vary_panel
-from . import manual, menus, preferences, sidebar
+from . import diagnostics, manual, menus, preferences, sidebar
 
 PARTS = (
     languages,
+    diagnostics,
     preferences,
     example_list,
     bone_list,

@@ -66,6 +66,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.listen*": "perform",
     "bpy.ops.mocap_assist.reset_preferences*": "preferences",
     "bpy.ops.mocap_assist.stop_keeping*": "preferences",
+    "bpy.ops.mocap_assist.copy_diagnostics*": "preferences",
     "bpy.types.mocap_pg_clean*": "clean",
     "bpy.types.mocap_pg_check*": "check",
     "bpy.types.windowmanager.mocap_assist_strip*": "check",

@@ -29,6 +29,7 @@ BUTTONS = (
     "mocap_assist.find_similar",
     "mocap_assist.vary",
     "mocap_assist.listen",
+    "mocap_assist.copy_diagnostics",
 )
 MENUS = (
     "VIEW3D_MT_object",

@@ -13,6 +13,7 @@ from ..drawing import overlay_drawing
 from ..languages import translated
 from ..library.auto_update_list import auto_updated_libraries, stop_keeping
 from ..panels.preference_values import EXTENSION, preferences, preferred
+from .diagnostics import COPY
 
 STOP = "mocap_assist.stop_keeping"
 
@@ -110,7 +111,9 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
             row = layout.row()
             row.label(text=folder, icon="FILE_FOLDER", translate=False)
             row.operator("wm.path_open", text="", icon="FILEBROWSER").filepath = folder
-        layout.operator("mocap_assist.reset_preferences", icon="LOOP_BACK")
+        row = layout.row()
+        row.operator("mocap_assist.reset_preferences", icon="LOOP_BACK")
+        row.operator(COPY, icon="COPYDOWN")
         _draw_kept(layout)
 
 
