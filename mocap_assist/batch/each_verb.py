@@ -22,6 +22,7 @@ from ...solvers.command_line.batch import (
 )
 from ...solvers.command_line.files import check_name_length, unique_targets
 from ...solvers.command_line.options import add_sharing_options
+from ...solvers.command_line.parallel import until_released
 from ...solvers.command_line.report import (
     PICTURE,
     has_picture,
@@ -104,7 +105,8 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     failed: list[str] = []
     faults: tuple[str, ...] = ()
     try:
-        for finished in _worked(tasks, arguments):
+        run_all = partial(_worked, arguments=arguments)
+        for finished in until_released(tasks, run_all, screen):
             text = finished.outcome.text if finished.outcome else finished.failure
             sys.stdout.write(escaped(f"{finished.task.source}: {text}") + "\n")
             sys.stdout.flush()

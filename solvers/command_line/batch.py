@@ -19,6 +19,9 @@ from .report import Entry, output_of, picture_file, picture_of, remove_picture, 
 from .sharing import Record, Records, claimed, fingerprint, hook_remark, run_hook
 from .verb import Outcome, Task, Verb
 
+SKIPPED = "skipped"
+"""Figure of a take that another process has."""
+
 
 class FinishedTask(NamedTuple):
     """A finished task: its outcome or failure."""
@@ -31,6 +34,11 @@ class FinishedTask(NamedTuple):
     """Whether the process of the task crashed."""
     is_held: bool = False
     """Whether the claim of a lost worker of this batch keeps the task from being done yet."""
+
+    @property
+    def is_taken(self) -> bool:
+        """Whether it was skipped because another process has it."""
+        return self.outcome is not None and SKIPPED in self.outcome.figures
 
 
 def attempt_task(verb: Verb, task: Task, progress: Progress, prepared: Any) -> FinishedTask:
@@ -121,7 +129,7 @@ def _share(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:
             return FinishedTask(task, None, is_held=True)
         if claim.holder:
             text = f"taken by {claim.holder}"
-            return FinishedTask(task, Outcome(f"Skipped: {text}.", {"skipped": text}))
+            return FinishedTask(task, Outcome(f"Skipped: {text}.", {SKIPPED: text}))
         if claim.taken_over:
             records.clear_up(output, task.target, picture_file(task))
         record = made_record(task)

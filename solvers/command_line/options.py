@@ -43,6 +43,11 @@ def add_sharing_options(parser: argparse.ArgumentParser) -> None:
         help="Run COMMAND after each take, without a shell; {input}, {output} and {record} are"
         " replaced by the take's files",
     )  # fmt: skip
+    parser.add_argument(
+        "--wait", action="store_true", default=None,
+        help="Wait for takes that other processes have, and make those of processes that ended;"
+        " otherwise they are skipped",
+    )  # fmt: skip
 
 
 def add_cluster_option(parser: argparse._ActionsContainer) -> None:

@@ -2,7 +2,7 @@
 
 import argparse
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, as_completed
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
@@ -16,6 +16,7 @@ from .batch import FinishedTask, attempt_task, record_end
 from .farm import LocalWorkers, Workers, cluster_workers
 from .screen import Screen
 from .sharing import RENEWAL_INTERVAL_S
+from .tasks import check_output_folder
 from .verb import Task, Verb
 
 
@@ -30,7 +31,8 @@ def workers_for(tasks: Sequence[Task]) -> AbstractContextManager[Workers | None]
     arguments = tasks[0].arguments
     cluster: str | None = getattr(arguments, "cluster", None)
     if cluster is not None:
-        return cluster_workers(cluster, arguments.output_folder.absolute())
+        named = [arguments.output_folder, getattr(arguments, "library", None)]
+        return cluster_workers(cluster, [path.absolute() for path in named if path is not None])
     n_jobs: int = getattr(arguments, "jobs", 1)
     if n_jobs == 1 or len(tasks) == 1:
         return nullcontext()
@@ -66,6 +68,30 @@ def run_tasks(
             screen.note(f"Waiting for takes that lost workers have claimed: {n_held}.")
             sleep(RENEWAL_INTERVAL_S)
         remaining = again
+
+
+def until_released(
+    tasks: Sequence[Task],
+    run_all: Callable[[Sequence[Task]], Iterator[FinishedTask]],
+    screen: Screen,
+) -> Iterator[FinishedTask]:
+    """Run tasks; with `--wait`, again and again those that other processes have.
+
+    A take ends in the claim's holder, or is made here as soon as its claim is abandoned.
+    """
+    remaining = [*tasks]
+    while remaining:
+        taken: list[Task] = []
+        for finished in run_all(remaining):
+            if finished.is_taken and finished.task.arguments.wait:
+                taken.append(finished.task)
+            else:
+                yield finished
+        if taken:
+            screen.note(f"Waiting for takes that other processes have: {len(taken)}.")
+            check_output_folder(taken[0].arguments.output_folder)
+            sleep(RENEWAL_INTERVAL_S)
+        remaining = taken
 
 
 def _recorded(finished: FinishedTask, batch: str) -> FinishedTask:

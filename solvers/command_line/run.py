@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ from .batch import (
     verb_name,
 )
 from .options import SentenceParser, add_cluster_option, add_sharing_options
-from .parallel import run_tasks, workers_for
+from .parallel import run_tasks, until_released, workers_for
 from .report import PAGE, has_picture, write_report
 from .screen import Screen, escape_undecodable_names, printable
 from .tasks import check_output_folder, shared_tasks, tasks_of
@@ -184,7 +185,8 @@ def _run_tasks(verb: Verb, tasks: Sequence[Task], screen: Screen) -> Iterator[Fi
         return
     with workers_for(remaining) as workers:
         prepared = verb.prepare(tasks[0].arguments, screen.progress)
-        for finished in run_tasks(verb, remaining, prepared, workers, screen):
+        run_all = partial(run_tasks, verb, prepared=prepared, workers=workers, screen=screen)
+        for finished in until_released(remaining, run_all, screen):
             screen.clear()
             if finished.outcome is None and not is_missing(_folder(finished.task) or "."):
                 screen.write_line(finished.failure)

@@ -29,7 +29,7 @@ from .verb import OutputKind, Task, Verb
 
 MAX_NAME_LETTERS = 40
 """Letters of the name of a body in the name of a file."""
-SHARING = ("manifest", "shard", "after", "cluster")
+SHARING = ("manifest", "shard", "after", "wait", "cluster")
 """Options for batches."""
 
 
@@ -186,6 +186,7 @@ def shared_tasks(tasks: Sequence[Task], arguments: argparse.Namespace) -> list[T
     """
     records = Records(arguments.output_folder)
     records.prepare()
+    records.remove_abandoned_parts()
     for former in records.former():
         with claimed(records.claim(former.output)) as claim:
             if not claim.holder and records.read(former.output) is None:

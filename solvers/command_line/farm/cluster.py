@@ -5,10 +5,10 @@ This is the only module that knows Dask, which is optional and imported when a c
 
 import asyncio
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from secrets import token_hex
 from typing import TYPE_CHECKING, Any
@@ -34,14 +34,14 @@ class Cluster:
     """Dask runs a task on further workers itself: each crash here is the end of several."""
     advice = "Process a part of the take, or start workers with more memory."
 
-    def __init__(self, client: "Client", address: str) -> None:
+    def __init__(self, client: "Client", address: str, paths: Sequence[Path]) -> None:
         self.batch = token_hex(8)
-        self._client, self._address = client, address
+        self._client, self._address, self._paths = client, address, paths
 
     @contextmanager
     def open(self, n_tasks: int) -> Iterator[Executor]:
         """Yield an executor on all workers, also those that join later."""
-        yield ClusterExecutor(self._client, self._address)
+        yield ClusterExecutor(self._client, self._address, self._paths)
 
     def share(self, value: Any) -> Any:
         """Return a value that each worker receives once, also one that joins later."""
@@ -55,15 +55,16 @@ class Cluster:
 class ClusterExecutor(Executor):
     """An executor on the workers of a cluster."""
 
-    def __init__(self, client: "Client", address: str) -> None:
+    def __init__(self, client: "Client", address: str, paths: Sequence[Path]) -> None:
         self._executor, self._address = client.get_executor(pure=False), address
+        self._check = partial(_check_once, version(), tuple(paths))
 
     def submit(
         self, function: Callable[..., Any], /, *args: Any, **kwargs: Any
     ) -> "Future[Any]":
         """Submit a call; arguments from `Cluster.share` arrive as their values."""
         future: Future[Any] = Future()
-        call = partial(_call_if_same_version, version(), function)
+        call = partial(_call_after, self._check, function)
         remote = self._executor.submit(call, *args, **kwargs)
         remote.add_done_callback(partial(self._pass_on, future))
         return future
@@ -92,21 +93,21 @@ class ClusterExecutor(Executor):
 
 
 @contextmanager
-def cluster_workers(address: str, folder: Path) -> Iterator[Cluster]:
+def cluster_workers(address: str, paths: Sequence[Path]) -> Iterator[Cluster]:
     """Connect to the scheduler of a cluster and check its workers.
 
     Parameters
     ----------
     address : str
         Address of the scheduler, such as tcp://farm01:8786.
-    folder : Path
-        The output folder, which all workers must have.
+    paths : sequence of Path
+        What all workers must see: the output folder, and a library that they open.
 
     Raises
     ------
     InvalidSettingError
         Dask is missing, the scheduler cannot be reached, or a worker has no or another version
-        of Mocap Assist, or does not see the folder.
+        of Mocap Assist, or does not see one of the paths.
     """
     try:
         from distributed import Client
@@ -125,8 +126,8 @@ def cluster_workers(address: str, folder: Path) -> Iterator[Cluster]:
             " scheduler, or correct the address."
         ) from None
     with client:
-        _check_workers(client, folder)
-        yield Cluster(client, address)
+        _check_workers(client, paths)
+        yield Cluster(client, address, paths)
 
 
 async def _try_connection(address: str) -> None:
@@ -140,8 +141,8 @@ async def _try_connection(address: str) -> None:
     await connection.close()
 
 
-def _check_workers(client: "Client", folder: Path) -> None:
-    answers = client.run(_check_worker, version(), folder, on_error="return")
+def _check_workers(client: "Client", paths: Sequence[Path]) -> None:
+    answers = client.run(_check_once, version(), tuple(paths), on_error="return")
     if not answers:
         raise InvalidSettingError(
             "The scheduler has no workers. Start some: dask worker, and its address."
@@ -153,17 +154,18 @@ def _check_workers(client: "Client", folder: Path) -> None:
             raise answer
 
 
-def _check_worker(expected: str, folder: Path) -> None:
-    """Check a worker, in its process."""
-    _check_version(expected)
-    if is_missing(folder):
-        raise InvalidSettingError(
-            f"A worker on {host_name()} does not see the output folder {folder}. Mount it there"
-            " at the same path."
-        )
+@cache
+def _check_once(expected: str, paths: tuple[Path, ...]) -> None:
+    """Check a worker, in its process: at the start, or before the first take if it joins later.
 
-
-def _check_version(expected: str) -> None:
+    What passed is not checked again: a folder that vanishes later is the batch's to report.
+    """
+    for path in paths:
+        if is_missing(path):
+            raise InvalidSettingError(
+                f"A worker on {host_name()} does not see {path}. Mount it there at the same"
+                " path."
+            )
     if version() != expected:
         raise InvalidSettingError(
             f"A worker on {host_name()} has Mocap Assist {version()}, and this process"
@@ -171,8 +173,8 @@ def _check_version(expected: str) -> None:
         )
 
 
-def _call_if_same_version(expected: str, function: Callable[..., Any], *args: Any) -> Any:
-    _check_version(expected)
+def _call_after(check: Callable[[], None], function: Callable[..., Any], *args: Any) -> Any:
+    check()
     return function(*args)
 
 

@@ -7,6 +7,7 @@ renewed is abandoned, at once if its holder was a process of this machine that h
 
 import json
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -23,6 +24,8 @@ fail before one is taken over."""
 ABANDONED_AFTER_S = 300.0
 """Seconds after which a claim that is not renewed is taken over. It guards takes whose holder
 was on another machine that has stopped."""
+PART = re.compile(r"\.[0-9a-f]{16}\.claim\.part|[0-9a-f]{16}\.time")
+"""Names of the files of a moment that a claim needs; only a killed process leaves any."""
 UNKNOWN_HOST = "another process"
 
 
@@ -155,6 +158,19 @@ def _now_on_disk(file: Path) -> float:
         return probe.stat().st_mtime
     finally:
         probe.unlink(missing_ok=True)
+
+
+def remove_abandoned_parts(folder: Path) -> None:
+    """Remove files that killed processes left while they made a claim.
+
+    Others may be making theirs: only files as old as an abandoned claim go.
+    """
+    parts = [file for file in folder.iterdir() if PART.fullmatch(file.name)]
+    now = _now_on_disk(folder / "claims") if parts else 0.0
+    for part in parts:
+        with suppress(OSError):
+            if now - part.stat().st_mtime > ABANDONED_AFTER_S:
+                part.unlink()
 
 
 def _renew(file: Path, ended: Event) -> None:

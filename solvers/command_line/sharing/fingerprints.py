@@ -8,7 +8,7 @@ from ...version import version
 
 IRRELEVANT_OPTIONS = {
     "after", "again", "cluster", "files", "jobs", "json", "manifest", "output_folder", "report",
-    "shard", "work",
+    "shard", "wait", "work",
 }  # fmt: skip
 """Options that do not change the result."""
 STAMP_LENGTH = 3

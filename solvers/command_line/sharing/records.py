@@ -12,6 +12,7 @@ from ...faults import Failure, attempt
 from ...files import remove_leftovers, write_atomically
 from ...json_text import parse_json
 from ...processes import host_name
+from .claims import remove_abandoned_parts
 from .fingerprints import without_folders
 
 FOLDER = ".mocap_assist"
@@ -68,6 +69,10 @@ class Records:
     def prepare(self) -> None:
         """Make the folder of the records; a folder that vanishes later is not made again."""
         (self.folder / FOLDER).mkdir(parents=True, exist_ok=True)
+
+    def remove_abandoned_parts(self) -> None:
+        """Remove what processes that were killed left of their claims."""
+        remove_abandoned_parts(self.folder / FOLDER)
 
     def read(self, output: str) -> Record | None:
         """Return the record of an output; None if it is missing or damaged."""

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from solvers.command_line import parallel
 from solvers.command_line.report import Entry, write_report
 from solvers.command_line.sharing import Records, claimed
 
@@ -100,6 +101,47 @@ def test_take_of_another_process_is_skipped_and_that_of_a_dead_one_is_made(
     assert (status, printed.count("120 frames")) == (0, 1)
     assert {path.name for path in out.iterdir()} == {".mocap_assist", "leg.bvh"}
     assert [path.name for path in (out / ".mocap_assist").iterdir()] == [record.name]
+
+
+def test_waiting_makes_the_take_of_a_process_that_ends(call, leg_file, tmp_path, monkeypatch):
+    out, waits = tmp_path / "out", []
+    words = ["convert", leg_file, "--output-folder", out]
+    call(*words)
+    (record,) = out.glob(".mocap_assist/*.json")
+    (out / "leg.bvh").unlink()
+    claim = record.with_suffix(".1.claim")
+    claim.write_text(json.dumps({"host": "render03", "machine": "render03", "pid": 1}))
+
+    def end_the_other(seconds):
+        waits.append(seconds)
+        if len(waits) == 2:
+            os.utime(claim, (0, 0))
+
+    monkeypatch.setattr(parallel, "sleep", end_the_other)
+
+    status, printed, _ = call(*words, "--wait")
+
+    assert (status, len(waits)) == (0, 2)
+    assert "Skipped" not in printed
+    assert "120 frames" in printed
+    assert (out / "leg.bvh").exists()
+    assert not claim.exists()
+
+
+def test_parts_of_claims_that_killed_processes_left_are_removed(call, leg_file, tmp_path):
+    folder = tmp_path / "out" / ".mocap_assist"
+    folder.mkdir(parents=True)
+    names = [".0123456789abcdef.claim.part", "0123456789abcdef.time", "notes.time", ".x.part"]
+    for name in [*names, ".fedcba9876543210.claim.part"]:
+        (folder / name).touch()
+    for name in names:
+        os.utime(folder / name, (0, 0))
+
+    assert call("convert", leg_file, "--output-folder", tmp_path / "out")[0] == 0
+
+    assert {path.name for path in folder.iterdir() if path.suffix != ".json"} == {
+        "notes.time", ".x.part", ".fedcba9876543210.claim.part",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize(("seconds", "holder"), [(290.0, "render03"), (310.0, "")])

@@ -105,7 +105,7 @@ def test_workers_of_another_version_are_refused(cluster, tmp_path, monkeypatch):
 
     with (
         pytest.raises(InvalidSettingError, match=message),
-        cluster_workers(cluster, tmp_path),
+        cluster_workers(cluster, [tmp_path]),
     ):
         pytest.fail("connected")
 
@@ -114,19 +114,35 @@ def test_workers_of_another_version_are_refused(cluster, tmp_path, monkeypatch):
 def test_worker_of_another_version_that_joins_later_gets_no_task(
     cluster, tmp_path, monkeypatch
 ):
-    with cluster_workers(cluster, tmp_path) as workers, workers.open(1) as executor:
-        assert executor.submit(len, workers.share((1, 2))).result() == 2
+    with cluster_workers(cluster, [tmp_path]) as workers:
+        with workers.open(1) as executor:
+            assert executor.submit(len, workers.share((1, 2))).result() == 2
         monkeypatch.setattr(cluster_module, "version", lambda: "99.0.0")
 
-        with pytest.raises(InvalidSettingError, match=r"and this process 99\.0\.0"):
+        with (
+            workers.open(1) as executor,
+            pytest.raises(InvalidSettingError, match=r"and this process 99\.0\.0"),
+        ):
+            executor.submit(len, ()).result()
+
+
+@NEEDS_DASK
+def test_worker_that_joins_later_without_the_folder_gets_no_task(cluster, tmp_path):
+    with cluster_workers(cluster, [tmp_path]) as workers:
+        workers._paths = [tmp_path / "library.clips"]  # As the checks at the start passed.
+
+        with (
+            workers.open(1) as executor,
+            pytest.raises(InvalidSettingError, match=r"does not see .*library\.clips\. Mount"),
+        ):
             executor.submit(len, ()).result()
 
 
 @NEEDS_DASK
 def test_worker_without_the_output_folder_is_refused(cluster, tmp_path):
     with (
-        pytest.raises(InvalidSettingError, match=r"does not see the output folder .*gone"),
-        cluster_workers(cluster, tmp_path / "gone"),
+        pytest.raises(InvalidSettingError, match=r"does not see .*gone\. Mount it"),
+        cluster_workers(cluster, [tmp_path, tmp_path / "gone"]),
     ):
         pytest.fail("connected")
 
@@ -137,7 +153,7 @@ def test_worker_without_the_package_is_refused(tmp_path):
             return {"tcp://farm02:1": None, "tcp://farm03:1": ImportError()}
 
     with pytest.raises(InvalidSettingError, match="The worker tcp://farm03:1 cannot import"):
-        cluster_module._check_workers(Client(), tmp_path)
+        cluster_module._check_workers(Client(), [tmp_path])
 
 
 @NEEDS_DASK
