@@ -22,10 +22,14 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import write_manual
+
 ROOT = Path(__file__).resolve().parents[1]
 WHEELS = ROOT / "wheels"
 # What is shipped is for the manifest to say; these are only slow to copy.
 NOT_COPIED = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "wheels")
+PAGES = Path("mocap_assist") / "ui" / "pages"
+"""Where the pages of the manual are in the zip."""
 OPERATING_SYSTEMS = {"linux": "linux", "windows": "win", "macos": "macosx"}
 BLENDERS = {
     "3.11": 'blender_version_min = "4.5.0"\nblender_version_max = "5.1.0"',
@@ -133,6 +137,7 @@ def stage(
 ) -> None:
     """Copy the checkout, with a manifest that names only these platforms and wheels."""
     shutil.copytree(ROOT, staging, ignore=NOT_COPIED)
+    write_manual.main(staging / PAGES)
     (staging / "wheels").mkdir()
     for wheel in wheels:
         (staging / "wheels" / wheel.file).symlink_to(WHEELS / wheel.file)

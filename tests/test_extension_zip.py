@@ -1,14 +1,16 @@
 """What an animator installs: all that is needed, nothing that is not, and no bad manners."""
 
 import ast
+import posixpath
 import re
 import subprocess
 import sys
 import tomllib
-from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from importlib.util import find_spec
 from pathlib import Path
 from zipfile import ZipFile
 
+import build_extension
 import pytest
 
 ROOT = Path(__file__).parents[1]
@@ -24,8 +26,9 @@ SHIPPED = {
     "mocap_assist",
     "operators",
 }
-TEXTS = {"", ".html", ".md", ".po", ".py", ".toml", ".typed"}
-"""Endings of files that people write; all others hold learned numbers."""
+TEXTS = {"", ".css", ".html", ".jpg", ".js", ".md", ".png", ".po", ".py", ".toml", ".typed"}
+"""Endings of files that people write or draw; all others hold learned numbers."""
+MAX_MANUAL_BYTES = 2_000_000
 OURS = {"solvers", "mocap_assist", "operators"}
 # What Blender brings itself, and the import names of our wheels where they differ.
 BLENDER = {
@@ -45,14 +48,6 @@ OPTIONAL = {"cluster.py": {"dask", "distributed"}}
 """What a module imports where it is installed, and reports as missing elsewhere."""
 ON_LOOPBACK = {"receiver.py", "replay_verb.py"}
 NETWORK = {"urllib", "http", "socket", "requests", "ftplib"}
-
-
-@pytest.fixture(scope="module")
-def build_extension():
-    spec = spec_from_file_location("build_extension", ROOT / ".ci" / "build_extension.py")
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
@@ -115,8 +110,25 @@ def test_notice_names_every_learned_file_and_library(shipped):
     }  # fmt: skip
 
 
+def test_zip_has_a_small_manual_whose_links_lead_somewhere(shipped):
+    root = f"{build_extension.PAGES.as_posix()}/"
+    names = {name for name in shipped.namelist() if name.startswith(root)}
+    pages = {name: shipped.read(name).decode("utf-8") for name in names if ".html" in name}
+
+    assert f"{root}README.html" in pages
+    assert sum(shipped.getinfo(name).compress_size for name in names) < MAX_MANUAL_BYTES
+    for name, page in pages.items():
+        for link in re.findall(r'(?:href|src)="([^":]+)"', page):
+            path, _, anchor = link.partition("#")
+            target = posixpath.normpath(posixpath.join(posixpath.dirname(name), path))
+            target = target if path else name
+            assert target in shipped.namelist(), (name, link)
+            if anchor:
+                assert f'id="{anchor}"' in pages[target], (name, link)
+
+
 @pytest.mark.parametrize("python", ["3.11", "3.13"])
-def test_zip_for_one_python_has_its_wheels_and_blenders(build_extension, python):
+def test_zip_for_one_python_has_its_wheels_and_blenders(python):
     text = (ROOT / "blender_manifest.toml").read_text(encoding="utf-8")
     both = tomllib.loads(text)
     wheels = [build_extension.Wheel.from_path(wheel) for wheel in both["wheels"]]

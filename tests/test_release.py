@@ -1,11 +1,10 @@
 """A release: one version everywhere, and no release of what is not ready."""
 
 import subprocess
-import sys
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import pytest
+import release
 
 ROOT = Path(__file__).parents[1]
 CHANGELOG = """# Changelog
@@ -20,18 +19,6 @@ CHANGELOG = """# Changelog
 
 - The first.
 """
-
-
-@pytest.fixture(scope="module")
-def release():
-    sys.path.insert(0, str(ROOT / ".ci"))
-    try:
-        spec = spec_from_file_location("release", ROOT / ".ci" / "release.py")
-        module = module_from_spec(spec)
-        spec.loader.exec_module(module)
-    finally:
-        sys.path.remove(str(ROOT / ".ci"))
-    return module
 
 
 @pytest.fixture
@@ -55,7 +42,7 @@ def commit(root):
     git(root, "commit", "--quiet", "--message", "Change")
 
 
-def test_a_version_is_written_everywhere_and_can_be_released(release, checkout, capsys):
+def test_a_version_is_written_everywhere_and_can_be_released(checkout, capsys):
     release.write_version(checkout, "0.10.0")
     commit(checkout)
     release.check_commit(checkout, is_tested=True)
@@ -73,14 +60,14 @@ def test_a_version_is_written_everywhere_and_can_be_released(release, checkout, 
     ("number", "sentence"),
     [("0.9.0", "0.9.0 is not above 0.9.0"), ("0.8.9", "not above"), ("v1", "v1 is no version")],
 )
-def test_a_wrong_version_changes_nothing(release, checkout, number, sentence):
+def test_a_wrong_version_changes_nothing(checkout, number, sentence):
     with pytest.raises(SystemExit, match=sentence):
         release.write_version(checkout, number)
 
     assert release.git(checkout, "status", "--porcelain") == ""
 
 
-def test_every_reason_against_a_release_is_named(release, checkout):
+def test_every_reason_against_a_release_is_named(checkout):
     (checkout / "CITATION.cff").write_text("version: 0.1.0\n")
     git(checkout, "tag", "v0.9.0")
 
@@ -92,7 +79,7 @@ def test_every_reason_against_a_release_is_named(release, checkout):
     ]  # fmt: skip
 
 
-def test_this_checkout_has_one_version(release):
+def test_this_checkout_has_one_version():
     number = release.version_of(ROOT)
 
     assert release.released_versions((ROOT / "CHANGELOG.md").read_text("utf-8"))[0] == number

@@ -8,7 +8,7 @@ from ..blender.mixins import PanelMixin
 from ..depth.depth_preview import NOT_ALLOWED, problem_of
 from ..languages import translated
 from ..panels.drawing import draw_job, draw_sentence, exists
-from ..panels.manual_page import MANUAL
+from ..panels.manual_page import start_page
 from ..panels.solver_ready import note_drawing
 from ..panels.visibility import ALL_PANELS
 from ..runtime.selection import selected_subject
@@ -63,7 +63,7 @@ def _draw_first_steps(layout: bpy.types.UILayout) -> None:
     """Draw what a newcomer needs who has no take yet."""
     if exists(SAMPLE):
         layout.operator(SAMPLE, icon="ARMATURE_DATA")
-    layout.operator("wm.url_open", text="Open Manual", icon="HELP").url = MANUAL.as_uri()
+    layout.operator("wm.url_open", text="Open Manual", icon="HELP").url = start_page().as_uri()
 
 
 def _figures(origin: dict[str, object]) -> str:

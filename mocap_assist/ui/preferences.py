@@ -12,6 +12,7 @@ from ..check.raw_key import draw_keys
 from ..drawing import overlay_drawing
 from ..languages import translated
 from ..library.auto_update_list import auto_updated_libraries, stop_keeping
+from ..panels.manual_page import start_page
 from ..panels.preference_values import EXTENSION, preferences, preferred
 from .diagnostics import COPY
 
@@ -112,6 +113,7 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
             row.label(text=folder, icon="FILE_FOLDER", translate=False)
             row.operator("wm.path_open", text="", icon="FILEBROWSER").filepath = folder
         row = layout.row()
+        row.operator("wm.url_open", text="Open Manual", icon="HELP").url = start_page().as_uri()
         row.operator("mocap_assist.reset_preferences", icon="LOOP_BACK")
         row.operator(COPY, icon="COPYDOWN")
         _draw_kept(layout)

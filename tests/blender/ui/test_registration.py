@@ -152,3 +152,11 @@ def test_tooltips_have_no_period():
         for described in (kind, *kind.properties):
             assert not described.description.endswith("."), described
         assert kind.description[:1].isupper(), name
+
+
+def test_manual_button_opens_the_pages_of_the_zip(load):
+    page = load("mocap_assist.panels.manual_page").start_page()
+
+    assert page.name == "README.html"
+    assert "Fix My Take" in page.read_text(encoding="utf-8")
+    assert (page.parent / "search.js").is_file()
