@@ -89,8 +89,9 @@ demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: 
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
-docs: .venv-4.5/ready  ## the tables of settings and of buttons in docs
+docs: .venv-4.5/ready  ## tables of settings and buttons, and job types of Flamenco, in docs
 	PYTHONPATH=. $(PYTHON_4.5) .ci/write_docs.py
+	PYTHONPATH=. $(PYTHON_4.5) .ci/write_flamenco.py
 
 catalogs: .venv-4.5/ready zip  ## texts of other languages; ARGUMENTS=--untranslated prints what lacks one
 	$(PYTHON_4.5) .ci/catalogs.py --zip $(ZIP) $(ARGUMENTS)

@@ -1,6 +1,6 @@
 """Clean a take with the installed extension in a Blender of its own, and show what it did.
 
-    MOCAP_ASSIST_ZIP=dist/mocap_assist-0.1.0-linux_x64.zip \
+    MOCAP_ASSIST_ZIP=dist/mocap_assist-VERSION-linux_x64.zip \
         python .ci/demo.py OUTPUT_FOLDER [CLIP.bvh]
 
 Without a clip it is the built-in sample: a walk, damaged with jitter, spikes and an arm that is

@@ -1,6 +1,6 @@
 """Install the zip into a throw-away Blender, start that Blender, and test what is installed.
 
-    MOCAP_ASSIST_ZIP=dist/mocap_assist-0.1.0-linux_x64.zip \
+    MOCAP_ASSIST_ZIP=dist/mocap_assist-VERSION-linux_x64.zip \
         timeout 300 .venv-4.5/bin/python -m pytest tests/blender
 
 The zip is installed by one process and used by the next, as an animator's is from the second

@@ -1,7 +1,7 @@
 """What `pip install` of the wheel gives: one package, one command, and nothing of the checkout.
 
     make wheel
-    MOCAP_ASSIST_WHEEL=dist/mocap_assist-0.1.0-py3-none-any.whl \
+    MOCAP_ASSIST_WHEEL=dist/mocap_assist-VERSION-py3-none-any.whl \
         .venv-4.5/bin/python -m pytest tests/wheel
 
 The wheel is installed into a new environment that borrows the libraries of this one, so that

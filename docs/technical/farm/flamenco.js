@@ -33,7 +33,7 @@ function compileJob(job) {
       exe: command[0],
       args: command.slice(1).concat(
         [settings.verb, "--manifest", settings.manifest],
-        ["--output-folder", settings.output_folder, "--shard", part, "--report"],
+        ["--output-folder", settings.output_folder, "--shard", part, "--report", "--wait"],
         shellSplit(settings.options || "")
       ),
     }));

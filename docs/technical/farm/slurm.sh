@@ -22,4 +22,4 @@ manifest=$1 folder=$2 verb=$3
 shift 3
 exec ${MOCAP_ASSIST:-python3 -m solvers} "$verb" \
     --manifest "$manifest" --output-folder "$folder" \
-    --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_MAX" --report "$@"
+    --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_MAX" --report --wait "$@"

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import write_flamenco
 
 ROOT = Path(__file__).parents[4]
 JOB_TYPE = ROOT / "docs" / "technical" / "farm" / "flamenco.js"
@@ -43,11 +44,12 @@ pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="needs node
 def compiled():
     """Compile a job with these settings; returns the settings' definitions and the tasks."""
 
-    def compile_job(**settings):
-        words = {text: shlex.split(text) for text in (settings["command"], settings["options"])}
+    def compile_job(job_type=JOB_TYPE, **settings):
+        texts = [text for text in settings.values() if isinstance(text, str)]
+        words = {text: shlex.split(text) for text in texts}
         given = json.dumps(settings | {"words": words})
         done = subprocess.run(
-            ["node", "-e", MANAGER, str(JOB_TYPE), given],
+            ["node", "-e", MANAGER, str(job_type), given],
             capture_output=True, text=True, check=True, timeout=60,
         )  # fmt: skip
         return json.loads(done.stdout)
@@ -73,7 +75,7 @@ def test_tasks_run_all_parts(compiled, small_batch, tmp_path, records_in):
     ]  # fmt: skip
     assert words == [
         sys.executable, "-m", "solvers", "convert", "--manifest", str(manifest),
-        "--output-folder", str(out), "--shard", "2/2", "--report", "--scale", "0.5",
+        "--output-folder", str(out), "--shard", "2/2", "--report", "--wait", "--scale", "0.5",
     ]  # fmt: skip
     assert set(records_in(out)) == {"take00.bvh", "take01.bvh", "take02.bvh"}
 
@@ -91,3 +93,30 @@ def test_settings_are_complete_and_checked(compiled):
 
     assert {setting["key"] for setting in job["settings"]} == {*given, "shards"}
     assert job["tasks"] == ["shards is 0; it must be at least 1."]
+
+
+@pytest.mark.parametrize("verb", write_flamenco.OF_ONE_VERB)
+def test_job_types_of_one_verb_have_its_options(verb):
+    """After a change: `make docs`."""
+    written = write_flamenco.path(verb).read_text(encoding="utf-8")
+
+    assert written == write_flamenco.job_type(verb)
+
+
+def test_options_of_one_verb_are_words_of_its_command(compiled):
+    job = compiled(
+        write_flamenco.path("denoise"), manifest="m", output_folder="o", shards=1, options="",
+        command="c", strength="0.5", feet="no", train="a.bvh 'b c.bvh'", bases="d e.npz",
+        preset="",
+    )  # fmt: skip
+
+    (command,) = job["tasks"][0]["commands"]
+    words = command["parameters"]["args"]
+    assert words[:8] == [
+        "denoise", "--manifest", "m", "--output-folder", "o", "--shard", "1/1", "--report",
+    ]  # fmt: skip
+    assert " ".join(words[9:]).startswith(
+        "--train a.bvh b c.bvh --bases d e.npz --strength 0.5"
+    )
+    assert {"b c.bvh", "d e.npz", "--no-feet"} <= {*words}
+    assert "--preset" not in words

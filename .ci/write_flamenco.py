@@ -1,0 +1,110 @@
+"""Write the job types of Flamenco that have the options of one verb, from its command line.
+
+`make docs` runs it. docs/technical/farm/flamenco.js, written by hand, serves all verbs: these
+are made of it, with a setting for each option.
+"""
+
+import argparse
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+from solvers.command_line.verbs import VERBS
+
+ROOT = Path(__file__).resolve().parents[1]
+FARM = ROOT / "docs" / "technical" / "farm"
+SOURCE = FARM / "flamenco.js"
+OF_ONE_VERB = ("fix", "denoise", "reconstruct")
+"""Verbs with a job type of their own: those with settings that takes of one batch share."""
+HEAD = "// Made of flamenco.js and the options of the verb: make docs.\n"
+OPTION_WORDS = """\
+const OPTIONS = {
+ROWS};
+
+function optionWords(settings) {
+  let words = [];
+  for (const key in OPTIONS) {
+    const [kind, name, opposite] = OPTIONS[key], value = settings[key];
+    if (!value) {
+      continue;
+    }
+    if (kind === "switch") {
+      words = words.concat(value === "no" ? opposite || [] : name);
+    } else {
+      words = words.concat(name, kind === "many" ? shellSplit(value) : value);
+    }
+  }
+  return words;
+}
+"""
+"""What a job type of one verb has in addition: its options, and their words."""
+CUT = re.compile(r'    \{ key: "verb".*?\},\n', re.DOTALL)
+"""The setting that a job type of one verb lacks."""
+
+
+def main() -> None:
+    """Write all job types of one verb."""
+    for verb in OF_ONE_VERB:
+        path(verb).write_text(job_type(verb), encoding="utf-8", newline="\n")
+
+
+def path(verb: str) -> Path:
+    """Return the file of the job type of a verb."""
+    return FARM / f"flamenco_{verb}.js"
+
+
+def job_type(verb: str) -> str:
+    """Return the job type of a verb."""
+    text = SOURCE.read_text(encoding="utf-8")
+    options = options_of(verb)
+    added = "".join(f"    {setting(option)},\n" for option in options)
+    rows = "".join(f"  {option.dest}: {json.dumps(words_of(option))},\n" for option in options)
+    changes = (
+        ('  label: "Mocap Assist",', f'  label: "Mocap Assist: {verb}",'),
+        ("  ],\n};\n", f"{added}  ],\n}};\n\n{OPTION_WORDS.replace('ROWS', rows)}"),
+        ("[settings.verb,", f'["{verb}",'),
+        ("        shellSplit(settings.options", "        optionWords(settings),\n\\g<0>"),
+    )
+    for old, new in changes:
+        if text.count(old) != 1:
+            raise ValueError(f"{SOURCE.name} has {text.count(old)} times {old!r}")
+        text = text.replace(old, new.replace("\\g<0>", old))
+    return HEAD + CUT.sub("", text, count=1)
+
+
+def options_of(verb: str) -> list[argparse.Action]:
+    """Return the options of a verb, without those of every batch."""
+    parser = argparse.ArgumentParser(add_help=False)
+    VERBS[verb].add_options(parser)
+    return [
+        option
+        for option in parser._actions
+        if option.option_strings and option.help is not argparse.SUPPRESS
+    ]
+
+
+def words_of(option: argparse.Action) -> list[str]:
+    """Return the kind of an option and its words on the command line."""
+    names = [name for name in option.option_strings if name.startswith("--")]
+    if option.nargs == 0:
+        return ["switch", names[0], names[-1] if len(names) > 1 else ""]
+    return ["many" if option.nargs else "one", names[0]]
+
+
+def setting(option: argparse.Action) -> str:
+    """Return the setting of an option; left empty, the command has its default."""
+    described: dict[str, Any] = {"key": option.dest, "type": "string"}
+    if option.nargs == 0:
+        described["choices"] = ["", "yes", *(["no"] if words_of(option)[2] else [])]
+    elif option.type is Path:
+        described["subtype"] = "file_path"
+    described |= {
+        "default": "", "required": False,
+        "description": (option.help or "").replace("%%", "%"),
+    }  # fmt: skip
+    return json.dumps(described, ensure_ascii=False)
+
+
+if __name__ == "__main__":
+    main()

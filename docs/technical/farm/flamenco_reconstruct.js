@@ -1,0 +1,113 @@
+// Made of flamenco.js and the options of the verb: make docs.
+// Job type of Flamenco 3: a batch of Mocap Assist in parts, one task each. See ../farm.md.
+// Copy it into the folder "scripts" next to the Flamenco Manager.
+
+const JOB_TYPE = {
+  label: "Mocap Assist: reconstruct",
+  description: "Fix, clean or convert takes of captured motion",
+  settings: [
+    { key: "manifest", type: "string", subtype: "file_path", required: true,
+      description: "The list of takes, one path per line" },
+    { key: "output_folder", type: "string", subtype: "dir_path", required: true,
+      description: "The folder for the results, their records and the report" },
+    { key: "shards", type: "int32", default: 10, propargs: { min: 1, max: 10000 },
+      description: "The number of tasks that share the takes" },
+    { key: "options", type: "string", default: "", required: false,
+      description: "More options of the verb, as on the command line" },
+    { key: "command", type: "string", default: "python3 -m solvers", required: true,
+      description: "The command of Mocap Assist on the workers" },
+    {"key": "scale", "type": "string", "default": "", "required": false, "description": "Meters per unit of the input files, instead of --unit [default: as stored in the file, or estimated from the size of the body]"},
+    {"key": "body", "type": "string", "default": "", "required": false, "description": "Body to read from input files with several: its name or number, several with commas, or all [default: the person seen in most frames]"},
+    {"key": "forward", "type": "string", "default": "", "required": false, "description": "Axis of the file along which the actor faces; it becomes -Y, the front view [default auto]"},
+    {"key": "height", "type": "string", "default": "", "required": false, "description": "Stature of the actor for SMPL files, which have no bone lengths [m, 0.1 to 9, default 1.75]"},
+    {"key": "unit", "type": "string", "default": "", "required": false, "description": "Length unit of the files; the import message reports what Auto found [guess, metres, centimetres, millimetres, inches, default guess]"},
+    {"key": "up", "type": "string", "default": "", "required": false, "description": "Axis of the file that points up; set it if the actor lies on the floor [default auto]"},
+    {"key": "preset", "type": "string", "default": "", "required": false, "description": "Named values of some settings; other options replace them [light, normal, heavy, video-ai, depth-camera]"},
+    {"key": "library", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "A clip library, made by the verb index; each take uses the clips that are similar to it"},
+    {"key": "train", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "Clean clips of skeletons, or folders of them, to learn postures from [default: the shipped postures]"},
+    {"key": "postures", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "A posture library of your own, written by learn-postures"},
+    {"key": "residuals", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "Residual prior of the sensor, written by learn-residuals [default: Kinect v2]"},
+    {"key": "joints", "type": "string", "choices": ["", "yes"], "default": "", "required": false, "description": "With --output-folder: write joints with their confidence as .csv, instead of the motion of a skeleton"},
+    {"key": "feet", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Plant standing feet [default: yes, where there are feet]"},
+    {"key": "causal", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Use only earlier frames, as in a live system; less smooth [default no]"},
+    {"key": "inferred", "type": "string", "default": "", "required": false, "description": "Weight of joints that the sensor only guessed; 0 rebuilds them all [0 to 1, default 0.5]"},
+    {"key": "method", "type": "string", "default": "", "required": false, "description": "Choose what to rebuild, and how [both, postures, residuals, shum, zhou, default both]"},
+    {"key": "n_neighbors", "type": "string", "default": "", "required": false, "description": "Number of clean poses that each rebuilt pose is made of; more gives more variety [2 to 200, default 30]"},
+    {"key": "shift", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Correct the constant joint offsets of a known sensor; off keeps its mean joint positions [default yes]"},
+    {"key": "smoothing", "type": "string", "default": "", "required": false, "description": "Remove jitter shorter than about this; higher is smoother but blurs motion [s, 0 to 1, default 0.05]"},
+    {"key": "blend", "type": "string", "default": "", "required": false, "description": "Time to blend a planted foot back to its own motion; higher is softer and longer [s, 0.02 to 2, default 0.3]"},
+    {"key": "floor", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Level planted feet that are near the floor, all at one height [default yes]"},
+    {"key": "hold", "type": "string", "default": "", "required": false, "description": "Longest time a sliding foot stays fixed before it may creep; higher is stricter [s, 0.5 to 1000, default 10]"},
+    {"key": "hold_rotation", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Also keep feet that stand flat from turning and tilting [default yes]"},
+    {"key": "move_root", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Shift the hips slightly and smoothly where a leg cannot reach [default yes]"},
+    {"key": "softness", "type": "string", "default": "", "required": false, "description": "Fraction of the leg length held in reserve; higher bends knees and lowers hips more [0 to 0.2, default 0.01]"},
+    {"key": "spare_knees", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Let hips and heels give way so that knees bend smoothly [default yes]"},
+  ],
+};
+
+const OPTIONS = {
+  scale: ["one", "--scale"],
+  body: ["one", "--body"],
+  forward: ["one", "--forward"],
+  height: ["one", "--height"],
+  unit: ["one", "--unit"],
+  up: ["one", "--up"],
+  preset: ["one", "--preset"],
+  library: ["one", "--library"],
+  train: ["many", "--train"],
+  postures: ["one", "--postures"],
+  residuals: ["one", "--residuals"],
+  joints: ["switch", "--joints", ""],
+  feet: ["switch", "--feet", "--no-feet"],
+  causal: ["switch", "--causal", "--no-causal"],
+  inferred: ["one", "--inferred"],
+  method: ["one", "--method"],
+  n_neighbors: ["one", "--n-neighbors"],
+  shift: ["switch", "--shift", "--no-shift"],
+  smoothing: ["one", "--smoothing"],
+  blend: ["one", "--blend"],
+  floor: ["switch", "--floor", "--no-floor"],
+  hold: ["one", "--hold"],
+  hold_rotation: ["switch", "--hold-rotation", "--no-hold-rotation"],
+  move_root: ["switch", "--move-root", "--no-move-root"],
+  softness: ["one", "--softness"],
+  spare_knees: ["switch", "--spare-knees", "--no-spare-knees"],
+};
+
+function optionWords(settings) {
+  let words = [];
+  for (const key in OPTIONS) {
+    const [kind, name, opposite] = OPTIONS[key], value = settings[key];
+    if (!value) {
+      continue;
+    }
+    if (kind === "switch") {
+      words = words.concat(value === "no" ? opposite || [] : name);
+    } else {
+      words = words.concat(name, kind === "many" ? shellSplit(value) : value);
+    }
+  }
+  return words;
+}
+
+function compileJob(job) {
+  const settings = job.settings;
+  if (settings.shards < 1) {
+    throw "shards is " + settings.shards + "; it must be at least 1.";
+  }
+  const command = [].concat(shellSplit(settings.command));
+  for (let number = 1; number <= settings.shards; number++) {
+    const part = number + "/" + settings.shards;
+    const task = author.Task("part " + part, "misc");
+    task.addCommand(author.Command("exec", {
+      exe: command[0],
+      args: command.slice(1).concat(
+        ["reconstruct", "--manifest", settings.manifest],
+        ["--output-folder", settings.output_folder, "--shard", part, "--report", "--wait"],
+        optionWords(settings),
+        shellSplit(settings.options || "")
+      ),
+    }));
+    job.addTask(task);
+  }
+}
