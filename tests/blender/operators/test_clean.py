@@ -1,12 +1,15 @@
 """What an animator can rely on when pressing Clean."""
 
 import json
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 RAW, CLEAN = "walk", "walk.clean"
+MANIFEST = Path(__file__).parents[3] / "blender_manifest.toml"
 
 
 def roughness(keys):
@@ -35,7 +38,7 @@ def test_clean_reports_its_result(noisy, clean):
     entry = json.loads(result["mocap_assist_history"])[-1]
     assert (entry["operation"], entry["source"], entry["slot"]) == ("denoise", RAW, "OBActor")
     assert entry["settings"]["strength"] == 0.9
-    assert entry["version"] == "0.1.0"
+    assert entry["version"] == tomllib.loads(MANIFEST.read_text("utf-8"))["version"]
     assert entry["prior_used"]
     assert entry["after"]["mean_jitter_m_per_s3"] < entry["before"]["mean_jitter_m_per_s3"]
 
