@@ -23,6 +23,7 @@ ON_ONE_PYTHON = {
     "command_line/test_bad_files.py": (3, 13),
     "command_line/test_batch.py": (3, 13),
     "command_line/test_capture_verb.py": (3, 11),
+    "command_line/test_claims.py": (3, 11),
     "command_line/test_command_line.py": (3, 11),
     "command_line/test_library_verbs.py": (3, 11),
     "command_line/test_many_machines.py": (3, 11),

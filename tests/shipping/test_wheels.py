@@ -16,7 +16,7 @@ from packaging.specifiers import SpecifierSet
 from packaging.tags import Tag, parse_tag
 from packaging.utils import canonicalize_name, parse_wheel_filename
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 MANIFEST = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
 WHEELS = [Path(wheel).name for wheel in MANIFEST["wheels"]]
 BLENDERS = {"cp311": ("3.11", "1.26.4"), "cp313": ("3.13", "2.3.4")}

@@ -1,0 +1,108 @@
+"""A claim keeps others from an output, and ends with the process that holds it."""
+
+import errno
+import json
+import os
+
+import pytest
+
+from solvers.command_line import parallel
+from solvers.command_line.sharing import claimed
+
+
+def test_waiting_makes_the_take_of_a_process_that_ends(call, leg_file, tmp_path, monkeypatch):
+    out, waits = tmp_path / "out", []
+    words = ["convert", leg_file, "--output-folder", out]
+    call(*words)
+    (record,) = out.glob(".mocap_assist/*.json")
+    (out / "leg.bvh").unlink()
+    claim = record.with_suffix(".1.claim")
+    claim.write_text(json.dumps({"host": "render03", "machine": "render03", "pid": 1}))
+
+    def end_the_other(seconds):
+        waits.append(seconds)
+        if len(waits) == 2:
+            os.utime(claim, (0, 0))
+
+    monkeypatch.setattr(parallel, "sleep", end_the_other)
+
+    status, printed, _ = call(*words, "--wait")
+
+    assert (status, len(waits)) == (0, 2)
+    assert "Skipped" not in printed
+    assert "120 frames" in printed
+    assert (out / "leg.bvh").exists()
+    assert not claim.exists()
+
+
+def test_parts_of_claims_that_killed_processes_left_are_removed(call, leg_file, tmp_path):
+    folder = tmp_path / "out" / ".mocap_assist"
+    folder.mkdir(parents=True)
+    names = [".0123456789abcdef.claim.part", "0123456789abcdef.time", "notes.time", ".x.part"]
+    for name in [*names, ".fedcba9876543210.claim.part"]:
+        (folder / name).touch()
+    for name in names:
+        os.utime(folder / name, (0, 0))
+
+    assert call("convert", leg_file, "--output-folder", tmp_path / "out")[0] == 0
+
+    assert {path.name for path in folder.iterdir() if path.suffix != ".json"} == {
+        "notes.time", ".x.part", ".fedcba9876543210.claim.part",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(("seconds", "holder"), [(290.0, "render03"), (310.0, "")])
+def test_claim_of_another_machine_lasts_while_it_is_renewed(tmp_path, seconds, holder):
+    claim = tmp_path / "take.1.claim"
+    claim.write_text(json.dumps({"host": "render03", "machine": "render03", "pid": 1}))
+    now = claim.stat().st_mtime
+    os.utime(claim, (now - seconds, now - seconds))
+
+    with claimed(tmp_path / "take") as first, claimed(tmp_path / "take") as second:
+        assert first.holder == holder
+        assert first.taken_over == (holder == "")
+        assert second.holder
+
+    assert [path.name for path in tmp_path.iterdir()] == (["take.1.claim"] if holder else [])
+
+
+def test_claim_never_stands_without_its_holder(tmp_path, monkeypatch):
+    """A process killed at any moment leaves no claim without a holder."""
+    claim, link, seen = tmp_path / "take.1.claim", os.link, []
+
+    def look(source, target):
+        seen.append(claim.exists())
+        link(source, target)
+        seen.append(json.loads(claim.read_text())["pid"])
+
+    monkeypatch.setattr(os, "link", look)
+    with claimed(tmp_path / "take") as first:
+        assert first.holder == ""
+
+    assert seen == [False, os.getpid()]
+    assert not list(tmp_path.iterdir())
+
+
+def test_claims_on_a_share_without_links(tmp_path, monkeypatch):
+    def refuse(source, target):
+        raise OSError(errno.EOPNOTSUPP, "Operation not supported")
+
+    monkeypatch.setattr(os, "link", refuse)
+
+    with claimed(tmp_path / "take") as first, claimed(tmp_path / "take") as second:
+        assert first.holder == ""
+        assert second.holder == os.uname().nodename
+
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "content", ["", "[]", '{"pid": "x"}', '{"host": 3, "pid": -1}', "\xff"]
+)
+def test_unreadable_claim_is_held(tmp_path, content):
+    (tmp_path / "take.1.claim").write_text(content, encoding="latin-1")
+
+    with claimed(tmp_path / "take") as claim:
+        assert claim.holder
+
+    assert (tmp_path / "take.1.claim").exists()
