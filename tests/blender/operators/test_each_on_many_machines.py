@@ -11,7 +11,7 @@ def test_shards_of_a_manifest_give_one_report(command, load, tmp_path):
         recordings.write_bvh(walk, tmp_path / name)
     (tmp_path / "takes.txt").write_text("\n".join(names))
     out = tmp_path / "out"
-    words = ["each", "--manifest", tmp_path / "takes.txt", "--output-folder", out]
+    words = ["each", "--manifest", tmp_path / "takes.txt", "--output-folder", out, "--wait"]
 
     counts = []
     for number in (1, 2):
