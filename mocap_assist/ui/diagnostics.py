@@ -4,7 +4,8 @@ import locale
 import os
 import platform
 import sys
-from importlib import import_module
+from importlib.metadata import PackageNotFoundError
+from importlib.metadata import version as installed_version
 
 import bpy
 
@@ -15,7 +16,7 @@ from ..languages import translated
 from ..panels.preference_values import EXTENSION, preferences
 
 COPY = "mocap_assist.copy_diagnostics"
-LIBRARIES = ("numpy", "scipy", "PIL", "mujoco")
+LIBRARIES = ("numpy", "scipy", "pillow", "mujoco")
 LEFT_OUT = "Left out: names of files, folders, takes and bones"
 
 
@@ -53,9 +54,9 @@ def _window() -> str:
 
 def _library(name: str) -> str:
     try:
-        return f"{name} {import_module(name).__version__}"
-    except ImportError as error:
-        return f"{name} missing ({type(error).__name__})"
+        return f"{name} {installed_version(name)}"
+    except PackageNotFoundError:
+        return f"{name} missing"
 
 
 def _values(values: dict[str, object]) -> str:

@@ -45,6 +45,7 @@ def test_diagnostics_name_versions_and_changed_preferences(blank, copied, load):
     assert text.startswith(f"Mocap Assist {load('solvers.version').version()}, ")
     assert bpy.app.version_string in text
     assert "show_research True" in text
+    assert " missing\n" not in text and " missing," not in text
     assert SECRET not in text
     assert "Preferences: defaults\n" in copied()
 
