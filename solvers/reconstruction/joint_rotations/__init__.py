@@ -10,7 +10,12 @@ from .library_body import (
 from .limb_angles import Complex, axial_angles
 from .limb_twist import flexion_weights
 from .motion_from_positions import motion_from_positions, resize_skeleton
-from .other_joints import find_anchors, positions_from_postures
+from .other_joints import (
+    JointOffsets,
+    find_anchors,
+    measure_joint_offsets,
+    positions_from_postures,
+)
 from .result import Reconstruction
 from .trunk_twist import (
     N_TWISTED_LIMBS,
@@ -28,6 +33,7 @@ __all__ = [
     "TWISTED_LIMBS",
     "BodyPostures",
     "Complex",
+    "JointOffsets",
     "LimbTwists",
     "Reconstruction",
     "axial_angles",
@@ -38,6 +44,7 @@ __all__ = [
     "flexion_normals",
     "flexion_weights",
     "mean_twists",
+    "measure_joint_offsets",
     "mirror_twists",
     "motion_from_positions",
     "positions_from_postures",

@@ -1,6 +1,7 @@
 """Move the tracked joints that are not posture joints along with the nearest posture joint."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +26,7 @@ def find_anchors(names: Sequence[str]) -> NDArray[np.intp]:
 
     A posture joint is its own anchor. Others use the nearest one in the tree, ancestors first.
     """
-    posture_joints = {
-        index: POSTURE_JOINTS.index(role)
-        for role, index in posture_joint_indices(names).items()
-    }
+    posture_joints = _posture_joints(names)
     parents = joint_parents(names)
     connected = [
         {joint} | {child for child, above in enumerate(parents) if above == joint}
@@ -48,8 +46,28 @@ def find_anchors(names: Sequence[str]) -> NDArray[np.intp]:
     return np.array(anchors, dtype=np.intp)
 
 
+class JointOffsets(NamedTuple):
+    """Where the joints of an actor are that are not posture joints.
+
+    Attributes
+    ----------
+    bones : shape (n_joints, 3)
+        Mean direction of the bone that leads to each joint's anchor, in axes of the trunk.
+    offsets : shape (n_joints, 3), meters
+        Median offset of each joint from its anchor, in axes of that bone.
+    """
+
+    bones: Array
+    offsets: Array
+
+
 def positions_from_postures(
-    names: Sequence[str], tracked: Array, reliability: Array, before: Array, after: Array
+    names: Sequence[str],
+    tracked: Array,
+    reliability: Array,
+    before: Array,
+    after: Array,
+    offsets: JointOffsets | None = None,
 ) -> Array:
     """Return the positions of all tracked joints after posture joints were moved.
 
@@ -66,11 +84,12 @@ def positions_from_postures(
     reliability : shape (n_frames, n_joints)
     before, after : shape (n_frames, 20, 3), meters
         Posture joints as observed, and after they were moved.
+    offsets : JointOffsets, optional
+        Measured in these frames by default (`measure_joint_offsets`).
     """
-    posture_joints = {
-        index: POSTURE_JOINTS.index(role)
-        for role, index in posture_joint_indices(names).items()
-    }
+    if offsets is None:
+        offsets = measure_joint_offsets(names, tracked, reliability, before, after)
+    posture_joints = _posture_joints(names)
     result = np.empty_like(tracked)
     bones_before, bones_after = _bones(before), _bones(after)
     trunk = _trunk_rotations(after)
@@ -79,18 +98,49 @@ def positions_from_postures(
             result[:, joint] = after[:, posture_joints[joint]]
             continue
         bones = bones_before[:, anchor], bones_after[:, anchor]
-        axes_before, axes_after = (_bone_axes(trunk, bone, bones[1]) for bone in bones)
-        tracked_offset = tracked[:, joint] - before[:, anchor]
-        rotated_offset = rotate(_swings(*bones), tracked_offset)
+        axes_after = _bone_axes(trunk, bones[1], offsets.bones[joint])
+        rotated_offset = rotate(_swings(*bones), tracked[:, joint] - before[:, anchor])
         is_known = np.isfinite(rotated_offset).all(axis=-1)
         weight = np.where(is_known, reliability[:, joint], 0.0)
-        is_reliable = is_known & (weight >= 0.5 * weight.max(initial=0.0))
-        local = rotate(inverse(axes_before[is_reliable]), tracked_offset[is_reliable])
-        mean_offset = np.median(local, axis=0) if is_reliable.any() else np.zeros(3)
         offset = weight[:, None] * np.where(is_known[:, None], rotated_offset, 0.0)
-        offset += (1.0 - weight)[:, None] * rotate(axes_after, mean_offset)
+        offset += (1.0 - weight)[:, None] * rotate(axes_after, offsets.offsets[joint])
         result[:, joint] = after[:, anchor] + offset
     return result
+
+
+def measure_joint_offsets(
+    names: Sequence[str], tracked: Array, reliability: Array, before: Array, after: Array
+) -> JointOffsets:
+    """Measure where the joints are that are not posture joints, in reliable frames.
+
+    The parameters are those of `positions_from_postures`.
+    """
+    posture_joints = _posture_joints(names)
+    bones_before, bones_after = _bones(before), _bones(after)
+    trunk = _trunk_rotations(after)
+    found = JointOffsets(np.zeros((len(names), 3)), np.zeros((len(names), 3)))
+    for joint, anchor in enumerate(find_anchors(names)):
+        if joint in posture_joints:
+            continue
+        bones = bones_before[:, anchor], bones_after[:, anchor]
+        found.bones[joint] = _mean_direction(trunk, bones[1])
+        axes = _bone_axes(trunk, bones[0], found.bones[joint])
+        tracked_offset = tracked[:, joint] - before[:, anchor]
+        is_known = np.isfinite(rotate(_swings(*bones), tracked_offset)).all(axis=-1)
+        weight = np.where(is_known, reliability[:, joint], 0.0)
+        is_reliable = is_known & (weight >= 0.5 * weight.max(initial=0.0))
+        if is_reliable.any():
+            local = rotate(inverse(axes[is_reliable]), tracked_offset[is_reliable])
+            found.offsets[joint] = np.median(local, axis=0)
+    return found
+
+
+def _posture_joints(names: Sequence[str]) -> dict[int, int]:
+    """Return the posture joint of each tracked joint that is one."""
+    return {
+        index: POSTURE_JOINTS.index(role)
+        for role, index in posture_joint_indices(names).items()
+    }
 
 
 def _bones(postures: Array) -> Array:
@@ -106,12 +156,16 @@ def _trunk_rotations(postures: Array) -> Array:
     return np.where(np.isfinite(rotations), rotations, IDENTITY)
 
 
-def _bone_axes(trunk: Array, bones: Array, all_bones: Array) -> Array:
+def _mean_direction(trunk: Array, bones: Array) -> Array:
+    """Return the mean of a bone in axes of the trunk, shape (3,)."""
+    observed = np.isfinite(bones).all(axis=-1)
+    local = rotate(inverse(trunk[observed]), bones[observed])
+    return np.asarray(local.mean(axis=0)) if observed.any() else np.zeros(3)
+
+
+def _bone_axes(trunk: Array, bones: Array, mean: Array) -> Array:
     """Return the trunk's axes, rotated from a bone's mean direction to its current one."""
-    observed = np.isfinite(all_bones).all(axis=-1)
-    local = rotate(inverse(trunk[observed]), all_bones[observed])
-    mean_offset = local.mean(axis=0) if observed.any() else np.zeros(3)
-    return multiply(_swings(rotate(trunk, mean_offset), bones), trunk)
+    return multiply(_swings(rotate(trunk, mean), bones), trunk)
 
 
 def _swings(start: Array, stop: Array) -> Array:

@@ -32,7 +32,7 @@ from .cross_validation import SynthesisErrors, cross_validate_limbs
 from .probable_posture import probable_postures
 from .residual_smoother import (
     Estimates,
-    filter_residuals,
+    ResidualFilter,
     measurement_deviation,
     smooth_residuals,
 )
@@ -101,14 +101,45 @@ Chooser = Callable[[PostureSpaces, EnergyTargets, Array | None], Array]
 """Function from pose spaces, targets and the last two poses to poses."""
 
 
+class FittedLibrary(NamedTuple):
+    """A library fitted to one actor, and how far its poses are from the actor's."""
+
+    body: BodyPostures
+    index: PostureIndex
+    errors: SynthesisErrors
+
+
+def fit_library(
+    take: ObservedTake, library: PostureLibrary, settings: PostureSettings
+) -> FittedLibrary:
+    """Fit a library to the actor of a take."""
+    body = _fit_library_to_actor(take, library, settings)
+    index = index_postures(body, library.groups)
+    return FittedLibrary(body, index, _measure_errors(take, body, index, settings))
+
+
 def complete_postures(
     take: ObservedTake, library: PostureLibrary, settings: PostureSettings, progress: Progress
 ) -> CompletedPostures:
     """Complete the poses of a take with the most probable poses of a library."""
+    return complete_from_fitted(
+        take, fit_library(take, library, settings), settings, None, progress
+    )
+
+
+def complete_from_fitted(
+    take: ObservedTake,
+    library: FittedLibrary,
+    settings: PostureSettings,
+    past: ResidualFilter | None,
+    progress: Progress,
+) -> CompletedPostures:
+    """Complete the poses of a take from a library that fits its actor.
+
+    `past` holds what earlier frames showed, if `take` continues them; only for causal settings.
+    """
+    body, index, errors = library
     reliability, frame_rate, lengths = take.reliability, take.frame_rate, take.lengths
-    body = _fit_library_to_actor(take, library, settings)
-    index = index_postures(body, library.groups)
-    errors = _measure_errors(take, body, index, settings)
     take = replace(take, postures=take.postures - errors.offset)
     rounds = 1 if settings.causal else settings.rounds
     offset = np.zeros((len(reliability), 1, 3))
@@ -120,7 +151,9 @@ def complete_postures(
         )
         residuals = take.postures - offset - chosen.values
         offset = offset + _hips_offset(residuals, reliability, frame_rate, settings)
-        corrected = _add_residuals(chosen, take.postures - offset, take, errors.size, settings)
+        corrected = _add_residuals(
+            chosen, take.postures - offset, take, errors.size, settings, past
+        )
         if number + 1 < rounds:
             missing = (reliability < REUSED_RELIABILITY)[..., None]
             targets = np.where(missing, corrected.values, take.postures - offset)
@@ -250,14 +283,14 @@ def _add_residuals(
     take: ObservedTake,
     size: Array,
     settings: PostureSettings,
+    past: ResidualFilter | None,
 ) -> Estimates:
     """Add smoothed residuals of the observations to synthesized poses."""
     dt = 1.0 / take.frame_rate
     deviation = measurement_deviation(take.reliability, settings.noise)
     if settings.causal:
-        corrected = filter_residuals(
-            chosen.values, observed, deviation, dt, size, settings.memory
-        )
+        past = past or ResidualFilter(dt, size, settings.memory)
+        corrected = past.update(chosen.values, observed, deviation)
     else:
         corrected = smooth_residuals(
             observed - chosen.values, deviation, dt, size, settings.memory

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 
 MIN_RELIABILITY = 0.05
 """Joints below this reliability count as missing. Chosen by hand: x10 costs 3.9 %."""
@@ -72,39 +72,60 @@ def smooth_residuals(
     return _filter_and_smooth(observed, deviation, _Process(A, start - A @ start @ A.T, start))
 
 
-def filter_residuals(
-    synthesised: Array, observed: Array, deviation: Array, dt: float, size: Array, memory: float
-) -> Estimates:
-    """Estimate the residuals of joints from past frames only.
+class ResidualFilter:
+    """Estimates the residuals of joints from past frames only, frame by frame.
 
     After a dropout, a joint moves from its last position to its synthesized position within the
     time constant `memory`.
 
     Parameters
     ----------
-    synthesised : shape (n_frames, n_joints, 3), meters
-    observed, deviation, dt, size, memory
-        As in `smooth_residuals`; `observed` holds positions, not differences.
+    dt, size, memory : as in `smooth_residuals`
     """
-    is_observed = np.isfinite(observed).all(axis=-1) & (deviation < np.inf)
-    residuals = np.where(is_observed[..., None], observed - synthesised, 0.0)
-    decay = np.exp(-dt / memory)
-    values, spread = np.empty_like(residuals), np.empty(is_observed.shape)
-    value, variance = np.zeros_like(residuals[0]), size**2
-    for frame in range(len(residuals)):
-        if frame:
-            dropped_out = is_observed[frame - 1] & ~is_observed[frame]
-            displacement = synthesised[frame - 1] - synthesised[frame]
+
+    def __init__(self, dt: float, size: Array, memory: float) -> None:
+        self._decay, self._size = np.exp(-dt / memory), size
+        self._variance = size**2
+        self._value: Array | None = None
+        self._last_synthesized, self._was_observed = np.zeros((len(size), 3)), size > 0.0
+
+    def update(self, synthesized: Array, observed: Array, deviation: Array) -> Estimates:
+        """Return the residuals of the next frames.
+
+        Parameters
+        ----------
+        synthesized, observed : shape (n_frames, n_joints, 3), meters
+            Positions; NaN where not observed.
+        deviation : shape (n_frames, n_joints), meters
+        """
+        is_observed = np.isfinite(observed).all(axis=-1) & (deviation < np.inf)
+        residuals = np.where(is_observed[..., None], observed - synthesized, 0.0)
+        values, spread = np.empty_like(residuals), np.empty(is_observed.shape)
+        for frame in range(len(residuals)):
+            values[frame], spread[frame] = self._advance(
+                synthesized[frame], residuals[frame], is_observed[frame], deviation[frame]
+            )
+        return Estimates(values, spread)
+
+    def _advance(
+        self, synthesized: Array, residual: Array, is_observed: Flags, deviation: Array
+    ) -> tuple[Array, Array]:
+        decay, value, variance = self._decay, self._value, self._variance
+        if value is None:
+            value = np.zeros_like(residual)
+        else:
+            dropped_out = self._was_observed & ~is_observed
+            displacement = self._last_synthesized - synthesized
             value = decay * value + dropped_out[:, None] * (
                 displacement + (1.0 - decay) * value
             )
-            variance = decay**2 * variance + (1.0 - decay**2) * size**2
-        noise = np.where(is_observed[frame], deviation[frame], np.inf) ** 2
+            variance = decay**2 * variance + (1.0 - decay**2) * self._size**2
+        noise = np.where(is_observed, deviation, np.inf) ** 2
         gain = variance / (variance + noise)
-        value = value + gain[:, None] * (residuals[frame] - value)
-        variance = (1.0 - gain) * variance
-        values[frame], spread[frame] = value, np.sqrt(variance)
-    return Estimates(values, spread)
+        self._value = value + gain[:, None] * (residual - value)
+        self._variance = (1.0 - gain) * variance
+        self._last_synthesized, self._was_observed = synthesized, is_observed
+        return self._value, np.sqrt(self._variance)
 
 
 def _filter_and_smooth(observed: Array, deviation: Array, process: _Process) -> Estimates:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import JointRecording
 from ...motion.humanoid import N_JOINTS, POSTURE_JOINTS, posture_joint_indices
 from ...progress import Progress, unwatched
@@ -35,6 +36,7 @@ def measure_reliability(
     recording: JointRecording,
     *,
     settings: ReliabilitySettings = DEFAULT_SETTINGS,
+    reference: Array | None = None,
     progress: Progress = unwatched,
 ) -> Reliability:
     """Measure the reliability of each joint of a depth camera's recording.
@@ -44,6 +46,9 @@ def measure_reliability(
     recording : JointRecording
         Any joints; NaN where not tracked.
     settings : ReliabilitySettings
+    reference : shape (n_joints,), meters, optional
+        Length of the segment above each joint; measured in the recording by default
+        (`expected_lengths`).
     progress : Progress
 
     Returns
@@ -67,13 +72,8 @@ def measure_reliability(
     tracking = tracking_term(recording, settings)
     progress(0.4, "Measuring reliability")
     lengths = parent_distances(positions, parents)
-    tracked = is_tracked(recording)
-    postures = find_reference_postures(recording.names, positions, tracked)
-    smooth_and_tracked = np.minimum(behavior, tracked)
-    segment_reliability = np.minimum(
-        smooth_and_tracked, smooth_and_tracked[:, np.maximum(parents, 0)]
-    )
-    reference = reference_lengths(lengths, postures, segment_reliability)
+    if reference is None:
+        reference = _reference_of(recording, lengths, behavior)
     kinematics = kinematics_term(lengths, reference, parents)
     behavior, kinematics, tracking = (
         np.where(visible, term, 0.0) for term in (behavior, kinematics, tracking)
@@ -92,6 +92,26 @@ def measure_reliability(
     combined = np.where(visible, combined, 0.0)
     progress(1.0, "Measuring reliability")
     return Reliability(combined, behavior, kinematics, tracking)
+
+
+def expected_lengths(recording: JointRecording, settings: ReliabilitySettings) -> Array:
+    """Return the actor's length of the segment above each joint, shape (n_joints,), meters.
+
+    NaN for roots, and where no frame shows both ends.
+    """
+    positions = recording.tracks.positions
+    lengths = parent_distances(positions, np.array(recording.parents))
+    behavior = behavior_term(positions, recording.frame_rate, settings)
+    return _reference_of(recording, lengths, behavior)
+
+
+def _reference_of(recording: JointRecording, lengths: Array, behavior: Array) -> Array:
+    """Return the expected lengths from those of each frame, where joints do not vibrate."""
+    parents, tracked = np.array(recording.parents), is_tracked(recording)
+    postures = find_reference_postures(recording.names, recording.tracks.positions, tracked)
+    reliable = np.minimum(behavior, tracked)
+    reliable = np.minimum(reliable, reliable[:, np.maximum(parents, 0)])
+    return reference_lengths(lengths, postures, reliable)
 
 
 def posture_reliability(

@@ -1,6 +1,8 @@
 """Subtract a sensor's errors from a recording with a residual prior [ZH14, chapter 5]."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +13,7 @@ from ...motion.humanoid import posture_positions
 from ...progress import Progress, unwatched, within
 from ...settings import Choice, Settings, setting
 from ..joint_rotations import (
+    JointOffsets,
     LimbTwists,
     Reconstruction,
     find_anchors,
@@ -20,7 +23,7 @@ from ..reliability import Reliability, measure_reliability, posture_reliability
 from .inputs import SmoothedPostures, smooth_postures
 from .prediction import Prediction
 from .residual_prior import ResidualPrior
-from .smooth_trajectories import filter_trajectories, smooth_trajectories
+from .smooth_trajectories import TrajectoryFilter, smooth_trajectories
 
 MIN_WEIGHT = 0.02
 """Weight of an unreliable joint, so that gaps are interpolated smoothly. Chosen by hand: x1000
@@ -115,6 +118,15 @@ def correct_postures(
     return result
 
 
+class TakeOffsets(NamedTuple):
+    """How a sensor errs in one take, on average."""
+
+    mean: Array
+    """Mean offset of each joint, shape (20, 3), meters, relative to the heading."""
+    fraction: Array
+    """Fraction of the pose-dependent offset that is applied, shape (20,)."""
+
+
 class CorrectedPostures(NamedTuple):
     """Corrected posture joints, the prediction of the prior, and its variances."""
 
@@ -125,6 +137,7 @@ class CorrectedPostures(NamedTuple):
     """Constant offset in world axes, shape (n_frames, 20, 3); None if it was not corrected."""
     uses_prior: bool
     method: str
+    offsets: TakeOffsets | None = None
 
 
 def assemble_correction(
@@ -133,8 +146,12 @@ def assemble_correction(
     reliability: Reliability,
     corrected: CorrectedPostures,
     twists: LimbTwists | None = None,
+    joint_offsets: JointOffsets | None = None,
 ) -> Reconstruction:
-    """Return all joints of a recording, and their confidence."""
+    """Return all joints of a recording, and their confidence.
+
+    `joint_offsets` are those of other frames of this actor; by default they are measured here.
+    """
     weights = posture_reliability(recording, reliability.combined)
     coverage = corrected.prediction.coverage if corrected.uses_prior else 0.0
     probability = prior.confidence(
@@ -148,6 +165,7 @@ def assemble_correction(
         reliability.combined,
         posture_positions(recording),
         corrected.positions,
+        joint_offsets,
     )
     joints[:, ~tracks.visible.any(axis=0)] = np.nan
     anchors = find_anchors(tracks.names)
@@ -169,23 +187,40 @@ def predict_postures(
     causal = settings.method is CorrectionMethod.CAUSAL
     smooth = smooth_postures(recording, float(prior.smoothing), weights, ahead=not causal)
     prediction = prior.predict(smooth, ahead=not causal)
-    mean = mean_offset(prediction, weights)
     fraction = settings.change * prediction.coverage.mean(axis=0)
+    offsets = TakeOffsets(mean_offset(prediction, weights), fraction)
+    frames = settings.smoothing * recording.frame_rate
+    smoother = (
+        TrajectoryFilter(frames).update if causal else partial(smooth_trajectories, frames=frames)
+    )
+    return subtract_offsets(smooth, prediction, offsets, weights, prior, settings, smoother)
+
+
+def subtract_offsets(
+    smooth: SmoothedPostures,
+    prediction: Prediction,
+    offsets: TakeOffsets,
+    weights: Array,
+    prior: ResidualPrior,
+    settings: CorrectionSettings,
+    smoother: Callable[[Array, Array], Array],
+) -> CorrectedPostures:
+    """Return posture joints without the sensor's offsets, smoothed with the given function."""
+    mean, fraction = offsets
     predicted = smooth.positions + smooth.rotate_to_world(
         fraction[:, None] * (prediction.offsets - mean)
     )
     shift = shift_in_world(smooth, mean) if settings.shift else None
     if shift is not None:
         predicted += shift
-    smoother = filter_trajectories if causal else smooth_trajectories
-    frames = settings.smoothing * recording.frame_rate
     return CorrectedPostures(
-        smoother(predicted, np.maximum(weights, MIN_WEIGHT), frames),
+        smoother(predicted, np.maximum(weights, MIN_WEIGHT)),
         prediction,
         prediction.variances + prior.constant_variances(constant=settings.shift),
         shift,
         uses_prior=settings.change > 0.0 or settings.shift,
         method=settings.method.value,
+        offsets=offsets,
     )
 
 

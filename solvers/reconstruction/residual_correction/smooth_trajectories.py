@@ -1,5 +1,7 @@
 """Smooth trajectories by penalizing acceleration: over a complete take, or causally."""
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.linalg import solveh_banded
 
@@ -35,38 +37,65 @@ def smooth_trajectories(positions: Array, weights: Array, frames: float) -> Arra
     return result
 
 
-def filter_trajectories(positions: Array, weights: Array, frames: float) -> Array:
-    """Return causally smoothed trajectories: each frame depends on earlier frames only.
+class TrajectoryFilter:
+    """Smooths trajectories causally, frame by frame.
 
     The Kalman filter of the model whose smoother is `smooth_trajectories`: velocities change by
     white noise of variance 1 / c, positions are observed with variance 1 / w.
 
     Parameters
     ----------
-    positions, weights, frames : as in `smooth_trajectories`
+    frames : float
+        Time constant in frames, as in `smooth_trajectories`.
     """
-    if frames <= 0.0:
-        return positions.copy()
-    result = positions.copy()
-    position, speed = positions[0].copy(), np.zeros_like(positions[0])
-    position_variance = 1.0 / weights[0]  # of position and speed, with their covariance
-    covariance, speed_variance = (
-        np.zeros_like(position_variance),
-        np.ones_like(position_variance),
-    )
-    for frame in range(1, len(positions)):
-        position = position + speed
-        position_variance = position_variance + 2.0 * covariance + speed_variance
-        covariance = covariance + speed_variance
-        speed_variance = speed_variance + frames**-4
-        gain = 1.0 / (position_variance + 1.0 / weights[frame])
-        innovation = (positions[frame] - position) * gain[:, None]
-        position, speed = (
-            position + position_variance[:, None] * innovation,
-            speed + covariance[:, None] * innovation,
+
+    def __init__(self, frames: float) -> None:
+        self._frames = frames
+        self._state: _TrajectoryState | None = None
+
+    def update(self, positions: Array, weights: Array) -> Array:
+        """Return the smoothed positions of the next frames; shapes as `smooth_trajectories`."""
+        if self._frames <= 0.0:
+            return positions.copy()
+        result = positions.copy()
+        for frame, (position, weight) in enumerate(zip(positions, weights, strict=True)):
+            if self._state is None:
+                self._state = _TrajectoryState.at_rest(position, weight)
+            else:
+                self._state = self._state.advance(position, weight, self._frames**-4)
+            result[frame] = self._state.position
+        return result
+
+
+class _TrajectoryState(NamedTuple):
+    """Position and speed of each joint, with their variances and their covariance."""
+
+    position: Array
+    speed: Array
+    position_variance: Array
+    covariance: Array
+    speed_variance: Array
+
+    @classmethod
+    def at_rest(cls, position: Array, weight: Array) -> "_TrajectoryState":
+        return cls(
+            position.copy(), np.zeros_like(position),
+            1.0 / weight, np.zeros_like(weight), np.ones_like(weight),
+        )  # fmt: skip
+
+    def advance(self, observed: Array, weight: Array, noise: float) -> "_TrajectoryState":
+        position = self.position + self.speed
+        position_variance = (
+            self.position_variance + 2.0 * self.covariance + self.speed_variance
         )
-        speed_variance = speed_variance - gain * covariance**2
-        covariance = covariance - gain * position_variance * covariance
-        position_variance = position_variance - gain * position_variance**2
-        result[frame] = position
-    return result
+        covariance = self.covariance + self.speed_variance
+        speed_variance = self.speed_variance + noise
+        gain = 1.0 / (position_variance + 1.0 / weight)
+        innovation = (observed - position) * gain[:, None]
+        return _TrajectoryState(
+            position + position_variance[:, None] * innovation,
+            self.speed + covariance[:, None] * innovation,
+            position_variance - gain * position_variance**2,
+            covariance - gain * position_variance * covariance,
+            speed_variance - gain * covariance**2,
+        )

@@ -34,7 +34,7 @@ from solvers.reconstruction.published.residual_reconstruction import (
 )
 from solvers.reconstruction.residual_correction.confidence import probability_within
 from solvers.reconstruction.residual_correction.smooth_trajectories import (
-    filter_trajectories,
+    TrajectoryFilter,
     smooth_trajectories,
 )
 
@@ -177,7 +177,7 @@ def test_filter_ends_where_the_smoother_of_past_frames_ends(rng):
     """Filter and smoother agree in the last frame if the first frame is long ago."""
     positions = np.cumsum(rng.normal(size=(60, 2, 3)), axis=0)
     weights = rng.uniform(0.2, 1.0, size=(60, 2))
-    found = filter_trajectories(positions, weights, 2.0)
+    found = TrajectoryFilter(2.0).update(positions, weights)
     for last in (40, 59):
         expected = smooth_trajectories(positions[: last + 1], weights[: last + 1], 2.0)[last]
         np.testing.assert_allclose(found[last], expected, atol=1e-3)

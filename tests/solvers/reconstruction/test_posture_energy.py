@@ -16,7 +16,7 @@ from solvers.reconstruction.pose_completion.probable_posture import (
     probable_postures,
 )
 from solvers.reconstruction.pose_completion.residual_smoother import (
-    filter_residuals,
+    ResidualFilter,
     measurement_deviation,
     smooth_residuals,
 )
@@ -218,8 +218,8 @@ def test_causal_filter_ignores_the_future_and_does_not_jump(random):
     deviation = measurement_deviation(np.ones((30, 2)), 1e-4)
     deviation[12:20] = np.inf
     size = np.full(2, 0.1)
-    trajectory = filter_residuals(result, observed, deviation, 1 / 30, size, 0.5)
-    cut = filter_residuals(result[:15], observed[:15], deviation[:15], 1 / 30, size, 0.5)
+    trajectory = ResidualFilter(1 / 30, size, 0.5).update(result, observed, deviation)
+    cut = ResidualFilter(1 / 30, size, 0.5).update(result[:15], observed[:15], deviation[:15])
     np.testing.assert_array_equal(trajectory.values[:15], cut.values)
     out = result + trajectory.values
     np.testing.assert_allclose(out[12], out[11], atol=1e-5)
