@@ -3,16 +3,18 @@
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..motion import JointRecording, Sensor, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Choice, Settings, setting
 from ..signals import fill_gaps, smooth_gaussian
 from .joint_rotations import Reconstruction
 from .pose_completion import (
+    CompletedJoints,
     PostureSettings,
     blend_gaps,
     complete_joints,
@@ -161,7 +163,7 @@ def reconstruct(
     is_known_sensor = prior is not None or recording.sensor is Sensor.KINECT_V2
     if settings.method is ReconstructMethod.PUBLISHED_POSTURES:
         return reconstruct_published_postures(
-            recording, postures, settings=_posture_settings(settings), progress=progress
+            recording, postures, settings=posture_settings(settings), progress=progress
         )
     if settings.method is ReconstructMethod.PUBLISHED_RESIDUALS:
         terms = ThreeTermSettings(
@@ -184,84 +186,108 @@ def reconstruct(
             recording,
             prior or shipped_residual_prior(),
             reliability=reliability,
-            settings=_correction_settings(settings, is_known_sensor),
+            settings=correction_settings(settings, is_known_sensor),
             progress=within(progress, 0.1, 1.0),
         )
     if settings.method is ReconstructMethod.POSTURES:
         return reconstruct_postures(
             recording,
             postures,
-            settings=_posture_settings(settings),
+            settings=posture_settings(settings),
             reliability=reliability,
             progress=within(progress, 0.1, 1.0),
         )
-    rebuilt = complete_joints(
-        recording,
-        postures,
-        reliability.combined,
-        _posture_settings(settings),
-        within(progress, 0.1, 0.7),
+    completed = complete_take(
+        recording, postures, reliability.combined, settings, within(progress, 0.1, 0.7)
     )
-    replacement = _replacement_weights(
-        recording.tracks, reliability.combined, rebuilt.tracks, not settings.causal
-    )
-    combined = np.maximum(reliability.combined, replacement * rebuilt.confidence)
-    completed = rebuilt.tracks
-    if not settings.causal:
-        observed = recording.tracks.visible & (replacement <= 0.0)
-        completed = completed.with_positions(
-            blend_gaps(
-                recording.tracks.positions,
-                observed,
-                completed.positions,
-                rebuilt.deviation,
-                recording.frame_rate,
-            )
-        )
     corrected = correct_postures(
-        replace(recording, tracks=_blend_tracks(recording.tracks, completed, replacement)),
+        completed.recording,
         prior or shipped_residual_prior(),
-        reliability=replace(reliability, combined=combined),
-        twists=rebuilt.twists,
-        settings=_correction_settings(settings, is_known_sensor),
+        reliability=replace(reliability, combined=completed.reliability),
+        twists=completed.rebuilt.twists,
+        settings=correction_settings(settings, is_known_sensor),
         progress=within(progress, 0.7, 1.0),
     )
-    confidence = np.minimum(
-        corrected.confidence, np.maximum(1.0 - replacement, rebuilt.confidence)
-    )
+    confidence = np.minimum(corrected.confidence, completed.confidence)
     return Reconstruction(
         corrected.tracks, reliability, confidence,
-        f"{rebuilt.method}; {corrected.method}", rebuilt.twists, corrected.shift,
+        f"{completed.rebuilt.method}; {corrected.method}", completed.rebuilt.twists,
+        corrected.shift,
     )  # fmt: skip
 
 
-def _replacement_weights(
-    tracks: Tracks, reliability: Array, rebuilt: Tracks, ahead: bool
-) -> Array:
+class CompletedTake(NamedTuple):
+    """A recording whose unreliable and missing joints are from library poses."""
+
+    recording: JointRecording
+    rebuilt: CompletedJoints
+    reliability: Array
+    """Of the completed joints, shape (n_frames, n_joints)."""
+    confidence: Array
+    """Upper limit of the confidence of each joint, shape (n_frames, n_joints)."""
+
+
+def complete_take(
+    recording: JointRecording,
+    postures: PostureLibrary | None,
+    reliability: Array,
+    settings: ReconstructSettings,
+    progress: Progress,
+) -> CompletedTake:
+    """Replace unreliable and missing joints by those of library poses."""
+    rebuilt = complete_joints(
+        recording, postures, reliability, posture_settings(settings), progress
+    )
+    tracks, ahead = recording.tracks, not settings.causal
+    observed = tracks.visible.any(axis=0)
+    smooth = fill_gaps(tracks.positions[:, observed], ahead=ahead)
+    smooth = smooth_gaussian(smooth, SMOOTHING_S * tracks.frame_rate, ahead=ahead)
+    distance = np.zeros(reliability.shape)
+    distance[:, observed] = np.linalg.norm(
+        rebuilt.tracks.positions[:, observed] - smooth, axis=-1
+    )
+    replacement = replacement_weights(tracks.visible, reliability, distance)
+    if not settings.causal:
+        used = tracks.visible & (replacement <= 0.0)
+        bridged = blend_gaps(
+            tracks.positions, used, rebuilt.tracks.positions, rebuilt.deviation,
+            recording.frame_rate,
+        )  # fmt: skip
+        rebuilt = rebuilt._replace(tracks=rebuilt.tracks.with_positions(bridged))
+    return blend_rebuilt(recording, rebuilt, reliability, replacement)
+
+
+def blend_rebuilt(
+    recording: JointRecording, rebuilt: CompletedJoints, reliability: Array, replacement: Array
+) -> CompletedTake:
+    """Blend observed joints and library poses by the weights of `replacement_weights`."""
+    return CompletedTake(
+        replace(recording, tracks=_blend_tracks(recording.tracks, rebuilt.tracks, replacement)),
+        rebuilt,
+        np.maximum(reliability, replacement * rebuilt.confidence),
+        np.maximum(1.0 - replacement, rebuilt.confidence),
+    )
+
+
+def replacement_weights(visible: Flags, reliability: Array, distance: Array) -> Array:
     """Return the weight of library poses, shape (n_frames, n_joints), 0 to 1.
 
     An observed joint of low reliability still indicates roughly where the joint is. A library
-    pose far from that position gets a low weight.
+    pose far from that position gets a low weight; `distance`, in meters, is that from the
+    smoothed path of the joint.
     """
     replacement = np.clip(
         (OBSERVED_RELIABILITY - reliability) / (OBSERVED_RELIABILITY - REPLACED_RELIABILITY),
         0.0,
         1.0,
     )
-    observed = tracks.visible.any(axis=0)
-    smooth = fill_gaps(tracks.positions[:, observed], ahead=ahead)
-    smooth = smooth_gaussian(smooth, SMOOTHING_S * tracks.frame_rate, ahead=ahead)
-    distance = np.zeros(reliability.shape)
-    distance[:, observed] = np.linalg.norm(rebuilt.positions[:, observed] - smooth, axis=-1)
     closeness = 1.0 / (1.0 + (distance / HALF_WEIGHT_M) ** 4)
     certainty = np.clip(
         (reliability - WRONG_RELIABILITY) / (UNCERTAIN_RELIABILITY - WRONG_RELIABILITY),
         0.0,
         1.0,
     )
-    return np.where(
-        tracks.visible, replacement * (1.0 - certainty + certainty * closeness), replacement
-    )
+    return np.where(visible, replacement * (1.0 - certainty + certainty * closeness), replacement)
 
 
 def _blend_tracks(tracks: Tracks, rebuilt: Tracks, replacement: Array) -> Tracks:
@@ -271,11 +297,12 @@ def _blend_tracks(tracks: Tracks, rebuilt: Tracks, replacement: Array) -> Tracks
     return tracks.with_positions(weight * rebuilt.positions + (1.0 - weight) * completed)
 
 
-def _posture_settings(settings: ReconstructSettings) -> PostureSettings:
+def posture_settings(settings: ReconstructSettings) -> PostureSettings:
+    """Return the settings of the completion."""
     return PostureSettings(causal=settings.causal, n_neighbors=settings.n_neighbors)
 
 
-def _correction_settings(
+def correction_settings(
     settings: ReconstructSettings, is_known_sensor: bool
 ) -> CorrectionSettings:
     """Return the settings of the correction; errors of an unknown sensor are not subtracted."""

@@ -1,6 +1,6 @@
 """Filter signals over time: noise, spikes, gaps, smoothing and smooth corrections."""
 
-from .gaussian_smoothing import smooth_gaussian
+from .gaussian_smoothing import CausalSmoother, smooth_gaussian
 from .linear_gaps import fill_gaps, fill_rotation_gaps
 from .noise import (
     DIFFERENCE_GAIN,
@@ -16,6 +16,7 @@ from .smoothstep import smoothstep
 from .spikes import find_runs, fit_lowess
 
 __all__ = [
+    "CausalSmoother",
     "DIFFERENCE_GAIN",
     "DIFFERENCE_ORDER",
     "MAD_TO_SIGMA",

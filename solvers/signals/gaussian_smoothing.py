@@ -1,5 +1,7 @@
 """Smooth values over time with a Gaussian filter, zero-phase or causal."""
 
+from collections import deque
+
 import numpy as np
 
 from ..arrays import Array
@@ -33,3 +35,22 @@ def smooth_gaussian(values: Array, frames: float, *, ahead: bool = True) -> Arra
     weights = np.exp(-0.5 * (np.arange(width + 1) / frames) ** 2)
     options = {"mode": "nearest", "origin": -((width + 1) // 2)}
     return np.asarray(convolve1d(values, weights / weights.sum(), axis=0, **options))
+
+
+class CausalSmoother:
+    """`smooth_gaussian` without later frames, one frame after another.
+
+    Parameters
+    ----------
+    frames : float
+        Standard deviation of the Gaussian.
+    """
+
+    def __init__(self, frames: float) -> None:
+        self._frames = frames
+        self._past: deque[Array] = deque(maxlen=round(TRUNCATION_SIGMAS * frames) + 1)
+
+    def update(self, values: Array) -> Array:
+        """Return the mean of these values and those before, same shape; NaN stays NaN."""
+        self._past.append(values)
+        return np.asarray(smooth_gaussian(np.stack(self._past), self._frames, ahead=False)[-1])

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...signals import fill_gaps, smooth_gaussian
+from ...signals import CausalSmoother, fill_gaps, smooth_gaussian
 from .posture_joints import HIPS, MIRROR_JOINTS, POSTURE_JOINTS
 
 LATERAL_JOINTS = tuple(
@@ -85,20 +85,64 @@ def normalize_postures(
     hip_positions = np.nan_to_num(
         fill_gaps(positions[:, HIPS], reliability[:, HIPS] > 0.0, ahead=ahead)
     )
+    unit, determined = _lateral_directions(positions, reliability)
+    if not determined.any():
+        unit[:], determined = (1.0, 0.0), np.ones(len(unit), bool)
+    unit = fill_gaps(unit, determined, ahead=ahead)
+    if ahead:
+        unit = fill_gaps(unit, ~_is_reversed(unit, frame_rate))
+    unit = smooth_gaussian(np.nan_to_num(unit), HEADING_SMOOTHING_S * frame_rate, ahead=ahead)
+    return _without_heading(positions, hip_positions, unit)
+
+
+class PostureNormalizer:
+    """`normalize_postures` without later frames, one frame after another.
+
+    Until hips and a lateral line were observed, the actor is at the origin and faces -Y.
+
+    Parameters
+    ----------
+    frame_rate : float, hertz
+    """
+
+    def __init__(self, frame_rate: float) -> None:
+        self._hips, self._lateral = np.zeros((1, 3)), np.array([[1.0, 0.0]])
+        self._smoother = CausalSmoother(HEADING_SMOOTHING_S * frame_rate)
+
+    def update(self, positions: Array, reliability: Array) -> NormalizedPostures:
+        """Return the normalized posture of the next frame.
+
+        Parameters
+        ----------
+        positions : shape (1, 20, 3), meters
+        reliability : shape (1, 20), 0 to 1
+        """
+        if np.isfinite(positions[0, HIPS]).all() and reliability[0, HIPS] > 0.0:
+            self._hips = positions[:, HIPS]
+        lateral, determined = _lateral_directions(positions, reliability)
+        if determined.all():
+            self._lateral = lateral
+        return _without_heading(positions, self._hips, self._smoother.update(self._lateral))
+
+
+def _lateral_directions(
+    positions: Array, reliability: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Return horizontal directions to the left, (n_frames, 2), and where they are known."""
     lateral = _lateral_lines(positions, reliability, LATERAL_JOINTS)
     missing = ~lateral.any(axis=1)
     lateral[missing] = _lateral_lines(
         positions[missing], reliability[missing], HALF_LATERAL_JOINTS
     )
-    determined = np.linalg.norm(lateral, axis=-1) > MIN_LATERAL_M * 1e-3
-    if not determined.any():
-        lateral[:], determined = (1.0, 0.0), np.ones(len(lateral), bool)
-    unit = lateral / np.maximum(np.linalg.norm(lateral, axis=-1, keepdims=True), 1e-9)
-    unit = fill_gaps(unit, determined, ahead=ahead)
-    if ahead:
-        unit = fill_gaps(unit, ~_is_reversed(unit, frame_rate))
-    unit = smooth_gaussian(np.nan_to_num(unit), HEADING_SMOOTHING_S * frame_rate, ahead=ahead)
-    headings = np.arctan2(unit[:, 1], unit[:, 0])
+    lengths = np.linalg.norm(lateral, axis=-1, keepdims=True)
+    return lateral / np.maximum(lengths, 1e-9), lengths[:, 0] > MIN_LATERAL_M * 1e-3
+
+
+def _without_heading(
+    positions: Array, hip_positions: Array, lateral: Array
+) -> NormalizedPostures:
+    """Remove the heading, given by directions to the left, and the position of the hips."""
+    headings = np.arctan2(lateral[:, 1], lateral[:, 0])
     return NormalizedPostures(
         rotate_about_vertical(positions - hip_positions[:, None], -headings),
         hip_positions,

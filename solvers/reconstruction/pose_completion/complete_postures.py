@@ -70,6 +70,8 @@ class CompletedPostures(NamedTuple):
     """Expected error of each joint on each axis, (n_frames, 20), meters."""
     twists: LimbTwists | None
     """None if the library has no twists."""
+    library: "FittedLibrary | None" = None
+    """The library that the poses are from, if it was fitted to the actor once."""
     method: str = "most probable postures"
 
 
@@ -164,7 +166,9 @@ def complete_from_fitted(
     confidence = confidence_from_deviation(np.hypot(settings.noise, spread))
     postures = corrected.values + errors.offset
     postures = constrain_lengths(postures, lengths, reliability, confidence)
-    return CompletedPostures(postures + offset, confidence, corrected.spread, twists)
+    return CompletedPostures(
+        postures + offset, confidence, corrected.spread, twists, library
+    )
 
 
 def _fit_library_to_actor(

@@ -17,14 +17,16 @@ from ...motion.humanoid import (
 from ...motion.skeletons import INFERRED
 from ...progress import Progress, unwatched, within
 from ..joint_rotations import (
+    JointOffsets,
     LimbTwists,
     Reconstruction,
     find_anchors,
+    measure_joint_offsets,
     positions_from_postures,
 )
 from ..pose_library import PostureLibrary, load_posture_library
 from ..reliability import Reliability, measure_reliability, posture_reliability
-from .complete_postures import Completer, ObservedTake, complete_postures
+from .complete_postures import Completer, FittedLibrary, ObservedTake, complete_postures
 from .settings import DEFAULT_SETTINGS, PostureSettings
 
 MIN_JOINTS = 3
@@ -41,6 +43,10 @@ class CompletedJoints(NamedTuple):
     """Expected error on each axis, shape (n_frames, n_joints), meters."""
     method: str
     twists: LimbTwists | None
+    lengths: Array
+    """The actor's bone lengths, shape (20,), meters."""
+    library: FittedLibrary | None
+    joint_offsets: JointOffsets
 
 
 def reconstruct_postures(
@@ -132,14 +138,15 @@ def complete_joints(
     completed = complete(take, library, settings, progress)
     tracks = recording.tracks
     world_positions = body.to_world(completed.postures)
-    joints = positions_from_postures(
-        tracks.names, tracks.positions, combined, positions, world_positions
-    )
+    observations = (tracks.names, tracks.positions, combined, positions, world_positions)
+    joint_offsets = measure_joint_offsets(*observations)
+    joints = positions_from_postures(*observations, joint_offsets)
     anchors = find_anchors(tracks.names)
     description = _describe_method(completed.method, settings, library)
     return CompletedJoints(
         tracks.with_positions(joints), completed.confidence[:, anchors],
         completed.deviation[:, anchors], description, completed.twists,
+        lengths, completed.library, joint_offsets,
     )  # fmt: skip
 
 

@@ -81,5 +81,5 @@ def search_as_published(
         confidence_from_deviation(deviation),
         deviation,
         twists and replace(twists, ignore_flexion=True),
-        "postures by stochastic search",
+        method="postures by stochastic search",
     )

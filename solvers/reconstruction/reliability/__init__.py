@@ -1,14 +1,22 @@
 """Reliability of each tracked joint, frame by frame."""
 
 from .left_right_swaps import fix_left_right_swaps
-from .scores import Reliability, measure_reliability, posture_reliability
+from .scores import (
+    Reliability,
+    expected_lengths,
+    measure_reliability,
+    memory_frames,
+    posture_reliability,
+)
 from .settings import ReliabilityMethod, ReliabilitySettings
 
 __all__ = [
     "Reliability",
     "ReliabilityMethod",
     "ReliabilitySettings",
+    "expected_lengths",
     "fix_left_right_swaps",
     "measure_reliability",
+    "memory_frames",
     "posture_reliability",
 ]

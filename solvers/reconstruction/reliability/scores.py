@@ -9,10 +9,27 @@ from ...arrays import Array
 from ...motion import JointRecording
 from ...motion.humanoid import N_JOINTS, POSTURE_JOINTS, posture_joint_indices
 from ...progress import Progress, unwatched
-from .error_model import CAUSAL_MODEL, CENTERED_MODEL, measure_error_indicators
+from .error_model import (
+    CAUSAL_MODEL,
+    CENTERED_MODEL,
+    DEVIATION_WINDOW_S,
+    measure_error_indicators,
+)
 from .reference import find_reference_postures, parent_distances, reference_lengths
-from .settings import DEFAULT_SETTINGS, ReliabilityMethod, ReliabilitySettings
-from .terms import behavior_term, gaussian_mean, is_tracked, kinematics_term, tracking_term
+from .settings import (
+    DEFAULT_SETTINGS,
+    SENSOR_RATE_HZ,
+    ReliabilityMethod,
+    ReliabilitySettings,
+)
+from .terms import (
+    behavior_term,
+    frame_count,
+    gaussian_mean,
+    is_tracked,
+    kinematics_term,
+    tracking_term,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +120,13 @@ def expected_lengths(recording: JointRecording, settings: ReliabilitySettings) -
     lengths = parent_distances(positions, np.array(recording.parents))
     behavior = behavior_term(positions, recording.frame_rate, settings)
     return _reference_of(recording, lengths, behavior)
+
+
+def memory_frames(frame_rate: float, settings: ReliabilitySettings) -> int:
+    """Return the number of frames that the causal reliability of a frame depends on."""
+    step = frame_count(1.0 / SENSOR_RATE_HZ, frame_rate)
+    windows = (settings.vibration_window, 2.0 * DEVIATION_WINDOW_S, settings.window)
+    return 2 * step + max(frame_count(window, frame_rate) for window in windows) + 1
 
 
 def _reference_of(recording: JointRecording, lengths: Array, behavior: Array) -> Array:
