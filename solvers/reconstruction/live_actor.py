@@ -29,6 +29,7 @@ from .reliability import (
 from .residual_correction import (
     ResidualPrior,
     TakeOffsets,
+    mean_log_variance,
     predict_postures,
     smooth_postures,
 )
@@ -55,6 +56,8 @@ class LiveActor:
     sensor_offsets : TakeOffsets
     size : float, meters
         Sum of the bone lengths of the joints that the prior sees.
+    variance_level : float
+        Mean logarithm of the variances that the prior predicts.
     observed_offsets, corrected_offsets : JointOffsets
         Joints that are not posture joints, before and after the sensor's errors were subtracted.
     """
@@ -69,6 +72,7 @@ class LiveActor:
     prior: ResidualPrior
     sensor_offsets: TakeOffsets
     size: float
+    variance_level: float
     observed_offsets: JointOffsets
     corrected_offsets: JointOffsets
 
@@ -136,6 +140,7 @@ def measure_actor(
         prior,
         corrected.offsets,
         float(estimate_bone_lengths(smooth.positions).sum()),
+        mean_log_variance(corrected.variances),
         rebuilt.joint_offsets,
         measure_joint_offsets(
             recording.names,

@@ -200,7 +200,12 @@ class LiveReconstructor:
         )
         terms = Reliability(*[completed.reliability] * 4)
         result = assemble_correction(
-            recording, actor.prior, terms, corrected, joint_offsets=actor.corrected_offsets
+            recording,
+            actor.prior,
+            terms,
+            corrected,
+            joint_offsets=actor.corrected_offsets,
+            level=actor.variance_level,
         )
         return result.tracks.positions, result.confidence
 

@@ -1,5 +1,6 @@
 """Gaussian processes that predict a sensor's errors, and the correction of its poses."""
 
+from .confidence import mean_log_variance
 from .correct_postures import (
     CorrectedPostures,
     CorrectionMethod,
@@ -34,6 +35,7 @@ __all__ = [
     "correct_postures",
     "learn_residual_prior",
     "load_residual_prior",
+    "mean_log_variance",
     "mean_offset",
     "predict_postures",
     "shift_in_world",

@@ -38,7 +38,10 @@ IDENTITY_CALIBRATION = Calibration()
 
 
 def probability_within(
-    variances: Array, distance: float, calibration: Calibration = IDENTITY_CALIBRATION
+    variances: Array,
+    distance: float,
+    calibration: Calibration = IDENTITY_CALIBRATION,
+    level: float | None = None,
 ) -> Array:
     """Return the probability of a point within a distance of its mean (Maxwell distribution).
 
@@ -51,11 +54,13 @@ def probability_within(
         Of one take.
     distance : float, meters
     calibration : Calibration
+    level : float, optional
+        `mean_log_variance` of the take; by default that of these variances.
     """
     shift, slope, spread = calibration
     known = np.isfinite(variances)
     log_variances = np.log(np.maximum(np.where(known, variances, 1.0), MIN_VARIANCE_M2))
-    level = float(log_variances[known].mean()) if known.any() else 0.0
+    level = mean_log_variance(variances) if level is None else level
     scaled_distance = (
         0.5 * distance**2 * np.exp(-level - shift - slope * (log_variances - level))
     )
@@ -65,3 +70,9 @@ def probability_within(
         for node, fraction in nodes
     )
     return np.where(known, chance, 0.0)
+
+
+def mean_log_variance(variances: Array) -> float:
+    """Return the mean logarithm of the finite variances; 0 if there is none."""
+    known = variances[np.isfinite(variances)]
+    return float(np.log(np.maximum(known, MIN_VARIANCE_M2)).mean()) if known.size else 0.0

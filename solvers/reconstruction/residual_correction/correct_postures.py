@@ -147,15 +147,20 @@ def assemble_correction(
     corrected: CorrectedPostures,
     twists: LimbTwists | None = None,
     joint_offsets: JointOffsets | None = None,
+    level: float | None = None,
 ) -> Reconstruction:
     """Return all joints of a recording, and their confidence.
 
-    `joint_offsets` are those of other frames of this actor; by default they are measured here.
+    `joint_offsets`, and `level`, the mean log variance, are those of other frames of this actor;
+    by default they are measured here.
     """
     weights = posture_reliability(recording, reliability.combined)
     coverage = corrected.prediction.coverage if corrected.uses_prior else 0.0
     probability = prior.confidence(
-        corrected.variances, CONFIDENCE_DISTANCE_M, constant=corrected.shift is not None
+        corrected.variances,
+        CONFIDENCE_DISTANCE_M,
+        constant=corrected.shift is not None,
+        level=level,
     )
     confidence = coverage * probability + (1.0 - coverage) * weights
     tracks = recording.tracks

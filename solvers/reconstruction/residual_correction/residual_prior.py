@@ -237,14 +237,21 @@ class ResidualPrior:
             )
         return result
 
-    def confidence(self, variances: Array, distance: float, constant: bool = True) -> Array:
+    def confidence(
+        self,
+        variances: Array,
+        distance: float,
+        constant: bool = True,
+        level: float | None = None,
+    ) -> Array:
         """Return the probability that joints of a new actor are within a distance of their
         mean.
 
-        `constant` states whether the variances include the constant offset.
+        `constant` states whether the variances include the constant offset; `level` is their
+        mean logarithm over the take, if these are only a part of it.
         """
         calibration = Calibration(*map(float, self.calibration[0 if constant else 1]))
-        return probability_within(variances, distance, calibration)
+        return probability_within(variances, distance, calibration, level)
 
 
 def posture_components(features: Array, mean_pose: Array, components: Array) -> Array:
