@@ -16,6 +16,7 @@ from .fix.queue import QUEUE
 from .fix.queue_properties import PROPERTIES as QUEUE_PROPERTIES
 from .fix.queue_properties import MOCAP_PG_fix_queue
 from .library.button_settings import FindBundle, LibraryBundle, LoadBundle, UseBundle
+from .live.live_take import LiveBundle
 from .markers.solving import SolveBundle
 from .physics.simulating import SimulateBundle
 from .reconstruct.button_settings import ReconstructBundle
@@ -56,6 +57,11 @@ class MOCAP_PG_retarget(bpy.types.PropertyGroup):
 @settings_from(SolveBundle)
 class MOCAP_PG_solve(bpy.types.PropertyGroup):
     """Settings of the button Make Skeleton."""
+
+
+@settings_from(LiveBundle)
+class MOCAP_PG_live(bpy.types.PropertyGroup):
+    """Settings of the button Record Live."""
 
 
 @settings_from(SimulateBundle)
@@ -161,6 +167,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     fix: bpy.props.PointerProperty(type=MOCAP_PG_fix)
     export: bpy.props.PointerProperty(type=MOCAP_PG_export)
     solve: bpy.props.PointerProperty(type=MOCAP_PG_solve)
+    live: bpy.props.PointerProperty(type=MOCAP_PG_live)
     reconstruct: bpy.props.PointerProperty(type=MOCAP_PG_reconstruct)
     simulate: bpy.props.PointerProperty(type=MOCAP_PG_simulate)
     track: bpy.props.PointerProperty(type=MOCAP_PG_track)
@@ -198,6 +205,7 @@ CLASSES = (
     MOCAP_PG_check,
     MOCAP_PG_export,
     MOCAP_PG_solve,
+    MOCAP_PG_live,
     MOCAP_PG_retarget,
     MOCAP_PG_simulate,
     MOCAP_PG_track,

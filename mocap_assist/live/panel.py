@@ -5,16 +5,18 @@ from typing import ClassVar
 import bpy
 
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_sentence, exists
+from ..panels.drawing import draw_sentence, exists, settings_column
 from ..panels.preference_values import preferences
 from ..panels.visibility import shows_take
+from ..runtime.selection import selected_armature
 from .listening import current
 
 LISTEN = "mocap_assist.listen"
+RECORD = "mocap_assist.record_live"
 
 
 class PerformPanel(PanelMixin):
-    """The button Listen, the port, and what is heard."""
+    """The buttons Listen and Record Live, the port, and what is heard."""
 
     bl_label = "Perform"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}
@@ -31,6 +33,12 @@ class PerformPanel(PanelMixin):
             layout.operator(LISTEN, icon="OUTLINER_OB_ARMATURE")
             if preferences() is not None:
                 layout.prop(preferences(), "live_port")
+            if exists(RECORD) and selected_armature(context) is not None:
+                column = settings_column(layout, context, "live")
+                live = context.scene.mocap_assist.live
+                for name in ("duration", "live_limbs", "calibration_s", "smoothing"):
+                    column.prop(live, name)
+                layout.operator(RECORD, icon="REC")
             return
         layout.operator(LISTEN, text="Stop Listening", icon="CANCEL")
         draw_sentence(layout, context, listening.state())

@@ -22,6 +22,8 @@ True
 """
 
 from .joint_rotations import Reconstruction
+from .live_actor import LiveActor, measure_actor
+from .live_reconstructor import LivePose, LiveReconstructor, ObservedFrame
 from .pose_completion import PostureSettings, reconstruct_postures
 from .pose_library import (
     PostureLibrary,
@@ -50,6 +52,10 @@ from .residual_correction import (
 __all__ = [
     "CorrectionMethod",
     "CorrectionSettings",
+    "LiveActor",
+    "LivePose",
+    "LiveReconstructor",
+    "ObservedFrame",
     "PostureLibrary",
     "PostureLibrarySettings",
     "PostureSettings",
@@ -67,6 +73,7 @@ __all__ = [
     "learn_residual_prior",
     "load_posture_library",
     "load_residual_prior",
+    "measure_actor",
     "measure_reliability",
     "reconstruct",
     "reconstruct_postures",

@@ -287,7 +287,9 @@ def replacement_weights(visible: Flags, reliability: Array, distance: Array) -> 
         0.0,
         1.0,
     )
-    return np.where(visible, replacement * (1.0 - certainty + certainty * closeness), replacement)
+    return np.where(
+        visible, replacement * (1.0 - certainty + certainty * closeness), replacement
+    )
 
 
 def _blend_tracks(tracks: Tracks, rebuilt: Tracks, replacement: Array) -> Tracks:

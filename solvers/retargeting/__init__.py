@@ -14,13 +14,14 @@
 from .error_points import find_error_points
 from .key_curves import KeyCurve, fit_curve
 from .reduce_keys import SparseMotion, UnbakeSettings, load_sparse_motion, reduce_keys
-from .retarget import RetargetSettings, RootMotion, retarget
+from .retarget import LiveRetargeting, RetargetSettings, RootMotion, retarget
 from .root_motion import GroundPath, ground_path
 from .rotation_channels import RotationChannels
 
 __all__ = [
     "GroundPath",
     "KeyCurve",
+    "LiveRetargeting",
     "RetargetSettings",
     "RootMotion",
     "RotationChannels",

@@ -1,6 +1,6 @@
 """Retarget a motion to another skeleton."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -177,6 +177,52 @@ def retarget(
     result = _apply_root_motion(result, target_map, settings)
     progress(1.0, "Retargeted")
     return result
+
+
+class LiveRetargeting:
+    """Gives poses to another skeleton, one after the other, as `retarget` gives motions.
+
+    The bodies are compared once. Feet and hands are not fitted to paths of the source, which
+    later frames would be needed for.
+
+    Parameters
+    ----------
+    motion : Motion
+        Without gaps; the first seconds of the source.
+    source_map, target_skeleton, target_map, settings : as in `retarget`
+
+    Raises
+    ------
+    InvalidMotionError
+        As in `retarget`.
+    """
+
+    def __init__(
+        self,
+        motion: Motion,
+        source_map: HumanoidMap,
+        target_skeleton: Skeleton,
+        target_map: HumanoidMap,
+        settings: RetargetSettings = RetargetSettings(),
+    ) -> None:
+        source = find_body(motion.skeleton, source_map, "source's")
+        target = find_body(target_skeleton, target_map, "target's")
+        contacts = _find_contacts(motion, source_map)
+        self._target_skeleton = target_skeleton
+        self._transfer = _compare_bodies(
+            source, target, forward_kinematics(motion), contacts, motion, settings
+        )
+
+    def update(self, pose: Motion) -> Motion:
+        """Return poses of the target; those of the source have its skeleton and no gaps."""
+        transfer = replace(self._transfer, source_poses=forward_kinematics(pose), contacts=None)
+        target = transfer.target
+        complete = np.zeros(pose.rotations.shape[:2], np.bool_)
+        rotations, _ = transfer_pose(transfer.source, transfer.source_poses, complete, target)
+        all_rotations = np.tile(IDENTITY, (pose.n_frames, self._target_skeleton.n_joints, 1))
+        all_rotations[:, list(target.joint_indices)] = rotations
+        root_positions = _root_positions(transfer, rotations)
+        return Motion(self._target_skeleton, all_rotations, root_positions, pose.frame_rate)
 
 
 def _find_contacts(motion: Motion, humanoid: HumanoidMap) -> Flags | None:

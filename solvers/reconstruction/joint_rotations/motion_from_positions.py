@@ -31,6 +31,7 @@ def motion_from_positions(
     *,
     skeleton: Skeleton | None = None,
     twists: LimbTwists | None = None,
+    refine: bool = True,
     progress: Progress = unwatched,
 ) -> Motion:
     """Fit the motion of a skeleton of constant bone lengths to joint positions.
@@ -59,6 +60,8 @@ def motion_from_positions(
     twists : LimbTwists, optional
         Axial rotations from similar library poses, weighted against the flexion planes; the
         only source if `ignore_flexion` is set.
+    refine : bool
+        Whether all joints change a little at the end; takes most of the time.
     progress : Progress
 
     Returns
@@ -92,6 +95,8 @@ def motion_from_positions(
     rotations = local_rotations(fitted, body.world)
     rotations[:, [not children for children in fitted.children]] = IDENTITY
     motion = Motion(fitted, rotations, body.observed[:, 0], tracks.frame_rate)
+    if not refine:
+        return motion
     return fit_to_positions(motion, body.observed, _position_weights(body), progress)
 
 

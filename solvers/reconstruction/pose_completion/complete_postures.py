@@ -166,9 +166,7 @@ def complete_from_fitted(
     confidence = confidence_from_deviation(np.hypot(settings.noise, spread))
     postures = corrected.values + errors.offset
     postures = constrain_lengths(postures, lengths, reliability, confidence)
-    return CompletedPostures(
-        postures + offset, confidence, corrected.spread, twists, library
-    )
+    return CompletedPostures(postures + offset, confidence, corrected.spread, twists, library)
 
 
 def _fit_library_to_actor(

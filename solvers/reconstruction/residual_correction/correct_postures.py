@@ -196,7 +196,9 @@ def predict_postures(
     offsets = TakeOffsets(mean_offset(prediction, weights), fraction)
     frames = settings.smoothing * recording.frame_rate
     smoother = (
-        TrajectoryFilter(frames).update if causal else partial(smooth_trajectories, frames=frames)
+        TrajectoryFilter(frames).update
+        if causal
+        else partial(smooth_trajectories, frames=frames)
     )
     return subtract_offsets(smooth, prediction, offsets, weights, prior, settings, smoother)
 

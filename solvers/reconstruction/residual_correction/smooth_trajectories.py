@@ -85,9 +85,7 @@ class _TrajectoryState(NamedTuple):
 
     def advance(self, observed: Array, weight: Array, noise: float) -> "_TrajectoryState":
         position = self.position + self.speed
-        position_variance = (
-            self.position_variance + 2.0 * self.covariance + self.speed_variance
-        )
+        position_variance = self.position_variance + 2.0 * self.covariance + self.speed_variance
         covariance = self.covariance + self.speed_variance
         speed_variance = self.speed_variance + noise
         gain = 1.0 / (position_variance + 1.0 / weight)
