@@ -31,6 +31,7 @@ from .mark_variants import MOCAP_OT_mark_variants
 from .measure_quality import MOCAP_OT_measure_quality
 from .plant_feet import MOCAP_OT_plant_feet
 from .reconstruct import MOCAP_OT_reconstruct
+from .record_live import MOCAP_OT_record_live
 from .reduce_keys import MOCAP_OT_reduce_keys
 from .retarget import MOCAP_OT_retarget
 from .retrack import MOCAP_OT_retrack
@@ -66,6 +67,7 @@ OPERATORS = (
     MOCAP_OT_learn_patterns,
     MOCAP_OT_simulate,
     MOCAP_OT_listen,
+    MOCAP_OT_record_live,
     MOCAP_OT_solve_skeleton,
     MOCAP_OT_retarget,
     MOCAP_OT_reduce_keys,

@@ -21,7 +21,7 @@ from ..actions.reliability_curves import write_reliability
 from ..blender import compat
 from ..blender.stored_json import store_json
 from ..jobs.protocol import PreviewSolve
-from ..panels.preference_values import preferred, preferences
+from ..panels.preference_values import preferences, preferred
 from ..rigs.control_plan import Limbs
 from ..rigs.target_read import find_roles, read_target
 from ..runtime.selection import selected_armature

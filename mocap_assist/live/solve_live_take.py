@@ -66,7 +66,8 @@ def record_live(
     InvalidMotionError
         No data came, or no body was found in it.
     """
-    take, stream, shown = LiveTake(problem.settings), StreamReader(), []
+    take, stream = LiveTake(problem.settings), StreamReader()
+    shown: list[LiveFrameKeys] = []
     rig: _LiveRig | None = None
     last_data = monotonic()
     with Receiver(problem.port) as receiver:

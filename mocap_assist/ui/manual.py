@@ -64,6 +64,8 @@ CHAPTERS = {
     "bpy.types.mocap_pg_variant*": "vary",
     "bpy.types.mocap_pg_crowd*": "vary",
     "bpy.ops.mocap_assist.listen*": "perform",
+    "bpy.ops.mocap_assist.record_live*": "perform",
+    "bpy.types.mocap_pg_live*": "perform",
     "bpy.ops.mocap_assist.reset_preferences*": "preferences",
     "bpy.ops.mocap_assist.stop_keeping*": "preferences",
     "bpy.ops.mocap_assist.copy_diagnostics*": "preferences",

@@ -30,6 +30,7 @@ BUTTONS = (
     "mocap_assist.vary",
     "mocap_assist.listen",
     "mocap_assist.copy_diagnostics",
+    "mocap_assist.record_live",
 )
 MENUS = (
     "VIEW3D_MT_object",

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Sensor
@@ -59,7 +57,7 @@ class LiveActor:
     variance_level : float
         Mean logarithm of the variances that the prior predicts.
     observed_offsets, corrected_offsets : JointOffsets
-        Joints that are not posture joints, before and after the sensor's errors were subtracted.
+        Joints that are not posture joints, before and after the correction.
     """
 
     names: tuple[str, ...]

@@ -1,8 +1,8 @@
 """Reconstruct clean poses while an actor moves, one frame after another."""
 
 from collections import deque
-from dataclasses import replace
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,8 @@ from .residual_correction import (
     assemble_correction,
     subtract_offsets,
 )
+
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 class ObservedFrame(NamedTuple):
@@ -145,7 +147,7 @@ class LiveReconstructor:
         return JointRecording(tracks, states, actor.sensor)
 
     def _complete(self, frame: JointRecording, reliability: Array) -> CompletedJoints:
-        """Complete unreliable and missing joints from the library, as `complete_joints` does."""
+        """Complete unreliable and missing joints as `complete_joints` does."""
         actor, positions = self._actor, posture_positions(frame)
         weights = np.where(
             np.isfinite(positions).all(axis=-1), posture_reliability(frame, reliability), 0.0
@@ -179,7 +181,8 @@ class LiveReconstructor:
         visible = frame.tracks.visible[0][:, None]
         self._last_observed = np.where(visible, frame.tracks.positions[0], self._last_observed)
         smooth = self._path.update(self._last_observed)
-        return np.nan_to_num(np.linalg.norm(rebuilt - smooth, axis=-1))
+        distance: Array = np.linalg.norm(rebuilt - smooth, axis=-1)
+        return np.nan_to_num(distance)
 
     def _correct(self, completed: CompletedTake) -> tuple[Array, Array]:
         """Subtract the sensor's errors and smooth, as `correct_postures` does."""
@@ -210,6 +213,7 @@ class LiveReconstructor:
         return result.tracks.positions, result.confidence
 
 
-def _stack(values: list) -> NDArray | None:
+def _stack(values: Sequence[NDArray[Scalar] | None]) -> NDArray[Scalar] | None:
     """Return the values of several frames, or None if a frame has none."""
-    return None if any(value is None for value in values) else np.stack(values)
+    known = [value for value in values if value is not None]
+    return np.stack(known) if len(known) == len(values) else None

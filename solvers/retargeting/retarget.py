@@ -208,17 +208,16 @@ class LiveRetargeting:
         source = find_body(motion.skeleton, source_map, "source's")
         target = find_body(target_skeleton, target_map, "target's")
         contacts = _find_contacts(motion, source_map)
+        poses = forward_kinematics(without_gaps(motion, source)[0])
         self._target_skeleton = target_skeleton
-        self._transfer = _compare_bodies(
-            source, target, forward_kinematics(motion), contacts, motion, settings
-        )
+        self._transfer = _compare_bodies(source, target, poses, contacts, motion, settings)
 
     def update(self, pose: Motion) -> Motion:
         """Return poses of the target; those of the source have its skeleton and no gaps."""
-        transfer = replace(self._transfer, source_poses=forward_kinematics(pose), contacts=None)
-        target = transfer.target
-        complete = np.zeros(pose.rotations.shape[:2], np.bool_)
-        rotations, _ = transfer_pose(transfer.source, transfer.source_poses, complete, target)
+        source, target = self._transfer.source, self._transfer.target
+        filled, gaps = without_gaps(pose, source)
+        transfer = replace(self._transfer, source_poses=forward_kinematics(filled))
+        rotations, _ = transfer_pose(source, transfer.source_poses, gaps, target)
         all_rotations = np.tile(IDENTITY, (pose.n_frames, self._target_skeleton.n_joints, 1))
         all_rotations[:, list(target.joint_indices)] = rotations
         root_positions = _root_positions(transfer, rotations)

@@ -16,10 +16,10 @@ from .smoothstep import smoothstep
 from .spikes import find_runs, fit_lowess
 
 __all__ = [
-    "CausalSmoother",
     "DIFFERENCE_GAIN",
     "DIFFERENCE_ORDER",
     "MAD_TO_SIGMA",
+    "CausalSmoother",
     "estimate_noise",
     "fill_channel_gaps",
     "fill_gaps",

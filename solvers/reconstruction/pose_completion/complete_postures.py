@@ -107,7 +107,7 @@ class FittedLibrary(NamedTuple):
     """A library fitted to one actor, and how far its poses are from the actor's."""
 
     body: BodyPostures
-    index: PostureIndex
+    postures: PostureIndex
     errors: SynthesisErrors
 
 

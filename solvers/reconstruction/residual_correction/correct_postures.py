@@ -151,8 +151,8 @@ def assemble_correction(
 ) -> Reconstruction:
     """Return all joints of a recording, and their confidence.
 
-    `joint_offsets`, and `level`, the mean log variance, are those of other frames of this actor;
-    by default they are measured here.
+    `joint_offsets`, and `level`, the mean log variance, are those of other frames of this
+    actor; by default they are measured here.
     """
     weights = posture_reliability(recording, reliability.combined)
     coverage = corrected.prediction.coverage if corrected.uses_prior else 0.0

@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from solvers.motion.humanoid.posture_heading import normalize_postures
 from solvers.motion.humanoid.posture_joints import N_JOINTS
-from solvers.signals.gaussian_smoothing import smooth_gaussian
+from solvers.signals.gaussian_smoothing import CausalSmoother, smooth_gaussian
 from solvers.signals.linear_gaps import fill_gaps
 
 
@@ -75,3 +75,10 @@ def test_causal_headings_ignore_later_frames(random):
     np.testing.assert_array_equal(one.postures[:40], other.postures[:40])
     one, other = (normalize_postures(take, 30.0) for take in takes)
     assert (one.headings[:40] != other.headings[:40]).any()
+
+
+def test_frame_by_frame_is_the_same(random):
+    values = random.normal(size=(50, 3))
+    smoother = CausalSmoother(3.0)
+    found = [smoother.update(each) for each in values]
+    np.testing.assert_allclose(found, smooth_gaussian(values, 3.0, ahead=False), atol=1e-12)

@@ -1,0 +1,77 @@
+"""A stream of joints becomes poses of a skeleton, in the order and at the times of its frames."""
+
+from dataclasses import replace
+
+import kinect_walks
+import numpy as np
+import pytest
+
+from solvers import motion, samples
+from solvers.motion import forward_kinematics
+from solvers.motion.humanoid import posture_joints
+from solvers.recordings.live import frames_from_recording
+from solvers.workflows import LiveTake, LiveTakeSettings
+
+SHORT = LiveTakeSettings(calibration_s=1.0)
+
+
+@pytest.fixture(scope="module")
+def frames():
+    true = kinect_walks.true_positions(samples, posture_joints)
+    return list(frames_from_recording(kinect_walks.tracked_walk(motion, true)))
+
+
+@pytest.fixture
+def started(frames):
+    take = LiveTake(SHORT)
+    for frame in frames[:31]:
+        assert take.add([frame]) == []
+    assert take.calibration is not None
+    return take
+
+
+def test_first_seconds_measure_the_actor(frames):
+    take = LiveTake(SHORT)
+    take.add(frames[:16])
+    assert take.calibration is None
+    assert take.calibrated_fraction == pytest.approx(0.5, abs=0.01)
+    take.add(frames[16:31])
+    assert take.calibrated_fraction == 1.0
+    assert take.calibration.frame_rate == pytest.approx(30.0, abs=0.1)
+
+
+def test_poses_have_the_reconstructed_joints(started, frames):
+    poses = [pose for frame in frames[31:41] for pose in started.add([frame])]
+    assert [each.frame for each in poses] == list(range(1, 11))
+    names = list(started.names)
+    hips, knee = names.index("HipCenter"), names.index("KneeLeft")
+    for pose in poses:
+        joints = dict(zip(
+            pose.motion.skeleton.names, forward_kinematics(pose.motion).positions[0],
+            strict=True,
+        ))  # fmt: skip
+        assert np.allclose(joints["HipCenter"], pose.joints.positions[hips], atol=1e-9)
+        assert np.linalg.norm(joints["KneeLeft"] - pose.joints.positions[knee]) < 0.05
+
+
+def test_frames_that_were_dropped_are_bridged(started, frames):
+    started.add([frames[31]])
+    poses = started.add([frames[36]])
+    assert [each.frame for each in poses] == [2, 3, 4, 5, 6]
+    assert all(np.isfinite(each.joints.positions).all() for each in poses)
+
+
+def test_a_sender_that_starts_again_goes_on(started, frames):
+    started.add([frames[31]])
+    poses = started.add([frames[0]]) + started.add([frames[1]])
+    assert [each.frame for each in poses] == [2, 3]
+
+
+def test_frames_that_wait_too_long_are_skipped(started, frames):
+    poses = started.add(frames[31:41])
+    assert started.n_skipped == 8
+    assert poses[-1].frame == 10
+
+
+def test_frames_of_other_joints_are_ignored(started, frames):
+    assert started.add([replace(frames[31], names=tuple(map(str, range(20))))]) == []
