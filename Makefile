@@ -127,7 +127,7 @@ body-relation: .venv-4.5/ready  ## learn how joints move together, for limbs tha
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
 	$(PYTHON_4.5) -m tests.training.learn_failures
 
-BENCHMARKS := denoise first-press contacts markers bvh press scene import import-corpus roles video \
+BENCHMARKS := denoise first-press contacts markers bvh press live scene import import-corpus roles video \
   reliability reconstruct postures retrieval retarget variation depth physics gestures retarget-rig farm
 .PHONY: benchmarks $(BENCHMARKS:%=bench-%)
 benchmarks: .venv-4.5/ready  ## run every benchmark, one after another (hours); prints how each ended
@@ -153,6 +153,9 @@ bench-markers: .venv-4.5/ready  ## measure labels, rigid clusters and skeletons 
 
 bench-bvh: .venv-4.5/ready  ## measure reading of BVH against Blender's importer
 	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_bvh_import $(ARGUMENTS)
+
+bench-live: .venv-4.5/ready  ## measure how long a live frame takes, from joints to a rig
+	$(PYTHON_4.5) -m tests.benchmarks.live.bench_live $(ARGUMENTS)
 
 bench-press: .venv-4.5/ready  ## measure presses with and without a solver that waits
 	$(PYTHON_4.5) -m tests.benchmarks.press.bench_press $(ARGUMENTS)

@@ -1,4 +1,4 @@
-"""A stream of joints becomes poses of a skeleton, in the order and at the times of its frames."""
+"""A stream of joints becomes poses of a skeleton, at the times of its frames."""
 
 from dataclasses import replace
 

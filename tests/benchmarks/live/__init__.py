@@ -1,0 +1,1 @@
+"""Readers, and Blender scenes read and written."""

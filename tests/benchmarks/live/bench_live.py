@@ -1,0 +1,109 @@
+"""How long a live frame takes, from joints to a rig, and how far it is from the offline result.
+
+    make bench-live
+    make bench-live ARGUMENTS=--docs    # into docs/benchmarks/live.md
+
+Takes of depth cameras are sent frame by frame to a `LiveTake` and then to a rig, without a
+socket. Takes whose path is missing are left out.
+"""
+
+import argparse
+from pathlib import Path
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+
+from solvers.motion import find_humanoid_map
+from solvers.reconstruction import ReconstructSettings, reconstruct
+from solvers.recordings import read_recording
+from solvers.recordings.live import frames_from_recording
+from solvers.retargeting import LiveRetargeting
+from solvers.samples import walker_skeleton
+from solvers.workflows import LiveTake
+
+from ..shared.report import DOCS, Report
+from ..shared.tables import table
+
+DATA = Path(__file__).parents[4] / "shared" / "data" / "kinect"
+TAKES = {
+    "KIMORE exercise, Kinect v2": DATA / "kimore" / "JointPositionExercise1.csv",
+    "IRDS, Kinect v2": DATA / "irds" / "216_18_0_2_2_stand.txt",
+    "Azure Kinect": DATA / "azure" / "joints_sync_1.csv",
+}
+N_FRAMES = 300
+
+
+class LiveFigures(NamedTuple):
+    """Figures of one take."""
+
+    reconstruct_ms: list[float]
+    retarget_ms: list[float]
+    calibration_s: float
+    offline_cm: float
+    """Mean distance from the causal reconstruction of the complete take."""
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks/live.md")
+    arguments = parser.parse_args()
+    started = perf_counter()
+    rows = {name: _row(measure(path)) for name, path in TAKES.items() if path.exists()}
+    header = [
+        "take", "joints and rotations, ms", "95th percentile", "rig, ms", "95th percentile",
+        "measuring the actor, s", "distance from offline, cm",
+    ]  # fmt: skip
+    report = Report(arguments.docs, DOCS / "benchmarks" / "live.md")
+    report.part("live", [table(header, rows) + "\n"], perf_counter() - started)
+
+
+def measure(path: Path) -> LiveFigures:
+    """Send a take frame by frame, and compare it with the offline result."""
+    recording = read_recording(path)
+    recording = recording.slice(0, min(N_FRAMES, recording.n_frames))
+    take, rig, poses, times, rig_times = LiveTake(), None, [], [], []
+    calibration_s = 0.0
+    for frame in frames_from_recording(recording):
+        began = perf_counter()
+        arrived = take.add([frame])
+        elapsed = perf_counter() - began
+        if take.calibration is not None and rig is None:
+            rig, calibration_s = _rig_for(take), elapsed
+            continue
+        if not arrived or rig is None:
+            continue
+        times.append(1e3 * elapsed)
+        poses += arrived
+        began = perf_counter()
+        rig.update(arrived[-1].motion)
+        rig_times.append(1e3 * (perf_counter() - began))
+    offline = reconstruct(recording, settings=ReconstructSettings(causal=True))
+    last = offline.tracks.positions[-len(poses) :]
+    distance = np.linalg.norm(
+        np.stack([each.joints.positions for each in poses]) - last, axis=-1
+    )
+    return LiveFigures(times, rig_times, calibration_s, 100.0 * float(np.nanmean(distance)))
+
+
+def _rig_for(take: LiveTake) -> LiveRetargeting:
+    calibration, rig = take.calibration, walker_skeleton()
+    assert calibration is not None
+    source = find_humanoid_map(calibration.skeleton)
+    return LiveRetargeting(calibration, source, rig, find_humanoid_map(rig))
+
+
+def _row(figures: LiveFigures) -> list[str]:
+    cells = [
+        float(percentile)
+        for times in (figures.reconstruct_ms, figures.retarget_ms)
+        for percentile in np.percentile(times, [50, 95])
+    ]
+    return [f"{each:.1f}" for each in cells] + [
+        f"{figures.calibration_s:.1f}", f"{figures.offline_cm:.2f}",
+    ]  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()
