@@ -27,9 +27,9 @@ from ..shared.tables import table
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "kinect"
 TAKES = {
-    "KIMORE exercise, Kinect v2": DATA / "kimore" / "JointPositionExercise1.csv",
-    "IRDS, Kinect v2": DATA / "irds" / "216_18_0_2_2_stand.txt",
-    "Azure Kinect": DATA / "azure" / "joints_sync_1.csv",
+    "KIMORE 1, Kinect v2": DATA / "kimore" / "JointPositionExercise1.csv",
+    "KIMORE 5, Kinect v2": DATA / "kimore" / "JointPositionExercise5.csv",
+    "IRDS, Kinect v2": DATA / "irds" / "216_18_6_1_1_stand.txt",
 }
 N_FRAMES = 300
 

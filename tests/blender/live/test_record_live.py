@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 RATE_HZ = 30.0
+pytestmark = pytest.mark.timeout(900)
 
 
 @pytest.fixture
