@@ -23,7 +23,7 @@ from .armature import ArmatureReading
 from .button_settings import CleanBundle, CleanChoices, Limits, Prior
 from .example_source import ExampleSource
 from .examples import read_prior
-from .keyed_strengths import read_strengths
+from .keyed_strengths import keyed_strengths, read_strengths
 from .markers import MarkerReading
 from .report import clean_report, entry_of
 from .solve_cleaning import Cleaned, Finish, Problem, Recordings, clean, names_of
@@ -52,6 +52,9 @@ def read_cleaning(
     limits, contacts = found.limits(choices, chosen), found.contacts()
     finish = Finish(
         strengths=read_strengths(found.scene, settings, found.raw.grid.frames),
+        keyed=keyed_strengths(
+            found.scene, settings, has_parts=isinstance(found.raw, ArmatureTake)
+        ),
         ease=ease_of(found.raw.grid),
         chosen=chosen,
         present=(yield from found.present(chosen)),

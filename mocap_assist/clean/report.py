@@ -23,6 +23,8 @@ def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0
     message = [f"{name}: cleaned {n_frames} frames: {', '.join(done)}.", body.prior_used]
     if n_modified:
         message.append(f"Applied the modifiers of {n_modified} curves.")
+    if cleaned.keyed:
+        message.append("Keys of Strength were used; switch off Use Keys to ignore them.")
     if not all(each.converged for each in cleaned.solution.denoised):
         message.append("Stopped before the result converged; try a shorter range.")
     message += [f"{remark}." for remark in (planted.remarks if planted else ())]
@@ -37,6 +39,7 @@ def entry_of(operation: str, settings: CleanBundle, cleaned: Cleaned) -> dict[st
     return {
         "operation": operation,
         "settings": history.plain(*settings),
+        "keyed_strengths": list(cleaned.keyed),
         "prior_used": body.prior_used,
         "iterations": body.iterations,
         "converged": body.converged,

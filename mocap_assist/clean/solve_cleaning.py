@@ -67,6 +67,8 @@ class Finish:
     """Fraction of the estimate at each frame, shape (n_frames,), 0 to 1: of all joints and
     points (`strength`), and the factor of each part of the body, by the names of the settings.
     Gaps are filled at any strength."""
+    keyed: tuple[str, ...]
+    """Names of those strengths that keys in the scene set."""
     ease: Array
     """Blend weights, shape (n_frames,): below 1 only next to frames outside the range."""
     chosen: frozenset[str]
@@ -107,6 +109,8 @@ class Cleaned:
     after: Quality
     low_confidence: str = ""
     """A sentence about roles that planted the feet, if any has low confidence."""
+    keyed: tuple[str, ...] = ()
+    """Names of the strengths that keys in the scene set."""
 
 
 def names_of(recording: Motion | Tracks) -> tuple[str, ...]:
@@ -178,7 +182,9 @@ def clean(
         for each, start in ((problem.recordings[0], 0.9), (body, 0.95))
     )
     marked = _low_confidence_of_legs(body, finish)
-    return Cleaned((body, *other_trees), moved, solution, planted, before, after, marked)
+    return Cleaned(
+        (body, *other_trees), moved, solution, planted, before, after, marked, finish.keyed
+    )
 
 
 def _low_confidence_of_legs(body: Motion | Tracks, finish: Finish) -> str:

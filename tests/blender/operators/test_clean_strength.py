@@ -55,17 +55,24 @@ def test_feet_are_planted_at_any_strength(blank, clean, keys_of):
 
 
 @pytest.mark.parametrize("name", ["strength", "strength_head"])
-def test_keys_set_the_strength_at_each_frame(noisy, clean, keys_of, key_strength, blank, name):
+def test_keys_set_the_strength_at_each_frame(
+    noisy, clean, keys_of, key_strength, blank, name, load, capfd
+):
     head = "OBActor", 'pose.bones["Head"].rotation_euler', 0
     raw = values(keys_of(noisy.animation_data.action))[head]
     full = values(keys_of(clean()))[head]
     blank.ops.mocap_assist.revert_to_raw()
     key_strength(name)
 
-    keyed = values(keys_of(clean()))[head]
+    result = clean()
+    keyed = values(keys_of(result))[head]
+    entry = load("mocap_assist.scene.history").history(result)[-1]
+    assert "Keys of Strength were used" in capfd.readouterr().out
     blank.ops.mocap_assist.revert_to_raw()
     without = values(keys_of(clean(keyed_strength=False)))[head]
 
+    assert entry["keyed_strengths"] == [name]
+    assert "Keys of Strength" not in capfd.readouterr().out
     assert keyed[:20] == raw[:20]
     assert_allclose(keyed[20:], full[20:], atol=1e-6)
     assert without == full and np.abs(np.subtract(raw, full)).max() > 0.01
