@@ -8,7 +8,7 @@ def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, former_settings, scene_properties, ui
     from .actions import contact_keys
-    from .check import raw_view
+    from .check import delta_influence, raw_view
     from .depth import depth_preview
     from .library import auto_update, background
     from .live import listening
@@ -28,6 +28,7 @@ def register() -> None:
     body_overlay.register()
     watch.register()
     raw_view.register()
+    delta_influence.register()
     listening.register()
     batch.register()
     ui.register()
@@ -37,7 +38,7 @@ def unregister() -> None:
     """Unregister all parts of the extension."""
     from . import batch, former_settings, scene_properties, ui
     from .actions import contact_keys
-    from .check import raw_view
+    from .check import delta_influence, raw_view
     from .depth import depth_preview
     from .library import auto_update, background
     from .live import listening
@@ -50,6 +51,7 @@ def unregister() -> None:
     solver_ready.unregister()
     batch.unregister()
     listening.unregister()
+    delta_influence.unregister()
     raw_view.unregister()
     watch.unregister()
     body_overlay.unregister()

@@ -134,17 +134,24 @@ def put_to_use(
 
 def remove_deltas(animation: bpy.types.AnimData, base: bpy.types.Action) -> None:
     """Remove the delta tracks of a recorded action, and the tracks below that play it."""
-    removed = []
+    for pair in delta_tracks(animation, base):
+        for track in pair:
+            animation.nla_tracks.remove(track)
+
+
+def delta_tracks(
+    animation: bpy.types.AnimData, base: bpy.types.Action
+) -> list[tuple[bpy.types.NlaTrack, ...]]:
+    """Return each delta track of a recorded action, after the track below that plays it."""
+    found: list[tuple[bpy.types.NlaTrack, ...]] = []
     below = None
     for track in animation.nla_tracks:
         actions = [strip.action for strip in track.strips if strip.action]
         if actions and all(history.base_of_delta(action) == base for action in actions):
-            removed.append(track)
-            if below is not None and {strip.action for strip in below.strips} == {base}:
-                removed.append(below)
+            plays_base = below is not None and {each.action for each in below.strips} == {base}
+            found.append((below, track) if plays_base else (track,))
         below = track
-    for track in removed:
-        animation.nla_tracks.remove(track)
+    return found
 
 
 def new_strip(animation: bpy.types.AnimData, source: Source) -> bpy.types.NlaStrip:
@@ -156,6 +163,15 @@ def new_strip(animation: bpy.types.AnimData, source: Source) -> bpy.types.NlaStr
     strip.action_slot = slot
     strip.frame_start, strip.frame_end = action.frame_range  # not always whole frames
     return strip
+
+
+def play_in(strip: bpy.types.NlaStrip, source: Source) -> None:
+    """Let a strip play an action at the action's own frames."""
+    action, slot = source
+    strip.action, strip.name = action, action.name
+    strip.action_slot = slot
+    strip.action_frame_start, strip.action_frame_end = action.frame_range
+    strip.frame_start, strip.frame_end = action.frame_range
 
 
 def check_writable(armature: bpy.types.Object) -> None:

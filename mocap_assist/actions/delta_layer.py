@@ -1,6 +1,6 @@
 """A result as an additive NLA track above the recorded action, with an influence to dial."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import bpy
 import numpy as np
@@ -10,7 +10,14 @@ from ...solvers.rotations import inverse, multiply, unroll
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
-from .armature_write import NUMBERED, check_writable, new_strip, remove_deltas
+from .armature_write import (
+    NUMBERED,
+    check_writable,
+    delta_tracks,
+    new_strip,
+    play_in,
+    remove_deltas,
+)
 from .bone_channels import Curves, animated_curves, curves_of, sampled
 from .curves import deselect, write_first
 from .rotation_modes import quaternions_from_channels
@@ -76,8 +83,8 @@ def _deltas(
 def lay_delta(armature: bpy.types.Object, base: Source, delta: Source) -> None:
     """Let an armature play the base action on an NLA track, and the delta on one above it.
 
-    Tracks of an earlier delta of the same base are removed; its influence stays. The influence
-    is a free value: it can be dialed, and keyed.
+    An earlier delta of the same base is replaced in its strip, which keeps its influence, with
+    keys. The influence is a free value: it can be dialed, and keyed.
 
     Raises
     ------
@@ -86,20 +93,26 @@ def lay_delta(armature: bpy.types.Object, base: Source, delta: Source) -> None:
     """
     check_writable(armature)
     animation = armature.animation_data
-    influence = _dialed_influence(armature)
-    remove_deltas(animation, base[0])
-    below = new_strip(animation, base)
-    below.blend_type = animation.action_blend_type
-    _free_influence(below, animation.action_influence)
+    earlier = delta_tracks(animation, base[0])
+    if [len(track.strips) for pair in earlier for track in pair] == [1, 1]:
+        _play_again(earlier[0], delta)
+    else:
+        remove_deltas(animation, base[0])
+        below = new_strip(animation, base)
+        below.blend_type = animation.action_blend_type
+        _free_influence(below, animation.action_influence)
+        strip = new_strip(animation, delta)
+        strip.blend_type = "COMBINE"
+        _free_influence(strip, 1.0)
     animation.action = None
-    strip = new_strip(animation, delta)
-    strip.blend_type = "COMBINE"
-    _free_influence(strip, influence)
 
 
-def _dialed_influence(armature: bpy.types.Object) -> float:
-    strip = delta_strip(armature)
-    return 1.0 if strip is None else float(strip.influence)
+def _play_again(pair: Sequence[bpy.types.NlaTrack], delta: Source) -> None:
+    """Let the upper one of two tracks with a strip each play a new delta."""
+    for track in pair:
+        track.mute = track.strips[0].mute = False
+    pair[1].name = delta[0].name
+    play_in(pair[1].strips[0], delta)
 
 
 def _free_influence(strip: bpy.types.NlaStrip, value: float) -> None:

@@ -92,16 +92,22 @@ def cleaned_from(played: Source) -> Source:
 def played_result(armature: bpy.types.Object) -> Source | None:
     """Return the result of ours that an armature plays, as its action or on an NLA track.
 
-    Muted tracks and strips play nothing.
+    Muted tracks and strips play nothing. An assigned action that replaces the tracks hides
+    them, unless it is the recorded one.
     """
     animation = armature.animation_data
     if animation is None:
         return None
     for player in (animation, *playing_strips(animation)):
         source = source_of(player)
-        if source is not None and raw_of(source[0]):
-            return source
+        raw = source and raw_of(source[0])
+        if raw:
+            return None if player != animation and _hides_tracks(animation, raw) else source
     return None
+
+
+def _hides_tracks(animation: bpy.types.AnimData, raw: Source) -> bool:
+    return animation.action_blend_type == "REPLACE" and animation.action not in {None, raw[0]}
 
 
 def source_of(player: bpy.types.AnimData | bpy.types.NlaStrip) -> Source | None:

@@ -81,6 +81,67 @@ def test_delta_is_a_result_that_is_replaced_and_reverted(noisy, clean, blank, dr
     assert noisy.animation_data.nla_tracks.values() == [own]
 
 
+def test_second_clean_keeps_the_keys_of_the_influence(noisy, clean):
+    clean(result_as="DELTA_LAYER")
+    strip = noisy.animation_data.nla_tracks[1].strips[0]
+    for frame, value in ((5, 0.25), (20, 0.75)):
+        strip.influence = value
+        strip.keyframe_insert("influence", frame=frame)
+
+    result = clean(result_as="DELTA_LAYER", strength=0.5)
+
+    base, delta = noisy.animation_data.nla_tracks
+    strip = delta.strips[0]
+    keys = [tuple(key.co) for curve in strip.fcurves for key in curve.keyframe_points]
+    assert keys == [(5.0, 0.25), (20.0, 0.75)]
+    assert result is None and strip.action.name == strip.name == delta.name == "walk.delta.001"
+
+
+def test_dialed_influence_shows_at_once(noisy, clean, load, blank):
+    clean(result_as="DELTA_LAYER")
+    strip = noisy.animation_data.nla_tracks[1].strips[0]
+    head = noisy.pose.bones["Head"]
+    blank.context.scene.frame_set(17)
+    before = np.array(head.matrix)
+
+    strip.influence = 0.0
+    load("mocap_assist.check.delta_influence").show_influence()  # as the window does
+    blank.context.view_layer.update()
+
+    at_once = np.array(head.matrix)
+    blank.context.scene.frame_set(17)
+    assert_allclose(at_once, np.array(head.matrix), atol=0)
+    assert np.abs(at_once - before).max() > 0.01
+
+
+def test_delta_of_a_second_base_has_its_own_influence(noisy, clean, blank):
+    clean(result_as="DELTA_LAYER")
+    first = noisy.animation_data.nla_tracks[1].strips[0]
+    first.influence = 0.25
+    second_take = noisy.animation_data.nla_tracks[0].strips[0].action.copy()
+    second_take.name = "run"
+    noisy.animation_data.action = second_take
+    noisy.animation_data.action_slot = second_take.slots[0]
+
+    clean(result_as="DELTA_LAYER")
+
+    strips = [track.strips[0] for track in noisy.animation_data.nla_tracks]
+    played = [(strip.action.name, strip.influence) for strip in strips]
+    assert played == [("walk", 1.0), ("walk.delta", 0.25), ("run", 1.0), ("run.delta", 1.0)]
+    assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
+    assert noisy.animation_data.action == second_take
+    assert [track.name for track in noisy.animation_data.nla_tracks] == ["walk", "walk.delta"]
+
+
+def test_new_action_takes_the_place_of_a_delta(noisy, clean):
+    clean(result_as="DELTA_LAYER")
+
+    action = clean()
+
+    assert noisy.animation_data.action == action and action.name == "walk.clean.001"
+    assert not noisy.animation_data.nla_tracks
+
+
 def test_delta_of_markers_is_refused(blank):
     blank.ops.object.empty_add()
     holder = blank.context.object
