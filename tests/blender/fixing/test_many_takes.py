@@ -1,6 +1,8 @@
 """Fix My Take on several takes: a list with the status of each, pause, and Esc."""
 
+import tempfile
 import time
+from pathlib import Path
 
 import pytest
 from modal_events import event, nothing_is_left
@@ -63,6 +65,48 @@ def test_selected_takes_are_fixed(blank, folder, listed, draw):
     assert blank.ops.mocap_assist.fix_takes(plant_feet=False) == {"FINISHED"}
 
     assert sorted(listed()) == [("a", "DONE"), ("c", "DONE")]
+
+
+def test_each_fixed_take_is_an_undo_step_of_its_own(blank, folder):
+    window = blank.context.window_manager.windows[0]
+    with blank.context.temp_override(window=window, screen=window.screen):
+        blank.ops.ed.undo_push(message="empty")
+        blank.ops.mocap_assist.fix_takes(directory=str(folder))
+
+        blank.ops.ed.undo()  # the damaged file has a step too: its import may stay
+        assert set(blank.data.objects.keys()) == {"a"}
+        blank.ops.ed.undo()
+        assert blank.data.objects["a"].animation_data.action.name == "a.clean"
+        blank.ops.ed.undo()
+        assert not blank.data.objects and "a.clean" not in blank.data.actions
+
+
+def test_fix_folder_fixes_what_the_file_browser_chose(blank, folder, listed):
+    (folder / "b.bvh").unlink()
+    (folder / "c.bvh").unlink()
+
+    assert blank.ops.mocap_assist.fix_folder(directory=str(folder)) == {"FINISHED"}
+
+    assert listed() == [("a.bvh", "DONE")]
+    assert blank.data.objects["a"].animation_data.action.name == "a.clean"
+
+
+def test_fix_folder_reports_an_empty_folder(blank, tmp_path):
+    with pytest.raises(RuntimeError, match="There is no recording in the folder") as raised:
+        blank.ops.mocap_assist.fix_folder(directory=str(tmp_path))
+
+    assert str(raised.value).count("Error") == 1
+
+
+def test_loading_a_file_ends_the_queue(queue_button, window, listed, blank):
+    assert queue_button.invoke(window.context, None) == {"RUNNING_MODAL"}
+    wait(queue_button, window, until=lambda: "a" in blank.data.objects)
+
+    blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+    assert queue_button.modal(window.context, event("TIMER")) == {"CANCELLED"}
+    assert not blank.data.objects and not list(Path(tempfile.gettempdir()).iterdir())
+    assert all(status == "CANCELLED" for _, status in listed())
 
 
 def test_nothing_selected_is_reported(blank):
