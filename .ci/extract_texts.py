@@ -6,9 +6,21 @@ from collections.abc import Iterator
 from pathlib import Path
 from string import Formatter
 
-FOLDERS = ("mocap_assist", "operators")
-NOT_SHOWN = ("mocap_assist/batch/", "mocap_assist/languages/")
-"""Verbs of the command line, which are in English, and what translates."""
+FOLDERS = ("mocap_assist", "operators", "solvers")
+NOT_SHOWN = (
+    "mocap_assist/batch/", "solvers/command_line/",  # in English
+    "mocap_assist/languages/",
+    "solvers/samples/", "solvers/pictures/", "solvers/processes/",
+    "solvers/depth_tracking/forest/", "solvers/depth_tracking/forest_training/",
+    "solvers/reconstruction/residual_correction/learn_", "solvers/rotations/",
+    "solvers/retrieval/index/", "solvers/retrieval/library/values.py",
+    "solvers/retrieval/library/clip_rows.py", "solvers/recordings/live/frames.py",
+    "solvers/motion/skeletons/skeleton.py", "solvers/motion/skeletons/limb_ik.py",
+    "solvers/motion/skeletons/warping.py", "solvers/motion/skeletons/joint_recording.py",
+    "solvers/motion/skeletons/joint_limits.py",
+)  # fmt: skip
+"""Beginnings of paths without texts of the window: verbs of the command line, what translates,
+scripts that learn, and checks of arrays that only programs and damaged libraries fail."""
 LABELED = {
     "mocap_assist/check/checking.py": {"_summary"},
     "mocap_assist/check/compare_panel.py": {"HOLD"},
@@ -24,17 +36,33 @@ LABELED = {
     "mocap_assist/panels/figure_rows.py": {"FIGURES"},
     "mocap_assist/retarget/bone_list.py": {"PRESETS"},
     "mocap_assist/runtime/watch.py": {"time_left"},
+    "solvers/denoising/default_method.py": {"_joints"},
+    "solvers/denoising/edge_poses.py": {"NAMES"},
     "solvers/denoising/quality/worst_issues.py": {"_spikes", "_gaps", "_jitter", "_slides",
                                                   "_beyond_limits", "_cuts"},
+    "solvers/denoising/window_estimates/channel_groups.py": {"_describe_prior"},
+    "solvers/recordings/conventions/body_axes.py": {"describe_guessed_axis"},
+    "solvers/recordings/conventions/body_unit.py": {"describe_guessed_unit",
+                                                    "question_of_size"},
+    "solvers/recordings/skeleton_files/segment_recordings.py": {"POINTS_ONLY"},
+    "solvers/retargeting/body.py": {"SOURCE", "TARGET", "MOTION"},
+    "solvers/workflows/fix_chains.py": {"SPIKES", "GAPS", "SWAPPED_LABELS"},
     "solvers/workflows/fix_report/take_figures.py": {"_texts"},
 }  # fmt: skip
 """By file: constants, enums and functions with texts that are no full sentences."""
 TAKES_TEXT = {
     "translated": 0, "pgettext_iface": 0, "poll_message_set": 0, "_in_slices": 0,
-    "progress": 1, "draw_sentence": 2,
+    "progress": 1, "draw_sentence": 2, "Remark": 0,
 }  # fmt: skip
 """By function: the argument that is a text of the window."""
-SENTENCE = re.compile(r"[A-Z0-9{\"'(].* .*(\.|!)", re.DOTALL)
+SENTENCE = re.compile(r"\A[A-Z0-9{\"'(].* .*[.!]\Z", re.DOTALL)
+SENTENCE_END = re.compile(r"(?<=[.!?]) (?=\S)")
+"""Where messages of solvers are parted: many have a sentence in common, such as "Export it
+again."."""
+OTHER_SENTENCE = re.compile(r"(?<=[.!]) ?\{\w+\}$")
+"""A placeholder at the end for a sentence, which is translated by itself."""
+ARRAYS = re.compile(r"\bshapes?\b")
+"""A word of messages about arrays, which programs cause and not the window."""
 LABEL = re.compile(r"[A-Z].*|.*\{.*|[0-9]+ .*|.* .*", re.DOTALL)
 MIN_LETTERS = 4
 """Letters outside of placeholders from which a text is recognized once these are filled in."""
@@ -55,15 +83,16 @@ def source_texts(root: Path) -> set[str]:
             tree = ast.parse(path.read_text(encoding="utf-8"))
             hidden = {id(node) for node in _not_shown(tree)}
             shown = [node for node in ast.walk(tree) if id(node) not in hidden]
-            if name.startswith(FOLDERS):
-                found |= set(_arguments(shown)) | set(_sentences(shown))
+            sentences = set(_sentences(shown))
+            if name.startswith("solvers"):
+                sentences = {each for text in sentences for each in SENTENCE_END.split(text)}
+            found |= set(_arguments(shown)) | sentences
             found |= set(_labels(tree, hidden, LABELED.get(name, set())))
-    return {text for text in found if _can_be_recognized(text)}
+    return {text for text in found if _can_be_recognized(text) and not ARRAYS.search(text)}
 
 
 def _files(root: Path) -> list[Path]:
-    own = [path for folder in FOLDERS for path in sorted((root / folder).rglob("*.py"))]
-    return own + [root / name for name in LABELED if not name.startswith(FOLDERS)]
+    return [path for folder in FOLDERS for path in sorted((root / folder).rglob("*.py"))]
 
 
 def _arguments(nodes: list[ast.AST]) -> Iterator[str]:
@@ -76,8 +105,9 @@ def _arguments(nodes: list[ast.AST]) -> Iterator[str]:
 
 def _sentences(nodes: list[ast.AST]) -> Iterator[str]:
     for node in nodes:
-        if isinstance(node, ast.JoinedStr | ast.Constant) and SENTENCE.fullmatch(_text(node)):
-            yield _text(node)
+        if isinstance(node, ast.JoinedStr | ast.Constant):
+            text = OTHER_SENTENCE.sub("", _text(node).strip())
+            yield from SENTENCE.findall(text)
 
 
 def _labels(tree: ast.Module, hidden: set[int], names: set[str]) -> Iterator[str]:
@@ -121,7 +151,7 @@ def _strings(node: ast.expr) -> Iterator[str]:
         yield from _strings(node.body)
         yield from _strings(node.orelse)
     elif isinstance(node, ast.JoinedStr | ast.Constant):
-        yield _text(node)
+        yield OTHER_SENTENCE.sub("", _text(node))
 
 
 def _name_of(node: ast.AST) -> str:

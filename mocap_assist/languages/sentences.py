@@ -13,6 +13,7 @@ from string import Formatter
 import bpy
 
 from .catalog import CONTEXT, LANGUAGES, catalog_path, read_catalog
+from .line_breaks import text_width
 
 Translate = Callable[[str], str]
 
@@ -69,6 +70,10 @@ def _translated_whole(text: str, translate: Translate) -> str | None:
     for pattern in _patterns():
         if (values := pattern.values_in(text)) is not None:
             return translate(pattern.template).format_map(_translated_parts(values, translate))
+    if text.endswith("."):  # of a remark, whose text has none
+        remark = _translated_whole(text[:-1], translate)
+        period = "。" if remark and text_width(remark[-1]) > 1 else "."
+        return None if remark is None else remark + period
     return None
 
 
@@ -107,9 +112,10 @@ def words_of(text: str) -> str:
 
 
 def _translated_parts(values: Mapping[str, str], translate: Translate) -> dict[str, str]:
-    """Return what a sentence contains, with sentences and figures in it translated.
+    """Return what a sentence contains, with sentences, figures and terms in it translated.
 
-    Figures are lists such as "3 spikes, 2 gaps". Names of bones and files stay as they are.
+    Figures are lists such as "3 spikes, 2 gaps", and a term is "left arm". Names of bones and
+    files stay as they are.
     """
     return {name: _translated_part(value, translate) for name, value in values.items()}
 
@@ -117,12 +123,14 @@ def _translated_parts(values: Mapping[str, str], translate: Translate) -> dict[s
 def _translated_part(value: str, translate: Translate) -> str:
     if value.endswith("."):
         return translate_sentence(value, translate)
-    parts = value.split(", ")
-    is_figure = [any(letter.isdigit() for letter in part) and " " in part for part in parts]
     return ", ".join(
-        translate_sentence(part, translate) if is_one else part
-        for part, is_one in zip(parts, is_figure, strict=True)
+        translate_sentence(part, translate) if _is_figure_or_term(part) else part
+        for part in value.split(", ")
     )
+
+
+def _is_figure_or_term(part: str) -> bool:
+    return " " in part and (part.islower() or any(letter.isdigit() for letter in part))
 
 
 class Pattern:

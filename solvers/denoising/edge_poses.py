@@ -11,13 +11,11 @@ from ..motion import Motion, Tracks, find_humanoid_map
 from ..motion.skeletons import MIN_SHOT_S, is_short_shot, shot_ranges
 from ..rotations import inverse, multiply, rotation_vector_from_quaternion
 
+NAMES = ("left arm", "left leg", "right arm", "right leg")
+ROLES = {"arm": ("Shoulder", "UpperArm", "LowerArm"), "leg": ("UpperLeg", "LowerLeg")}
 LIMBS = {
-    f"{side} {limb}": tuple(f"{side}{role}" for role in roles)
-    for side in ("left", "right")
-    for limb, roles in {
-        "arm": ("Shoulder", "UpperArm", "LowerArm"),
-        "leg": ("UpperLeg", "LowerLeg"),
-    }.items()
+    f"{side} {limb}": tuple(f"{side}{role}" for role in ROLES[limb])
+    for side, limb in map(str.split, NAMES)
 }
 """Humanoid roles of each limb; the first one that exists is its top."""
 MIN_JUMP_RAD = np.radians(35.0)

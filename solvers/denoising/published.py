@@ -153,7 +153,8 @@ def _select_patterns(
         offset = {str(key): part for part, key in enumerate(bases.keys)}
         columns = np.concatenate([3 * offset[key] + np.arange(3) for key in channels.keys])
         n_clips = int(bases.n_clips)
-        message = f"Patterns of {n_clips} example clip{'s' * (n_clips != 1)}."
+        clips = "1 example clip" if n_clips == 1 else f"{n_clips} example clips"
+        message = f"Patterns of {clips}."
         return bases.vectors[:, :, columns], bases.mean[columns], message
     despiked = [fill_channel_gaps(remove_outliers(take, 4, 3.5)) for take in takes]
     mean = np.concatenate(despiked).mean(axis=0)

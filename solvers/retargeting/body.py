@@ -11,6 +11,9 @@ from ..motion import HumanoidMap, Motion, Skeleton, t_pose_alignment
 from .map_checks import check_feet, check_roles
 
 SIDES = ("left", "right")
+SOURCE = "source's skeleton"
+TARGET = "target's skeleton"
+MOTION = "motion's skeleton"
 FEET = ("leftFoot", "rightFoot", "leftToes", "rightToes")
 
 
@@ -71,7 +74,7 @@ def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> Humanoid
     InvalidMotionError
         The hips have no joint, a limb is not a chain below them, the head rests below, left
         and right of arms and legs differ, or the feet point backwards. The message names
-        `whose` skeleton it is.
+        `whose` skeleton it is, such as SOURCE.
     """
     hips_of(skeleton, humanoid, whose)
     joints = humanoid.indices(skeleton)
@@ -95,8 +98,7 @@ def hips_of(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> int:
     """Return the joint with the role hips; see `find_body`."""
     if (hips := humanoid.indices(skeleton).get("hips")) is None:
         raise InvalidMotionError(
-            f"No joint of the {whose} skeleton has the humanoid role hips. Choose one in the"
-            " map."
+            f"No joint of the {whose} has the humanoid role hips. Choose one in the map."
         )
     return hips
 

@@ -69,7 +69,7 @@ def _check_head(skeleton: Skeleton, joints: Joints, whose: str) -> None:
         if joints.get(role) in skeleton.ancestors(hips):
             raise InvalidMotionError(
                 f"{skeleton.names[hips]} (hips) hangs below {skeleton.names[joints[role]]}"
-                f" ({role}) in the {whose} skeleton. Choose other joints in the map."
+                f" ({role}) in the {whose}. Choose other joints in the map."
             )
     feet = [joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in joints]
     if len(feet) < len(SIDES):
@@ -79,7 +79,7 @@ def _check_head(skeleton: Skeleton, joints: Joints, whose: str) -> None:
         if role in joints and (rest[joints[role]] - rest[hips]) @ up < 0.0:
             raise InvalidMotionError(
                 f"{skeleton.names[joints[role]]} ({role}) is below {skeleton.names[hips]}"
-                f" (hips) where the {whose} skeleton rests. Choose other joints in the map."
+                f" (hips) where the {whose} rests. Choose other joints in the map."
             )
 
 
@@ -89,7 +89,7 @@ def _check_sides(skeleton: Skeleton, joints: Joints, whose: str) -> None:
     legs, arms = (_lateral_vector(rest, joints, parts[0]) for parts in LIMBS.values())
     if legs @ arms < 0.0:
         raise InvalidMotionError(
-            f"Left arm and left leg of the {whose} skeleton are on different sides of the body."
+            f"Left arm and left leg of the {whose} are on different sides of the body."
             " Swap left and right of the arms, or of the legs, in the map."
         )
 
@@ -111,7 +111,7 @@ def check_feet(alignment: Array, joints: Joints, whose: str) -> None:
     angles = angle_between(alignment[feet], alignment[joints["hips"]])
     if len(feet) == len(SIDES) and (angles > MIN_BACKWARD_ANGLE_RAD).all():
         raise InvalidMotionError(
-            f"The feet of the {whose} skeleton point backwards in the rest pose. Swap left and"
+            f"The feet of the {whose} point backwards in the rest pose. Swap left and"
             " right in the map, as for a mirrored recording, or give the toes their role."
         )
 

@@ -19,7 +19,7 @@ from ..motion.humanoid import with_standing_rest
 from ..progress import Progress, Remark, unwatched, within
 from ..rotations import IDENTITY
 from ..settings import Choice, Settings, setting
-from .body import SIDES, HumanoidBody, find_body, without_gaps
+from .body import SIDES, SOURCE, TARGET, HumanoidBody, find_body, without_gaps
 from .limbs import Transfer
 from .map_checks import knees_bend_backward
 from .place_feet import place_feet
@@ -140,10 +140,10 @@ def retarget(
        doi:10.1145/280814.280820
     """
     motion = with_standing_rest(motion, source_map)
-    source = find_body(motion.skeleton, source_map, "source's")
+    source = find_body(motion.skeleton, source_map, SOURCE)
     if knees_bend_backward(motion, source_map.indices(motion.skeleton)):
         progress(0.0, BACKWARD_KNEES)
-    target = find_body(target_skeleton, target_map, "target's")
+    target = find_body(target_skeleton, target_map, TARGET)
     if settings.root_motion is RootMotion.ROOT_BONE and target.joints["hips"] == 0:
         raise InvalidMotionError(
             "The target has no joint above the hips that could carry the travel. Keep it on the"

@@ -8,7 +8,7 @@ from ..arrays import Array
 from ..motion import HumanoidMap, Motion, t_pose_alignment
 from ..rotations import IDENTITY, inverse, multiply, rotate, twist_about
 from ..signals import smooth_gaussian
-from .body import hips_of, hold_gaps
+from .body import MOTION, hips_of, hold_gaps
 
 UP = np.array([0.0, 0.0, 1.0])
 TRUNCATION_SIGMAS = 4.0
@@ -65,7 +65,7 @@ def ground_path(
     InvalidMotionError
         The map has no hips.
     """
-    hips = hips_of(motion.skeleton, humanoid, "motion's")
+    hips = hips_of(motion.skeleton, humanoid, MOTION)
     rotations, positions = hips_in_world(motion, hips)
     sigma = smoothing * motion.frame_rate
     positions = _smoothed(positions, sigma) * (1.0, 1.0, 0.0)
@@ -91,7 +91,7 @@ def on_root_bone(
 
     The world poses of the hips and their descendants are unchanged.
     """
-    hips = hips_of(motion.skeleton, humanoid, "motion's")
+    hips = hips_of(motion.skeleton, humanoid, MOTION)
     headings = ground_path(motion, humanoid, smoothing, follow_heading=follow_heading).rotations
     _, positions = hips_in_world(motion, hips)
     local = motion.rotations.copy()

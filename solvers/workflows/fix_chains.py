@@ -29,6 +29,10 @@ from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 from .standard_joints import standardize_joint_names
 
+SPIKES = "1 spike", "{number} spikes"
+GAPS = "1 gap", "{number} gaps"
+SWAPPED_LABELS = "1 swapped label", "{number} swapped labels"
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ChainResult:
@@ -205,11 +209,11 @@ def take_before(take: Take, chain: ChainResult, progress: Progress) -> Motion | 
 def _cleaned(start: Motion | Tracks, denoised: Denoised) -> list[str]:
     filled = observed_samples(denoised.recording) & ~observed_samples(start)
     n_spikes, n_gaps = _n_runs(denoised.outliers), _n_runs(filled)
-    done = f"Clean corrected {_counted(n_spikes, 'spike')} and filled"
+    corrected, gaps = _counted(n_spikes, SPIKES), _counted(n_gaps, GAPS)
     # The first sentence says that there are no examples, which is so for every take here.
     _, _, remarks = denoised.prior_used.partition(". ")
     return [
-        f"{done} {_counted(n_gaps, 'gap')}.",
+        f"Clean corrected {corrected} and filled {gaps}.",
         *[remarks] * bool(remarks),
         *_unfinished(denoised),
     ]
@@ -250,12 +254,12 @@ def _planted(planting_result: PlantingResult) -> list[str]:
 
 
 def _unswapped(n_swaps: int) -> list[str]:
-    return [f"Corrected {_counted(n_swaps, 'swapped label')}."] if n_swaps else []
+    return [f"Corrected {_counted(n_swaps, SWAPPED_LABELS)}."] if n_swaps else []
 
 
 def _n_runs(flags: Flags) -> int:
     return sum(len(find_runs(column)) for column in flags.T)
 
 
-def _counted(number: int, noun: str) -> str:
-    return f"1 {noun}" if number == 1 else f"{number} {noun}s"
+def _counted(number: int, texts: tuple[str, str]) -> str:
+    return texts[number != 1].format(number=number)

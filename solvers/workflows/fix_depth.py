@@ -37,5 +37,7 @@ def track_depth(
 
 def _redetected(captured: CapturedMotion) -> list[str]:
     n_restarts = len(captured.captured.restarts)
-    times = "once" if n_restarts == 1 else f"{n_restarts} times"
-    return [f"Track lost the actor and found it again {times}."] if n_restarts else []
+    if n_restarts == 1:
+        return ["Track lost the actor and found it again once."]
+    many = f"Track lost the actor and found it again {n_restarts} times."
+    return [many] if n_restarts else []

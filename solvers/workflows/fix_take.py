@@ -104,8 +104,11 @@ class FixedTake:
         n_left = self.after.n_spikes
         if self.chain.denoised is None or not n_left:
             return []
-        left = "1 spike is" if n_left == 1 else f"{n_left} spikes are"
-        return [f"{left} left that Clean takes for fast movement; Check lists where."]
+        if n_left == 1:
+            return ["1 spike is left that Clean takes for fast movement; Check lists where."]
+        return [
+            f"{n_left} spikes are left that Clean takes for fast movement; Check lists where."
+        ]
 
     def figures(self) -> dict[str, Any]:
         """Return the report as JSON-ready values."""
@@ -188,7 +191,7 @@ def _simulate(chain: ChainResult, progress: Progress) -> ChainResult:
         except (InvalidMotionError, NoPhysicsError) as error:
             sentence = f"Physics was skipped. {error}"
         else:
-            steps = (*chain.steps, f"Physics: {simulated.message}")
+            steps = (*chain.steps, f"Physics was applied. {simulated.message}")
             return replace(chain, recording=simulated.motion, steps=steps)
     steps, notices = (*chain.steps, sentence), (*chain.notices, sentence)
     return replace(chain, steps=steps, notices=notices)

@@ -52,12 +52,13 @@ class LibraryClips:
             return " ".join(["No clip of the library is similar to this take.", *self.remarks])
         listed = ", ".join(match.clip for match in self.matches[:MAX_NAMED_CLIPS])
         more = len(self.matches) - MAX_NAMED_CLIPS
-        others = f" and {more} more" if more > 0 else ""
-        clips = "1 clip" if len(self.matches) == 1 else f"{len(self.matches)} clips"
-        return " ".join([
-            f"Learned from {clips} of the library: {listed}{others}.",
-            *self.remarks,
-        ])
+        n_clips = len(self.matches)
+        learned = f"Learned from {n_clips} clips of the library: {listed}."
+        if n_clips == 1:
+            learned = f"Learned from 1 clip of the library: {listed}."
+        elif more > 0:
+            learned = f"Learned from {n_clips} clips of the library: {listed} and {more} more."
+        return " ".join([learned, *self.remarks])
 
 
 def read_origin(entry: ClipEntry) -> Recording:

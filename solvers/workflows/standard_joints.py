@@ -107,11 +107,14 @@ def check_size(recording: JointRecording) -> None:
         return
     unit = min(UNITS, key=lambda factor: abs(np.log(size * factor)))
     human = MIN_BODY_SCALE <= size * unit <= MAX_BODY_SCALE
-    guess = f", as if {UNITS[unit]} were read as meters" if human else ""
-    scale = f"{unit:g}" if human else f"{1.0 / size:.3g}"
+    tall = f"{ADULT_STATURE_M * size:.3g}"
+    if human:
+        raise InvalidMotionError(
+            f"The body is {tall} m tall, as if {UNITS[unit]} were read as meters. Read the"
+            f" recording with a scale of {unit:g}."
+        )
     raise InvalidMotionError(
-        f"The body is {ADULT_STATURE_M * size:.3g} m tall{guess}. Read the recording with a"
-        f" scale of {scale}."
+        f"The body is {tall} m tall. Read the recording with a scale of {1.0 / size:.3g}."
     )
 
 

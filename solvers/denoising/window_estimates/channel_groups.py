@@ -208,7 +208,7 @@ def _describe_prior(
     if bases is None:
         return "The take's own patterns: no examples were given."
     n_clips = int(bases.n_clips)
-    clips = f"{n_clips} example clip" + "s" * (n_clips != 1)
+    clips = "1 example clip" if n_clips == 1 else f"{n_clips} example clips"
     if not smooth_fractions:
         return f"The take's own patterns: the {clips} share no joint with it."
     mean_fraction = float(np.mean(smooth_fractions))

@@ -102,10 +102,13 @@ def describe_shots(recording: Motion | Tracks, cuts: tuple[int, ...]) -> str:
             f"The take has a cut before frame {starts}; its shots were cleaned separately."
         )
     if unchanged:
-        listed = _listed(unchanged)
-        single = len(unchanged) == 1 and listed.startswith("frame ")
-        ending = "is a separate pose and was" if single else "are separate poses and were"
-        sentences.append(f"{listed.capitalize()} {ending} kept as recorded.")
+        listed = _listed(unchanged).capitalize()
+        single = len(unchanged) == 1 and listed.startswith("Frame ")
+        sentences.append(
+            f"{listed} is a separate pose and was kept as recorded."
+            if single
+            else f"{listed} are separate poses and were kept as recorded."
+        )
     return " ".join(sentences)
 
 

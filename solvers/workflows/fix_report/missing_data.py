@@ -39,10 +39,12 @@ def describe_missing_points(names: Sequence[str]) -> str:
     """Return a sentence about markers that were left out, or an empty text."""
     if not names:
         return ""
+    if len(names) == 1:
+        return f"{names[0]} was never seen and left out."
     listed = ", ".join(names[:MAX_NAMES])
-    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
-    verb = "was" if len(names) == 1 else "were"
-    return f"{listed}{more} {verb} never seen and left out."
+    if more := names[MAX_NAMES:]:
+        return f"{listed} and {len(more)} more were never seen and left out."
+    return f"{listed} were never seen and left out."
 
 
 def describe_empty_frames(take: Take) -> str:
@@ -58,10 +60,12 @@ def describe_empty_frames(take: Take) -> str:
         return ""
     n_frames, longest = int(empty.sum()), max(stop - start for start, stop in runs)
     rate = take.motion.frame_rate if isinstance(take, TrackedMotion) else take.frame_rate
-    counted = "1 frame has" if n_frames == 1 else f"{n_frames} frames have"
-    where = f"up to {longest / rate:.1f} s in a row; " if n_frames > 1 else ""
-    those = "it is" if n_frames == 1 else "they are"
-    return f"{counted} no data at all, {where}{those} filled from the frames before and after."
+    if n_frames == 1:
+        return "1 frame has no data at all, it is filled from the frames before and after."
+    return (
+        f"{n_frames} frames have no data at all, up to {longest / rate:.1f} s in a row; they"
+        " are filled from the frames before and after."
+    )
 
 
 def observed_samples(recording: Motion | Tracks) -> Flags:

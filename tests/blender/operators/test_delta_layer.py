@@ -90,7 +90,7 @@ def test_second_clean_keeps_the_keys_of_the_influence(noisy, clean):
 
     result = clean(result_as="DELTA_LAYER", strength=0.5)
 
-    base, delta = noisy.animation_data.nla_tracks
+    delta = noisy.animation_data.nla_tracks[1]
     strip = delta.strips[0]
     keys = [tuple(key.co) for curve in strip.fcurves for key in curve.keyframe_points]
     assert keys == [(5.0, 0.25), (20.0, 0.75)]

@@ -91,6 +91,17 @@ def test_blender_gets_labels_and_buttons(languages):
          "a wurde angenommen. Unknown words. "
          "Es gibt noch keine Varianten. Drücken Sie „Variieren“."),
         ("A sentence of no catalog.", "A sentence of no catalog."),
+        # Of readers and solvers.
+        ("my. walk.bvh has no frames: nothing follows its Frame Time.",
+         "my. walk.bvh hat keine Bilder: Nach Frame Time folgt nichts."),
+        ("Clean corrected 1 spike and filled 3 gaps.",
+         "„Bereinigen“ hat 1 Spitze korrigiert und 3 Lücken gefüllt."),
+        ("Frames 1 to 4 of the left arm are separate poses and were kept as recorded.",
+         "Bilder 1 bis 4 (linker Arm) sind eigene Posen und blieben wie aufgenommen."),
+        ("Feet were not planted. The motion has gaps.",
+         "Die Füße wurden nicht fixiert. Die Bewegung hat Lücken."),
+        ("The file has no positions, so the body stays in place.",  # a remark, with a period
+         "Die Datei hat keine Positionen, daher bleibt der Körper am Ort."),
     ],
 )  # fmt: skip
 def test_filled_in_sentences_are_recognized(languages, catalogs, english, german):

@@ -41,7 +41,7 @@ def test_physics_comes_last_on_request(noisy):
 
     expected = simulate(fix_take(short, settings=FixSettings(plant_feet=False)).recording)
     assert_allclose(result.recording.rotations, expected.motion.rotations, atol=1e-9)
-    assert any(step.startswith("Physics: ") for step in result.steps)
+    assert any(step.startswith("Physics was applied. ") for step in result.steps)
 
 
 def test_physics_of_points_is_skipped(rng):
