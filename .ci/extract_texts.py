@@ -29,8 +29,14 @@ LABELED = {
     "mocap_assist/clean/report.py": {"clean_report"},
     "mocap_assist/drawing/strip_ranges.py": {"Row", "Mark"},
     "mocap_assist/exporting/export_menu.py": {"ENTRY"},
+    "mocap_assist/fix/fixing.py": {"SUMMARY"},
     "mocap_assist/fix/panel.py": {"_draw_card"},
+    "mocap_assist/importing/bind_meshes.py": {"UNFITTING", "_count"},
+    "mocap_assist/importing/depth_objects.py": {"make_preview"},
     "mocap_assist/importing/import_menu.py": {"ENTRY"},
+    "mocap_assist/importing/marker_objects.py": {"make_markers"},
+    "mocap_assist/importing/recording_objects.py": {"make_objects", "_never_observed",
+                                                    "_make_armature", "add_takes"},
     "mocap_assist/library/background.py": {"message_of"},
     "mocap_assist/live/listening.py": {"MODES"},
     "mocap_assist/panels/figure_rows.py": {"FIGURES"},
@@ -41,6 +47,8 @@ LABELED = {
     "solvers/denoising/quality/worst_issues.py": {"_spikes", "_gaps", "_jitter", "_slides",
                                                   "_beyond_limits", "_cuts"},
     "solvers/denoising/window_estimates/channel_groups.py": {"_describe_prior"},
+    "solvers/motion/skeletons/file_conventions.py": {"sentence", "OFFSET_ADDED",
+                                                     "_confidence_in_up"},
     "solvers/recordings/conventions/body_axes.py": {"describe_guessed_axis"},
     "solvers/recordings/conventions/body_unit.py": {"describe_guessed_unit",
                                                     "question_of_size"},
@@ -50,6 +58,8 @@ LABELED = {
     "solvers/workflows/fix_report/take_figures.py": {"_texts"},
 }  # fmt: skip
 """By file: constants, enums and functions with texts that are no full sentences."""
+TERMS = {"solvers/motion/skeletons/file_conventions.py": {"UNIT_NAMES"}}
+"""By file: constants whose every word is a text."""
 TAKES_TEXT = {
     "translated": 0, "pgettext_iface": 0, "poll_message_set": 0, "_in_slices": 0,
     "progress": 1, "draw_sentence": 2, "Remark": 0,
@@ -64,6 +74,7 @@ OTHER_SENTENCE = re.compile(r"(?<=[.!]) ?\{\w+\}$")
 ARRAYS = re.compile(r"\bshapes?\b")
 """A word of messages about arrays, which programs cause and not the window."""
 LABEL = re.compile(r"[A-Z].*|.*\{.*|[0-9]+ .*|.* .*", re.DOTALL)
+TERM = re.compile(r".+")
 MIN_LETTERS = 4
 """Letters outside of placeholders from which a text is recognized once these are filled in."""
 WORDS = re.compile(r"'[^']*'|\"[^\"]*\"|\[.*?\]|\b(if|else|or|and|not|for|in)\b|\b([a-z_]\w*)")
@@ -87,7 +98,8 @@ def source_texts(root: Path) -> set[str]:
             if name.startswith("solvers"):
                 sentences = {each for text in sentences for each in SENTENCE_END.split(text)}
             found |= set(_arguments(shown)) | sentences
-            found |= set(_labels(tree, hidden, LABELED.get(name, set())))
+            found |= set(_labels(tree, hidden, LABELED.get(name, set()), LABEL))
+            found |= set(_labels(tree, hidden, TERMS.get(name, set()), TERM))
     return {text for text in found if _can_be_recognized(text) and not ARRAYS.search(text)}
 
 
@@ -110,12 +122,14 @@ def _sentences(nodes: list[ast.AST]) -> Iterator[str]:
             yield from SENTENCE.findall(text)
 
 
-def _labels(tree: ast.Module, hidden: set[int], names: set[str]) -> Iterator[str]:
+def _labels(
+    tree: ast.Module, hidden: set[int], names: set[str], kind: re.Pattern[str]
+) -> Iterator[str]:
     """Yield all texts of these constants, classes and functions."""
     for place in ast.walk(tree):
         for node in ast.walk(place) if _name_of(place) in names else ():
             if isinstance(node, ast.JoinedStr | ast.Constant) and id(node) not in hidden:
-                yield from LABEL.findall(_text(node))
+                yield from kind.findall(_text(node))
 
 
 def _not_shown(tree: ast.Module) -> Iterator[ast.AST]:

@@ -64,6 +64,13 @@ TRACK = TrackBundle(
     TrackChoices(plant_feet=False), CaptureSettings(), ForegroundSettings(), PlantSettings()
 )
 """Settings of the buttons whose steps run: their defaults."""
+SUMMARY = (
+    "jitter {before} → {after}",
+    "longest slide {before} → {after}",
+    "spikes and gaps {before} → {after}",
+    "issues {before} → {after}",
+)
+"""Texts of the four figures for the status bar."""
 
 
 def selected_take(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -143,7 +150,7 @@ def write_fixed(
     if settings.choices.rig:
         report = yield from retargeted(here, settings.choices.rig, report)
     keep_card(action, report)
-    return f"{action.name}: {_summary(report)}."
+    return f"{action.name} was fixed: {_summary(report)}."
 
 
 def fixed_subject(subject: bpy.types.Object, fixed: Fixed) -> bpy.types.Object:
@@ -193,8 +200,8 @@ def _is_from_camera(armature: bpy.types.Object) -> bool:
 def _summary(report: dict[str, Any]) -> str:
     """Return the figures that are known in one line."""
     rows = figure_texts(report["before"], report["after"])
-    return "; ".join(
-        f"{label.lower()} {before} → {after}"
-        for label, before, after in rows
+    return ", ".join(
+        text.format(before=before, after=after)
+        for text, (_, before, after) in zip(SUMMARY, rows, strict=True)
         if UNKNOWN not in {before, after}
     )

@@ -19,6 +19,7 @@ MAX_MISFIT = 0.02
 to which a mesh is bound. Chosen by hand: rounding gives 0.0001, another rest pose 0.1."""
 MIN_BONES = 3
 """Bones that file and scene must share; fewer determine no rotation. By definition."""
+UNFITTING = "without its meshes", "which do not fit the rest pose of these bones"
 
 
 def bind_skinned_meshes(
@@ -26,24 +27,28 @@ def bind_skinned_meshes(
     meshes: SkinnedMeshes,
     owner: str,
     armature: bpy.types.Object,
-) -> str:
-    """Add the meshes of an armature of the file, bound to that of the scene; say how many.
+) -> tuple[str, ...]:
+    """Add the meshes of an armature of the file, bound to that of the scene; report how many.
 
     They are moved as the rest pose was: bones of one name lie on each other.
     """
     names = [mesh for mesh, each in meshes.owners.items() if each == owner]
     if not names:
-        return ""
+        return ()
     placed = _placement(meshes.heads[owner], armature)
     if placed is None:
-        return ", without its meshes, which do not fit the rest pose of these bones"
+        return UNFITTING
     for mesh in _append(meshes.content, names):
         mesh.use_fake_user = mesh.data.use_fake_user = False
         mesh.data.transform(placed, shape_keys=True)
         add_quietly(context, mesh)
         mesh.parent = armature
         mesh.modifiers.new("Armature", "ARMATURE").object = armature
-    return f", {len(names)} skinned mesh" + "es" * (len(names) > 1)
+    return (_count(len(names)),)
+
+
+def _count(n_meshes: int) -> str:
+    return "1 skinned mesh" if n_meshes == 1 else f"{n_meshes} skinned meshes"
 
 
 def _placement(

@@ -33,8 +33,9 @@ def make_preview(
     scale = choices.global_scale / unit_of(context.scene)
     made = build_preview(context, path.stem, recording, shown, floor or LEVEL, scale)
     camera = recording.camera
-    what = f"depth of {camera.width} x {camera.height} pixels"
-    what += ", on the floor" if floor else ", without a floor"
-    if warnings := check_intrinsics(camera):
-        what += f". {' '.join(warnings).removesuffix('.')}"
-    return CreatedObjects(made, None, float(samples.frames(recording.n_frames)[-1]), what)
+    what = (
+        f"depth of {camera.width} x {camera.height} pixels",
+        "on the floor" if floor else "without a floor",
+    )
+    last_frame = float(samples.frames(recording.n_frames)[-1])
+    return CreatedObjects(made, None, last_frame, what, notes=tuple(check_intrinsics(camera)))

@@ -179,8 +179,9 @@ class ImportTransaction:
         for owner in filter(None, (made.top, made.action)):
             origin = origin_of_file(path, recording, choices.global_scale, content.body)
             note_origin(owner, origin)
-        rate = f"{recording.n_frames} frames at {recording.frame_rate:.5g} Hz"
-        sentences = [f"{made.top.name}: {made.what}, {rate}."]
+        what, rate = ", ".join(made.what), f"{recording.frame_rate:.5g}"
+        sentences = [f"{made.top.name}: {what}, {recording.n_frames} frames at {rate} Hz."]
+        sentences += made.notes
         if not isinstance(recording, DepthRecording):
             sentences.append(f"{conventions_of(recording).sentence()}.")
         sentences += self._set_time(context.scene, choices, recording, made.last_frame)

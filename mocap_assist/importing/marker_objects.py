@@ -60,13 +60,13 @@ def make_markers(
     else:
         pairs = tuple((parent, joint) for joint, parent in enumerate(parents) if parent >= 0)
     build_sticks(context, holder, empties, pairs)
-    what = f"{len(measured)} empties"
+    what: tuple[str, ...] = (f"{len(measured)} empties",)
     if outputs:
         collection = hidden_collection(context, f"{name} {OUTPUTS}")
         computed = timed.of(outputs)
         below, _, _ = _make(context, f"{name} {OUTPUTS}", computed, progress, collection)
         below.parent = holder
-        what += f", and {len(outputs)} computed points in a hidden collection"
+        what = (*what, f"and {len(outputs)} computed points in a hidden collection")
     return holder, action, what
 
 

@@ -45,10 +45,12 @@ class CreatedObjects(NamedTuple):
     action: bpy.types.Action | None
     """None for depth, which is read from its files."""
     last_frame: float
-    what: str
-    """Description for messages."""
+    what: tuple[str, ...]
+    """Clauses of the report."""
     bones: tuple[str, ...] = ()
     """Of an armature, the bone of each joint, or nothing."""
+    notes: tuple[str, ...] = ()
+    """Further sentences of the report."""
 
 
 def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) -> Conversion:
@@ -102,28 +104,34 @@ def make_objects(
     if choices.target is not ImportTarget.ARMATURE or not isinstance(recording, JointRecording):
         pass
     elif not isinstance(moving, Motion):
-        what += ", since the parents of the joints are unknown"
+        what = (*what, "since the parents of the joints are unknown")
     elif n_loose := recording.n_joints - len(connected_joints(recording)):
-        what += f", without {n_loose} points that have no joint"
-    return made._replace(what=what + _never_observed(recording, made.top.type == "ARMATURE"))
+        what = (*what, f"without {n_loose} points that have no joint")
+    left_out, notes = _never_observed(recording, isinstance(moving, Motion))
+    return made._replace(what=what + left_out, notes=made.notes + notes)
 
 
-def _never_observed(recording: TrackedRecording, in_armature: bool) -> str:
-    """Name the joints or markers that were left out or added."""
+def _never_observed(
+    recording: TrackedRecording, in_armature: bool
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return clauses and sentences about joints or markers that were left out or added."""
     if isinstance(recording, Motion):
-        return ""
+        return (), ()
     if in_armature and isinstance(recording, JointRecording):
         completed = fill_missing_hips(recording)
         if completed is not recording:
-            return f", with hips added between the legs{_never_observed(completed, True)}"
+            clauses, notes = _never_observed(completed, True)
+            return ("with hips added between the legs", *clauses), notes
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
     never_observed = [
         tracks.names[point] for point in np.flatnonzero(~tracks.visible.any(axis=0))
     ]
     if not never_observed:
-        return ""
-    more = f" and {len(never_observed) - MAX_NAMED} more" * (len(never_observed) > MAX_NAMED)
-    return f", without {', '.join(never_observed[:MAX_NAMED])}{more} (never observed)"
+        return (), ()
+    listed = ", ".join(never_observed[:MAX_NAMED])
+    if more := never_observed[MAX_NAMED:]:
+        return (), (f"Left out, since never observed: {listed} and {len(more)} more.",)
+    return (), (f"Left out, since never observed: {listed}.",)
 
 
 def _make_armature(
@@ -148,7 +156,7 @@ def _make_armature(
     for joint, bone in zip(motion.skeleton.names, bones, strict=True):
         if bone:
             write_sensor_values(bag, armature.pose.bones[bone], *sensor_samples.of(joint))
-    what = f"an armature of {len(armature.data.bones)} bones"
+    what = (f"an armature of {len(armature.data.bones)} bones",)
     return CreatedObjects(armature, action, float(frames[-1]), what, bones)
 
 
@@ -182,10 +190,10 @@ def add_takes(
         names.append(take.name)
         last = max(last, float(frames[-1]))
     compat.assign(made.top, made.action, slot)
-    more = len(names) - MAX_NAMED
-    listed = ", ".join(names[:MAX_NAMED]) + f" and {more} more" * (more > 0)
-    what = f"{made.what}, {len(names)} takes as actions ({listed})"
-    return made._replace(last_frame=last, what=what)
+    listed, more = ", ".join(names[:MAX_NAMED]), names[MAX_NAMED:]
+    note = f"Takes: {listed} and {len(more)} more." if more else f"Takes: {listed}."
+    what = (*made.what, f"{len(names)} takes as actions")
+    return made._replace(last_frame=last, what=what, notes=(*made.notes, note))
 
 
 def _make_empties(

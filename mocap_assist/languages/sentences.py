@@ -114,8 +114,8 @@ def words_of(text: str) -> str:
 def _translated_parts(values: Mapping[str, str], translate: Translate) -> dict[str, str]:
     """Return what a sentence contains, with sentences, figures and terms in it translated.
 
-    Figures are lists such as "3 spikes, 2 gaps", and a term is "left arm". Names of bones and
-    files stay as they are.
+    Figures are lists such as "3 spikes, 2 gaps", and a term is "left arm" or "inches". Names of
+    bones and files stay as they are.
     """
     return {name: _translated_part(value, translate) for name, value in values.items()}
 
@@ -130,7 +130,7 @@ def _translated_part(value: str, translate: Translate) -> str:
 
 
 def _is_figure_or_term(part: str) -> bool:
-    return " " in part and (part.islower() or any(letter.isdigit() for letter in part))
+    return part.islower() or (" " in part and any(letter.isdigit() for letter in part))
 
 
 class Pattern:

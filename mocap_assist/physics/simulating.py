@@ -61,7 +61,7 @@ def write_simulated(
     action, slot = write_take(armature, played, read, result.moved, {}, suffix=SUFFIX)
     history.record(action, played, _entry(settings, result))
     put_to_use(armature, action, slot, Output.ACTION)
-    return f"{action.name}: {result.simulated.message} {len(result.moved)} bones moved."
+    return f"{action.name}: {len(result.moved)} bones moved. {result.simulated.message}"
 
 
 def _entry(settings: SimulateBundle, result: Resimulated) -> dict[str, object]:

@@ -31,13 +31,13 @@ class Refusal(NamedTuple):
     fits: Callable[[bytes], bool]
     """Detection from the first bytes."""
     sentence: str
-    """Follows the path."""
+    """What is wrong and what to do; `{path}` is the file."""
 
     def read(
         self, path: Path | str, /, *, scale: float | None = None, progress: Progress = unwatched
     ) -> Never:
         """Raise InvalidFileError with the sentence."""
-        raise InvalidFileError(f"{path} {self.sentence}")
+        raise InvalidFileError(self.sentence.format(path=path))
 
 
 def _is_acclaim_skeleton(head: bytes) -> bool:
@@ -97,64 +97,65 @@ STAND_INS = (
     Refusal(
         "web page",
         _is_web_page,
-        "is a web page that was saved under this name. Download the file itself.",
+        "{path} is a web page that was saved under this name. Download the file itself.",
     ),
     Refusal(
         "Git LFS pointer",
         lambda head: head.startswith(b"version https://git-lfs"),
-        "is a note of Git LFS where the file should be. Get the file with git lfs pull, or"
-        " download it.",
+        "{path} is a note of Git LFS where the file should be. Get the file with git lfs pull,"
+        " or download it.",
     ),
 )
 """Files that stand where another one should be, whatever the name."""
 REFUSALS = (
     *STAND_INS,
-    Refusal("empty file", lambda head: not head.strip(), "is empty. Export it again."),
+    Refusal("empty file", lambda head: not head.strip(), "{path} is empty. Export it again."),
     Refusal(
         "mocopi packets",
         lambda head: b"sony motion format" in head[:64],
-        "holds packets that mocopi sent. Record in its app, and import the BVH.",
+        "{path} holds packets that mocopi sent. Record in its app, and import the BVH.",
     ),
     Refusal(
         "video",
         _is_video,
-        "is a video. Run a video model on it, such as GVHMR or MediaPipe, and import the 3D"
-        " motion that it saves.",
+        "{path} is a video. Run a video model on it, such as GVHMR or MediaPipe, and import"
+        " the 3D motion that it saves.",
     ),
     Refusal(
         "Acclaim ASF",
         _is_acclaim_skeleton,
-        "is a skeleton without motion. Choose its .amc file instead.",
+        "{path} is a skeleton without motion. Choose its .amc file instead.",
     ),
     Refusal(
         "FBX, glTF or USD",
         _is_scene_file,
-        "is read by Blender's own importers. Import it in Blender, or run blender --background"
-        " --command mocap_assist import.",
+        "{path} is read by Blender's own importers. Import it in Blender, or run blender"
+        " --background --command mocap_assist import.",
     ),
     Refusal(
         "2D keypoints",
         _is_flat,
-        "holds 2D keypoints of images, without depth. Import the triangulated TRC of Pose2Sim,"
-        " or the 3D output of your tracker.",
+        "{path} holds 2D keypoints of images, without depth. Import the triangulated TRC of"
+        " Pose2Sim, or the 3D output of your tracker.",
     ),
     Refusal(
         "OpenSim motion",
         _is_opensim,
-        "holds results of OpenSim, which need its model. Import the TRC of the same take.",
+        "{path} holds results of OpenSim, which need its model. Import the TRC of the same"
+        " take.",
     ),
     Refusal(
         "pickle",
         _is_pickle,
-        "is a pickle, which is never opened here: it may run any program. Save its arrays as"
-        " .npz where it was made. For an SMPL body: numpy.savez(file, global_orient=...,"
-        " body_pose=..., transl=...), one row per frame.",
+        "{path} is a pickle, which is never opened here: it may run any program. Save its"
+        " arrays as .npz where it was made. For an SMPL body: numpy.savez(file,"
+        " global_orient=..., body_pose=..., transl=...), one row per frame.",
     ),
     Refusal(
         "compressed file",
         _is_compressed,
-        "is compressed. Unpack it and import the file in it; a compressed pickle has to be"
-        " saved as .npz where it was made, with numpy.savez.",
+        "{path} is compressed. Unpack it and import the file in it; a compressed pickle has to"
+        " be saved as .npz where it was made, with numpy.savez.",
     ),
 )
 

@@ -9,6 +9,7 @@ UNIT_NAMES = {
     1.0: "meters", 0.1: "decimeters", 0.01: "centimeters", 0.001: "millimeters",
     0.0254: "inches", 0.3048: "feet",
 }  # fmt: skip
+OFFSET_ADDED = "positions added to offsets"
 MIN_CERTAIN_CONFIDENCE = 0.995
 """Confidence, a probability, from which rounding to whole percents gives 100. By definition."""
 
@@ -41,15 +42,19 @@ class FileConventions:
 
     def sentence(self) -> str:
         """Return what was judged, for a report: without a period."""
-        sure = "" if self.is_certain else f" ({self.confidence:.0%} confidence)"
-        added = ", positions added to offsets" if self.offset_added else ""
-        rest = (
-            f", {self.rest_up} in the rest pose" if self.rest_up not in {None, self.up} else ""
-        )
+        sure = "" if self.is_certain else self._confidence_in_up()
+        rest = "" if self.rest_up in {None, self.up} else self._up_at_rest()
+        added = f", {OFFSET_ADDED}" if self.offset_added else ""
         return (
             f"{self.up} is up{rest}{sure}, {self.forward} is forward, lengths are in"
             f" {unit_name(self.unit)}{added}"
         )
+
+    def _confidence_in_up(self) -> str:
+        return f" ({self.confidence:.0%} confidence)"
+
+    def _up_at_rest(self) -> str:
+        return f", {self.rest_up} in the rest pose"
 
 
 def unit_name(unit: float) -> str:

@@ -207,7 +207,7 @@ def test_never_observed_joints_are_reported_and_others_stay(lossy, load, tmp_pat
 
     imported = files.import_files(blank.context, [tmp_path / "lost.csv"], choices)
 
-    assert "without SpineMid (never observed)" in imported.sentence
+    assert "Left out, since never observed: SpineMid." in imported.sentence
     bones = set(imported.made[0].data.bones.keys())
     assert {"Head", "WristLeft", "KneeRight"} <= bones
     assert "SpineMid" not in bones

@@ -94,6 +94,12 @@ def test_blender_gets_labels_and_buttons(languages):
         # Of readers and solvers.
         ("my. walk.bvh has no frames: nothing follows its Frame Time.",
          "my. walk.bvh hat keine Bilder: Nach Frame Time folgt nichts."),
+        ("a: an armature of 22 bones, on the floor, 9 frames at 30 Hz."
+         " Z is up (61% confidence), -Y is forward, lengths are in inches."
+         " Left out, since never observed: inch.001, x.",
+         "a: ein Skelett mit 22 Knochen, auf dem Boden, 9 Bilder bei 30 Hz."
+         " Z ist oben (Konfidenz 61%), -Y ist vorne, Längen sind in Zoll."
+         " Weggelassen, da nie beobachtet: inch.001, x."),
         ("Clean corrected 1 spike and filled 3 gaps.",
          "„Bereinigen“ hat 1 Spitze korrigiert und 3 Lücken gefüllt."),
         ("Frames 1 to 4 of the left arm are separate poses and were kept as recorded.",
