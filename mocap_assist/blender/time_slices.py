@@ -22,6 +22,11 @@ def should_yield() -> bool:
     return monotonic() >= _deadline[0]
 
 
+def runs_in_slices() -> bool:
+    """Return whether the window waits for its turn; a script waits for the end."""
+    return _deadline[0] < inf
+
+
 class Sliced(Generic[Parameters, Result]):
     """Decorate a generator function. A call runs it to the end and returns its result."""
 

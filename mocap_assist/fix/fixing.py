@@ -145,12 +145,13 @@ def write_fixed(
     take = yield from read_played.steps(scene, subject)
     scene, subject = here.find()
     list_issues(scene, subject, take.frames, fixed.issues, fixed.quality)
-    action, _ = played_source(subject)
-    report = fixed.report
+    (action, _), report = played_source(subject), fixed.report
+    name = action.name
+    keep_card(action, report)  # Esc may end the retargeting
     if settings.choices.rig:
         report = yield from retargeted(here, settings.choices.rig, report)
-    keep_card(action, report)
-    return f"{action.name} was fixed: {_summary(report)}."
+        keep_card(played_source(here.find()[1])[0], report)
+    return f"{name} was fixed: {_summary(report)}."
 
 
 def fixed_subject(subject: bpy.types.Object, fixed: Fixed) -> bpy.types.Object:

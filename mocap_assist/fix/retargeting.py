@@ -1,10 +1,13 @@
 """The last step of Fix My Take: give the fixed motion to another armature."""
 
+from collections.abc import Callable
+from time import sleep
 from typing import Any
 
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.retargeting import RetargetSettings
-from ..blender.time_slices import Steps
+from ..blender.time_slices import Steps, runs_in_slices
+from ..jobs.job import POLL_INTERVAL_S, Job, ShortSolve, run
 from ..retarget.button_settings import RetargetBundle, RetargetChoices
 from ..retarget.retargeting import read_retarget, write_retargeted
 from ..runtime.subject import Subject
@@ -23,12 +26,31 @@ def retargeted(here: Subject, rig: str, report: dict[str, Any]) -> Steps[dict[st
     bundle = RetargetBundle(RetargetChoices(target=rig), RetargetSettings())
     try:
         solve = yield from read_retarget.steps(scene, subject, bundle)
-        sentence = yield from write_retargeted.steps(*here.find(), bundle, solve())
+        result = yield from _solved(solve)
+        sentence = yield from write_retargeted.steps(*here.find(), bundle, result)
     except SolveCancelled:
         raise
     except MocapAssistError as error:  # the fixed action is written already
         return _reported(report, f"Not retargeted. {error}", is_notice=True)
     return _reported(report, sentence, is_notice=False)
+
+
+def _solved(solve: Callable[..., Any]) -> Steps[Any]:
+    """Solve in a process of its own, if it takes long, while Blender's window goes on."""
+    if isinstance(solve, ShortSolve):
+        return run(solve)
+    job = Job(solve)
+    try:
+        while not job.done():
+            if runs_in_slices():
+                yield job.progress()[0]
+            else:
+                sleep(POLL_INTERVAL_S)
+    except BaseException:  # such as Esc, or another file
+        job.cancel()
+        job.tidy_up()
+        raise
+    return job.result()
 
 
 def _reported(report: dict[str, Any], sentence: str, *, is_notice: bool) -> dict[str, Any]:

@@ -43,7 +43,7 @@ def make_markers(
     timed: Timed,
     parents: Sequence[int] | None,
     progress: Progress,
-) -> tuple[bpy.types.Object, bpy.types.Action, str]:
+) -> tuple[bpy.types.Object, bpy.types.Action, tuple[str, ...]]:
     """Add empties; return their parent, their action, and a description.
 
     `parents` are those of joints; None for markers, whose sticks follow from their names.
