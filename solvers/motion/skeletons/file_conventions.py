@@ -46,8 +46,8 @@ class FileConventions:
         rest = "" if self.rest_up in {None, self.up} else self._up_at_rest()
         added = f", {OFFSET_ADDED}" if self.offset_added else ""
         return (
-            f"{self.up} is up{rest}{sure}, {self.forward} is forward, lengths are in"
-            f" {unit_name(self.unit)}{added}"
+            f"{self.up} is up{rest}{sure}{added}, {self.forward} is forward, lengths are in"
+            f" {unit_name(self.unit)}"
         )
 
     def _confidence_in_up(self) -> str:
