@@ -39,6 +39,7 @@ IN_ONE_BLENDER = {
     "exporting/test_export_take.py": (5, 2),
     "exporting/test_linked_and_nla.py": (4, 5),
     "exporting/test_rigs_and_meshes.py": (4, 5),
+    "fixing/test_fix_for_a_rig.py": (5, 2),
     "fixing/test_fix_take.py": (5, 2),
     "fixing/test_many_takes.py": (5, 2),
     "importing/test_failing_readers.py": (5, 2),
