@@ -8,14 +8,13 @@ from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian re
 
 from ..arrays import Array, Flags
 from ..motion import Motion, WorldPoses
+from ..motion.humanoid import HUMAN_LEG_LENGTH_M
 from ..motion_fitting.goals import BonePoint
 from ..rotations import inverse, multiply, rotation_vector_from_quaternion
 from ..signals import find_runs
 from .legs import LegJoints
 from .sole import SMOOTHING_S, estimate_loads, measure_standing_heights, sole_points
 
-ADULT_LEG_M = 0.9
-"""Meters, by definition: the leg for which the lengths of this family are given."""
 MAX_LEVEL_SPREAD_M = 0.007
 """Meters: the floor is not level if its contacts typically differ by more. Chosen by hand: x0.5
 gains 1.1 %, x2 costs 0.4 %."""
@@ -101,7 +100,7 @@ def find_foot_contact(
     leg : LegJoints
     contact : bool, shape (n_frames,)
     """
-    rate, size = motion.frame_rate, leg.length(motion.skeleton) / ADULT_LEG_M
+    rate, size = motion.frame_rate, leg.length(motion.skeleton) / HUMAN_LEG_LENGTH_M
     points = sole_points(motion.skeleton, leg)
     positions = np.stack([point.position(poses) for point in points], axis=1)
     standing = measure_standing_heights(positions, contact, rate)

@@ -48,9 +48,6 @@ x0.5 costs 0.5 %, x2 gains 0.6 %."""
 MAX_TURN_RAD_S = np.radians(8.0)
 """Radians per second by which a foot may turn while it rests flat. Chosen by hand: x0.5 costs
 0.1 %, x2 costs 0.6 %, but 2 degrees make knees before depth cameras jerk half as much again."""
-HINGE_RAD = np.radians(1.0)
-"""Radians by which a knee may bend less than its limit. It guards knees against bending the
-wrong way."""
 
 
 def planting_goals(
@@ -119,7 +116,7 @@ def _source_goals(
     ]
     leg = fitted.motion.skeleton.rest_positions[list(contact.leg.chain)]
     reserve = flexion_in_reserve(leg, settings.softness)
-    return [*goals, knee_limit(fitted, contact.leg.knee, ankle, reserve, HINGE_RAD)]
+    return [*goals, knee_limit(fitted, contact.leg.knee, ankle, reserve)]
 
 
 def _in_all_directions(weight: Array) -> Array:

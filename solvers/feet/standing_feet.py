@@ -5,20 +5,17 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Motion, forward_kinematics
+from ..motion import Motion, forward_kinematics, still_joints
 from ..motion.humanoid import (
+    GROUND_PERCENTILE,
     ContactSettings,
     HumanoidMap,
     detect_contacts,
     foot_points,
     without_short_runs,
 )
-from ..rotations import angle_between
 from .legs import SIDES, LegJoints
 
-MAX_STILL_RAD = np.radians(0.02)
-"""Rotation of the joints of a leg, in radians, below which the leg was not captured. Chosen by
-hand: it is 0.02 degrees, and who stands still rotates 0.1."""
 MIN_HIP_HEIGHT = 0.2
 """Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
 below which the body sits or lies. Chosen by hand: the pelvis of four HDM05 takes that lie down
@@ -26,9 +23,6 @@ comes to rest at 0.05, that of the deepest squat at 0.28."""
 MAX_PELVIS_SIZE = 0.3
 """Distance of the hips from the hip joints, as a ratio to the length of a leg, up to which they
 are a joint of the pelvis. It guards rigs whose hips are at the floor."""
-GROUND_PERCENTILE = 5.0
-"""Percentile of the height of the lower foot that is the ground; lower ones are noise. Chosen
-by hand, as for the detection of contacts."""
 
 
 def detect_standing_feet(
@@ -47,10 +41,11 @@ def detect_standing_feet(
         bearing = (contacts & ~rests).T
         contacts = np.stack([without_short_runs(foot, min_frames) for foot in bearing], axis=1)
     hips = humanoid_map.indices(motion.skeleton).get("hips", 0)
-    if _is_still(motion, hips):
+    is_still = still_joints(motion)
+    if is_still[hips]:
         return contacts
     for leg in legs:
-        if all(_is_still(motion, joint) for joint in leg.chain):
+        if is_still[list(leg.chain)].all():
             contacts[:, SIDES.index(leg.side)] = False
     return contacts
 
@@ -73,8 +68,3 @@ def _rests_on_hips(
         pelvis.append(hips)
     lowest = heights[:, pelvis].min(axis=1)
     return np.asarray(lowest - ground < MIN_HIP_HEIGHT * length)[:, None]
-
-
-def _is_still(motion: Motion, joint: int) -> bool:
-    rotations = motion.rotations[:, joint]
-    return bool((angle_between(rotations, rotations[:1]) < MAX_STILL_RAD).all())

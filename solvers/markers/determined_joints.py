@@ -3,12 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, row_blocks
 from .body import MarkerBody, Poses
 from .fit_poses import compute_residuals
 
-FRAMES_PER_BLOCK = 256
-"""Frames whose matrices are in memory at once. It bounds the memory."""
 MAX_ROTATION_STD_RAD = 0.8
 """Standard deviation above which a joint's rotation is undetermined. Chosen by hand: x0.5 costs
 nothing, x2 gains 15.7 %."""
@@ -35,8 +33,7 @@ def find_determined_joints(
             marker for marker, bone in enumerate(body.bones) if joint in body.path(int(bone))
         ]
         determined[:, joint] = has_marker[:, below].any(axis=1)
-    for start in range(0, len(observed), FRAMES_PER_BLOCK):
-        block = slice(start, start + FRAMES_PER_BLOCK)
+    for block in row_blocks(len(observed), observed[:1].size * 3 * poses.rotations.shape[1]):
         deviation = _standard_deviations(
             body, observed[block], Poses(poses.rotations[block], poses.roots[block])
         )

@@ -8,9 +8,17 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import InvalidMotionError
-from ..motion import HumanoidMap, Motion, Skeleton, leg_length, t_pose_alignment
+from ..motion import (
+    MIN_BONE_M,
+    HumanoidMap,
+    Motion,
+    Skeleton,
+    leg_length,
+    still_joints,
+    t_pose_alignment,
+)
 from ..motion.humanoid import HUMAN_LEG_LENGTH_M
-from ..rotations import IDENTITY, angle_between, multiply, rotate
+from ..rotations import IDENTITY, multiply, rotate
 from .tables import (
     DEFAULT_STRENGTH_NM,
     DENSITY_KG_M3,
@@ -30,10 +38,6 @@ MIN_MASS_KG = 0.05
 """Mass of a joint without a segment, for legs of 0.9 m. Chosen by hand: x0.5 costs nothing, x2
 costs 1.1 %."""
 
-MAX_STILL_RAD = 1e-3
-"""Radians: a joint without a role that rotates less is part of the one above. It guards rigs
-with fingers and helper bones that rest, which would be segments of little mass."""
-
 MIN_SIZE, MAX_SIZE = 0.05, 20.0
 """Bounds of the size of a body: leg length relative to 0.9 m, from a doll to a giant. They
 guard takes in a wrong unit."""
@@ -41,10 +45,6 @@ guard takes in a wrong unit."""
 MIN_FRAME_RATE_HZ = 5.0
 """Minimum frame rate. It guards takes with a few poses a second, between which no path is
 known."""
-
-MIN_LENGTH_M = 0.01
-"""Meters, for legs of 0.9 m: a shorter segment is a sphere. It guards rigs with bones of zero
-length, which have no direction."""
 
 
 class JointFrame(NamedTuple):
@@ -211,14 +211,12 @@ def _find_moving_joints(
     chains = [{joint, *skeleton.ancestors(joint)} for joint in joints]
     base = max(set.intersection(*chains))
     candidates = {joint for chain in chains for joint in chain if joint > base}
+    is_still = still_joints(motion)
     order, frames, stack = [], {}, [(base, JointFrame(-1, np.zeros(3), IDENTITY))]
     while stack:
         joint, frame = stack.pop()
         first_rotation = motion.rotations[0, joint]
-        is_still = (
-            angle_between(motion.rotations[:, joint], first_rotation).max() < MAX_STILL_RAD
-        )
-        if joint not in joints and joint != base and is_still:
+        if joint not in joints and joint != base and is_still[joint]:
             position, rotation = frame.position, multiply(frame.rotation, first_rotation)
             above = frame.above
         else:
@@ -251,7 +249,7 @@ def _segment_end(
     length = SEGMENT_LENGTHS_M.get(role_without_side(role), 0.1) * size
     children = skeleton.children[joint]
     direction = rest[list(children)].mean(axis=0) - start if children else np.zeros(3)
-    if np.linalg.norm(direction) < MIN_LENGTH_M * size:
+    if np.linalg.norm(direction) < MIN_BONE_M * size:
         direction = up if role in {"head", "neck"} else skeleton.offsets[joint]
     return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-9) * length)
 
@@ -263,7 +261,7 @@ def _capsule(joint: int, end: Array, mass: float, size: float) -> Capsule:
         return Capsule(
             joint, np.zeros((2, 3)), 0.02 * size, MIN_MASS_KG * size**3, touches=False
         )
-    if length < MIN_LENGTH_M * size:
+    if length < MIN_BONE_M * size:
         radius = (0.75 * mass / (np.pi * DENSITY_KG_M3)) ** (1 / 3)
         return Capsule(joint, np.zeros((2, 3)), min(radius, MAX_RADIUS_M * size), mass)
     radius = (mass / (DENSITY_KG_M3 * np.pi * length)) ** 0.5

@@ -59,10 +59,6 @@ NEAR_M = 0.1
 """Meters, for legs of 0.9 m, above the ground: other parts of the body that come nearer may not
 sink. It bounds the time."""
 
-HINGE_RAD = np.radians(1.0)
-"""Radians by which a knee may bend less than that. It guards knees against bending the wrong
-way."""
-
 
 def plant_target_feet(
     body: PhysicsBody, motion: Motion, hold_weights: Array, ground: float
@@ -110,7 +106,7 @@ def plant_target_feet(
         ]
         for side, chain in held.items():
             goals += _foot_goals(body, fitted, side, weights[:, SIDES.index(side)], ground)
-            goals.append(knee_limit(fitted, *chain[1:], RESERVE_RAD, HINGE_RAD))
+            goals.append(knee_limit(fitted, *chain[1:], RESERVE_RAD))
         goals += _ground_goals(body, fitted, tuple(held), ground)
         return fit_motion(fitted, goals, progress).motion
 

@@ -16,9 +16,6 @@ straight, whose axis is noise."""
 USUAL_SINE = np.sin(np.radians(10.0))
 """Sine of the flexion at which a limb's own axis and the usual one have the same weight. It
 guards straight limbs, which seem to bend sideways or backward."""
-HINGE_RAD = np.radians(1.0)
-"""Radians by which hinges may pass their limits. It guards knees, elbows and toes against
-bending the wrong way."""
 
 
 def limb_hinge(body: HumanoidBody, fitted: FittedMotion, limb: Limb, usual: Array) -> Array:

@@ -22,7 +22,7 @@ from ..motion_fitting.goals import (
 from ..progress import Progress, unwatched
 from .body import HumanoidBody
 from .foot_paths import FootPath, find_foot_paths
-from .hinges import HINGE_RAD, limb_hinge
+from .hinges import limb_hinge
 from .limbs import Transfer
 from .placement import leg_length
 from .soles import tip_of
@@ -107,7 +107,7 @@ def place_feet(
             goals += _foot_goals(transfer, fitted, path, size, slice(start, stop))
             reserve = flexion_in_reserve(target.rest[list(path.leg)], softness)
             axis = knees[path.leg[1]]
-            knee = hinge_limit(fitted, *path.leg[1:], axis, reserve, HINGE_RAD)
+            knee = hinge_limit(fitted, *path.leg[1:], axis, reserve)
             goals.append(knee)
             start_of_fit = with_bent_hinge(start_of_fit, knee)
         return fit_motion(start_of_fit, goals, progress, "Placing the feet").motion
@@ -163,6 +163,6 @@ def _toe_limits(target: HumanoidBody, fitted: FittedMotion, foot: int, ball: int
     uncurled = np.minimum(recorded, at_rest)
     extended = np.maximum(recorded, at_rest + MAX_TOE_FLEXION_RAD)
     return [
-        HingeLimit(ball, tip, axis, uncurled, HINGE_RAD),
-        HingeLimit(ball, tip, -axis, -extended, HINGE_RAD),
+        HingeLimit(ball, tip, axis, uncurled),
+        HingeLimit(ball, tip, -axis, -extended),
     ]

@@ -19,7 +19,7 @@ from ..motion_fitting.goals import (
 from ..progress import Progress, unwatched
 from ..rotations import inverse, multiply
 from .hand_paths import HandPath, find_hand_paths, find_meeting
-from .hinges import HINGE_RAD, limb_hinge
+from .hinges import limb_hinge
 from .limbs import Transfer
 
 BLEND_S = 0.5
@@ -101,7 +101,7 @@ def place_hands(
                 for joint, height in zip(path.arm[1:], path.least_heights or (), strict=False)
             ]
             axis = hinges[path.arm[1]]
-            elbow = hinge_limit(fitted, *path.arm[1:], axis, RESERVE_RAD, HINGE_RAD)
+            elbow = hinge_limit(fitted, *path.arm[1:], axis, RESERVE_RAD)
             goals.append(elbow)
             start_of_fit = with_bent_hinge(start_of_fit, elbow)
         if meeting:

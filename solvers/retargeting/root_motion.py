@@ -7,13 +7,10 @@ import numpy as np
 from ..arrays import Array
 from ..motion import HumanoidMap, Motion, t_pose_alignment
 from ..rotations import IDENTITY, inverse, multiply, rotate, twist_about
-from ..signals import smooth_gaussian
+from ..signals import smooth_to_the_ends
 from .body import MOTION, hips_of, hold_gaps
 
 UP = np.array([0.0, 0.0, 1.0])
-TRUNCATION_SIGMAS = 4.0
-"""Standard deviations by which a path is padded. It guards walks, which would slow down at both
-ends of a clip."""
 MAX_TILT_RAD = np.radians(60.0)
 """Tilt of the hips above which they do not define the facing direction. It guards
 actors who get up: the root would turn in one frame."""
@@ -68,11 +65,11 @@ def ground_path(
     hips = hips_of(motion.skeleton, humanoid, MOTION)
     rotations, positions = hips_in_world(motion, hips)
     sigma = smoothing * motion.frame_rate
-    positions = _smoothed(positions, sigma) * (1.0, 1.0, 0.0)
+    positions = smooth_to_the_ends(positions, sigma) * (1.0, 1.0, 0.0)
     if not follow_heading:
         return GroundPath(positions, np.tile(IDENTITY, (len(positions), 1)))
     rest = t_pose_alignment(motion.skeleton, humanoid)[hips]
-    yaw = _smoothed(_yaw(multiply(rotations, rest)), sigma) - _yaw(rest[None])
+    yaw = smooth_to_the_ends(_yaw(multiply(rotations, rest)), sigma) - _yaw(rest[None])
     zero = np.zeros_like(yaw)
     headings = np.stack([np.cos(yaw / 2), zero, zero, np.sin(yaw / 2)], axis=1)
     return GroundPath(positions, headings)
@@ -127,19 +124,3 @@ def _yaw(rotations: Array) -> Array:
     twist = twist_about(rotations[upright], UP)
     angles = np.unwrap(2.0 * np.arctan2(twist[:, 3], twist[:, 0]))
     return np.interp(np.arange(len(rotations)), upright, angles)
-
-
-def _smoothed(values: Array, sigma: float) -> Array:
-    """Smooth values over time with a Gaussian; sigma 0 changes nothing.
-
-    The ends are padded by point reflection, so that a walk does not slow down at the ends of
-    its clip.
-    """
-    width = min(int(TRUNCATION_SIGMAS * sigma), len(values) - 1)
-    if sigma <= 0.0 or not width:
-        return values
-    before = 2.0 * values[0] - values[width:0:-1]
-    after = 2.0 * values[-1] - values[-2 : -width - 2 : -1]
-    padded = np.concatenate([before, values, after])
-    smoothed = smooth_gaussian(padded, sigma)
-    return np.asarray(smoothed[width : width + len(values)])

@@ -1,6 +1,6 @@
 """Filter signals over time: noise, spikes, gaps, smoothing and smooth corrections."""
 
-from .gaussian_smoothing import CausalSmoother, smooth_gaussian
+from .gaussian_smoothing import CausalSmoother, smooth_gaussian, smooth_to_the_ends
 from .linear_gaps import fill_gaps, fill_rotation_gaps
 from .noise import (
     DIFFERENCE_GAIN,
@@ -30,5 +30,6 @@ __all__ = [
     "second_difference_bands",
     "shrink_noise",
     "smooth_gaussian",
+    "smooth_to_the_ends",
     "smoothstep",
 ]

@@ -7,8 +7,9 @@ import numpy as np
 from ..arrays import Array
 
 TRUNCATION_SIGMAS = 4.0
-"""Standard deviations at which the causal Gaussian is truncated, by definition as in
-`scipy.ndimage.gaussian_filter1d`. With one, it would lag by half as much as it says."""
+"""Standard deviations at which a Gaussian is truncated, by definition as in
+`scipy.ndimage.gaussian_filter1d`. With one, the causal one would lag by half as much as it
+says."""
 
 
 def smooth_gaussian(values: Array, frames: float, *, ahead: bool = True) -> Array:
@@ -54,3 +55,21 @@ class CausalSmoother:
         """Return the mean of these values and those before, same shape; NaN stays NaN."""
         self._past.append(values)
         return np.asarray(smooth_gaussian(np.stack(self._past), self._frames, ahead=False)[-1])
+
+
+def smooth_to_the_ends(values: Array, frames: float) -> Array:
+    """Return the zero-phase Gaussian-weighted mean of a path that goes on beyond its ends.
+
+    The path is extended by point reflection. So a walk keeps its speed at both ends of a clip.
+
+    Parameters
+    ----------
+    values : shape (n_frames, ...)
+        Without gaps.
+    frames : float
+        Standard deviation of the Gaussian; 0 changes nothing.
+    """
+    width = min(int(TRUNCATION_SIGMAS * frames) + 1, len(values) - 1)
+    padding = [(width, width), *[(0, 0)] * (values.ndim - 1)]
+    padded = np.pad(values, padding, mode="reflect", reflect_type="odd")
+    return smooth_gaussian(padded, frames)[width : width + len(values)]

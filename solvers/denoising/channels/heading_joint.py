@@ -5,12 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...motion import HumanoidMap, Motion
-from ...rotations import angle_between, inverse, mean_rotation, multiply, rotate
+from ...motion import HumanoidMap, Motion, still_joints
+from ...rotations import inverse, multiply, rotate
 from ...signals import fill_rotation_gaps
-
-STILL_RAD = 1e-4
-"""Radians: a joint that rotates less stands still. It guards against rounding errors."""
 
 
 class HeadingJoint(NamedTuple):
@@ -29,9 +26,7 @@ def find_heading_joint(motion: Motion, humanoid: HumanoidMap) -> HeadingJoint:
     """Return the hips, or else the first joint that rotates, or else the root."""
     joint = humanoid.indices(motion.skeleton).get("hips")
     if joint is None:
-        spread = angle_between(mean_rotation(motion.rotations), motion.rotations)
-        rotates = np.nan_to_num(spread).max(axis=0) > STILL_RAD
-        joint = int(rotates.argmax())
+        joint = int(still_joints(motion).argmin())
     above: list[int] = []
     parent = motion.skeleton.parents[joint]
     while parent >= 0:

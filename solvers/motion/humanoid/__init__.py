@@ -22,6 +22,7 @@ from .bone_directions import (
 from .bone_lengths import fit_bone_lengths, transfer_motion
 from .canonical import FORWARD, UP, canonical_rotations, from_canonical, t_pose_alignment
 from .foot_contacts import (
+    GROUND_PERCENTILE,
     HUMAN_LEG_LENGTH_M,
     ContactSettings,
     contacts_of_points,
@@ -75,6 +76,7 @@ __all__ = [
     "CHEST",
     "ESSENTIAL_ROLES",
     "FORWARD",
+    "GROUND_PERCENTILE",
     "HALF_LATERAL_JOINTS",
     "HIPS",
     "HUMANOID_ROLES",

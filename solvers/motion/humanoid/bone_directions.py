@@ -6,13 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ..skeletons import MIN_BONE_M
 from .posture_joints import N_JOINTS, PARENTS, POSTURE_JOINTS
 
 Real = TypeVar("Real", np.float32, np.float64)
 
-MIN_BONE_M = 5e-3
-"""Length below which a bone has no direction. It guards a division where a bone has no
-length."""
 RATE_WINDOW_S = 0.1
 """Seconds to each side over which a rate is measured. It guards high frame rates, at which the
 difference of two frames is noise."""

@@ -7,12 +7,8 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...rotations import IDENTITY, fit_rotations, multiply, rotate, rotation_between
-from ..skeletons import Motion, Skeleton, Tracks, local_rotations
+from ..skeletons import MIN_BONE_M, Motion, Skeleton, Tracks, local_rotations
 from .points_skeleton import skeleton_from_points
-
-MIN_BONE_M = 1e-3
-"""Distance below which two joints define no direction. It guards a division where two joints
-coincide."""
 
 
 def motion_from_points(

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...rotations import IDENTITY, inverse, multiply, quaternion_from_matrix, rotate
-from ..skeletons import Motion, Skeleton, WorldPoses, forward_kinematics
+from ..skeletons import MIN_BONE_M, Motion, Skeleton, WorldPoses, forward_kinematics
 from .roles import HumanoidMap
 
 LEG_BONES = tuple(
@@ -14,9 +14,6 @@ LEG_BONES = tuple(
 )
 FOOT_BONES = tuple((f"{side}Foot", f"{side}Toes") for side in ("left", "right"))
 FRAME_ROLES = ("hips", "leftUpperLeg", "rightUpperLeg")
-MIN_AREA_M2 = 1e-6
-"""Trunk times width of the hips, m^2, above which a pose shows where the body faces. It guards
-against division by zero."""
 TOPS = ("neck", "head", "chest", "spine")
 
 
@@ -56,7 +53,7 @@ def with_standing_rest(motion: Motion, humanoid: HumanoidMap) -> Motion:
         _smallest_cosine(positions, legs, down), _smallest_cosine(positions, feet, forward)
     )
     usable = np.isfinite(poses.rotations).all(axis=(1, 2)) & np.isfinite(straight)
-    usable &= np.linalg.norm(forward, axis=1) > MIN_AREA_M2
+    usable &= np.linalg.norm(forward, axis=1) > MIN_BONE_M**2
     if not usable.any():
         return motion
     frame = int(np.argmax(np.where(usable, straight, -np.inf)))

@@ -18,7 +18,8 @@ from .shot_boundaries import (
     is_short_shot,
     shot_ranges,
 )
-from .skeleton import Skeleton
+from .skeleton import MIN_BONE_M, Skeleton
+from .still_joints import still_joints
 from .tracks import Tracks
 from .velocities import linear_velocities
 from .warping import Alignment, warp
@@ -28,6 +29,7 @@ __all__ = [
     "COMPUTED_JOINTS",
     "HAND_POINTS",
     "INFERRED",
+    "MIN_BONE_M",
     "MIN_SHOT_S",
     "NUITRACK",
     "ROTATION_VECTOR",
@@ -58,6 +60,7 @@ __all__ = [
     "resample",
     "rest_direction",
     "shot_ranges",
+    "still_joints",
     "unit_name",
     "warp",
     "world_poses",

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import row_blocks
 from ...errors import InvalidMotionError
 from .file_conventions import FileConventions
 from .frame_rate import check_frame_rate
@@ -16,8 +17,6 @@ against damaged files."""
 ROUNDING = 1e-14
 """Ratio to 1: norms this near to it are not normalized, so that unchanged rotations stay
 identical bits. It absorbs rounding."""
-
-FRAMES_AT_ONCE = 2000
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +72,8 @@ class Motion:
     def _normalize(self, rotations: NDArray[np.float64]) -> None:
         """Normalize nearly unit rotations in place, block by block to save memory."""
         not_unit = np.zeros(self.skeleton.n_joints, dtype=np.bool_)
-        for start in range(0, len(rotations), FRAMES_AT_ONCE):
-            block = rotations[start : start + FRAMES_AT_ONCE]
+        for frames in row_blocks(len(rotations), rotations[:1].size):
+            block = rotations[frames]
             norms = np.linalg.norm(block, axis=-1, keepdims=True)
             deviation = np.abs(norms - 1.0)
             not_unit |= (deviation > UNIT_TOLERANCE).any(axis=(0, 2))

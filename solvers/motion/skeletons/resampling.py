@@ -7,6 +7,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import row_blocks
 from ...rotations import normalize, unroll
 from ...signals import fill_gaps
 from .frame_rate import check_frame_rate
@@ -20,10 +21,6 @@ shaking limbs and jitter, which would become slow movements."""
 PASSBAND = 0.7
 """Edge of the passband, as a fraction of the new Nyquist frequency. Chosen by hand: x0.5 costs
 2.0 %, x2 fails."""
-
-MAX_VALUES_PER_BLOCK = 4_000_000
-"""Values that are interpolated at once. It bounds the memory: two hours of a skeleton have
-thirty times as many."""
 
 ROWS_PER_BLOCK = 32
 """New frames that one matrix product filters. It bounds the run time."""
@@ -91,9 +88,7 @@ def _sample_rotations(
 ) -> NDArray[np.float64]:
     """Return rotations at fractional frames, in blocks of joints."""
     result = np.empty((len(times), *rotations.shape[1:]))
-    step = max(MAX_VALUES_PER_BLOCK // (4 * len(rotations)), 1)
-    for joint in range(0, rotations.shape[1], step):
-        columns = slice(joint, joint + step)
+    for columns in row_blocks(rotations.shape[1], 4 * len(rotations)):
         result[:, columns] = normalize(_sample(unroll(rotations[:, columns]), times, slowdown))
     return result
 

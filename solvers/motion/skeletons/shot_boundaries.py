@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, row_blocks
 from ...rotations import unroll
 from .motion import Motion
 from .tracks import Tracks
@@ -36,8 +36,6 @@ MIN_MOTION = 1e-6
 MIN_SHOT_S = 0.25
 """A shorter shot shows no movement that can be distinguished from noise. It guards takes whose
 body jumps away for a few frames and returns."""
-STEPS_PER_BLOCK = 512
-"""Steps that are compared at once. It bounds the memory for long takes."""
 
 
 def find_shot_boundaries(recording: Motion | Tracks) -> tuple[int, ...]:
@@ -130,10 +128,8 @@ def _all_steps(recording: Motion | Tracks) -> Array:
     n_steps = recording.n_frames - 1
     n_joints = _trajectory(recording, slice(1)).shape[1]
     steps = np.empty((n_steps, n_joints))
-    for start in range(0, n_steps, STEPS_PER_BLOCK):
-        steps[start : start + STEPS_PER_BLOCK] = _steps(
-            _trajectory(recording, slice(start, start + STEPS_PER_BLOCK + 1))
-        )
+    for block in row_blocks(n_steps, 4 * n_joints):
+        steps[block] = _steps(_trajectory(recording, slice(block.start, block.stop + 1)))
     return steps
 
 
@@ -146,10 +142,10 @@ def _jumps(steps: Array, min_step: float) -> NDArray[np.intp]:
     """Return the steps, from frame i to i + 1, where nearly all joints jump."""
     typical = np.fmax([_median(joint, 0) for joint in steps.T], min_step)
     result = [np.empty(0, dtype=np.intp)]
-    for start in range(0, len(steps), STEPS_PER_BLOCK):
+    for block in row_blocks(*steps.shape):
         # `_ratios` divides by at least this, so that all boundaries are among these candidates.
-        ratios = steps[start : start + STEPS_PER_BLOCK] / typical
-        candidates = start + np.flatnonzero(
+        ratios = steps[block] / typical
+        candidates = block.start + np.flatnonzero(
             _exceeded_by(ratios, HALF_FRACTION) >= MIN_HALF_JUMP
         )
         result.append(candidates[_is_boundary(_ratios(steps, typical, candidates))])

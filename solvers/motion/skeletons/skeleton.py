@@ -13,6 +13,9 @@ from ...errors import InvalidMotionError
 MAX_DISTANCE_M = 1e9
 """No capture is larger: a larger value has a wrong unit, and its square may overflow. It guards
 against damaged files."""
+MIN_BONE_M = 1e-3
+"""Meters: a shorter bone has no direction. It guards joints at one position up to the rounding
+of a file or a device."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...motion import Skeleton
+from ...motion import MIN_BONE_M, Skeleton
 from ...motion.humanoid import UP
 from ...rotations import inverse, rotate
 from .. import FittedMotion, NormalEquations
@@ -16,8 +16,9 @@ straight."""
 MIN_BEND = np.sin(np.radians(10.0))
 """Sine of the mean flexion below which the axis of a hinge is unknown. It guards straight
 limbs, whose bones have an angle by noise, and knees that bend backward by a few degrees."""
-MIN_FOOT_M = 0.01
-"""Meters: a shorter foot has no direction. It guards feet whose ends are at the ankle."""
+HINGE_RAD = np.radians(1.0)
+"""Radians by which a hinge may pass its limit. It guards knees, elbows and toes against bending
+the wrong way."""
 FORWARD = np.array([0.0, -1.0, 0.0])
 
 
@@ -40,7 +41,7 @@ class HingeLimit:
     end: int
     axis: Array
     minimum: Array
-    tolerance: float
+    tolerance: float = HINGE_RAD
 
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""
@@ -54,9 +55,7 @@ class HingeLimit:
         equations.add_frames(below[:, None] / self.tolerance, jacobian)
 
 
-def knee_limit(
-    fitted: FittedMotion, knee: int, ankle: int, reserve: float, tolerance: float
-) -> HingeLimit:
+def knee_limit(fitted: FittedMotion, knee: int, ankle: int, reserve: float) -> HingeLimit:
     """Return the goal that a knee bends no less than recorded, or than `reserve` in radians.
 
     A leg that hardly bends, or backward by a few degrees, does not show its axis: then it is
@@ -65,7 +64,7 @@ def knee_limit(
     axis = hinge_axis(fitted, knee, ankle)
     if axis is None:
         axis = _axis_across_foot(fitted.motion.skeleton, ankle)
-    return hinge_limit(fitted, knee, ankle, axis, reserve, tolerance)
+    return hinge_limit(fitted, knee, ankle, axis, reserve)
 
 
 def _axis_across_foot(skeleton: Skeleton, ankle: int) -> Array:
@@ -74,15 +73,15 @@ def _axis_across_foot(skeleton: Skeleton, ankle: int) -> Array:
     forward = rest[children[0]] - rest[ankle] if children else FORWARD
     across = np.cross(UP, forward)
     length = float(np.linalg.norm(across))
-    return np.asarray(across / length if length > MIN_FOOT_M else np.cross(UP, FORWARD))
+    return np.asarray(across / length if length > MIN_BONE_M else np.cross(UP, FORWARD))
 
 
 def hinge_limit(
-    fitted: FittedMotion, joint: int, end: int, axis: Array, reserve: float, tolerance: float
+    fitted: FittedMotion, joint: int, end: int, axis: Array, reserve: float
 ) -> HingeLimit:
     """Return the goal that a hinge bends no less than recorded, or than `reserve` radians."""
     minimum = np.minimum(hinge_flexion(fitted, joint, end, axis), reserve)
-    return HingeLimit(joint, end, axis, minimum, tolerance)
+    return HingeLimit(joint, end, axis, minimum)
 
 
 def with_bent_hinge(fitted: FittedMotion, limit: HingeLimit) -> FittedMotion:

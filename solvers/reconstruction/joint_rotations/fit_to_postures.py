@@ -5,6 +5,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import (
+    MIN_BONE_M,
     HumanoidMap,
     Motion,
     find_humanoid_map,
@@ -14,7 +15,6 @@ from ...motion import (
 from ...motion.humanoid import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, postures_from_motion
 from ...rotations import fit_rotations, inverse, multiply, rotate, rotation_between, slerp
 from ...signals import fill_gaps, fill_rotation_gaps
-from .rotation_solver import MIN_LENGTH_M
 
 AIMS = {
     f"{side}{part}": f"{side}{end}"
@@ -143,7 +143,7 @@ class _PostureFit:
         offset = self.targets[:, posture_joint] + correction - self.positions[:, joint]
         lengths = [np.linalg.norm(each, axis=-1, keepdims=True) for each in (current, offset)]
         is_known = np.isfinite(offset).all(axis=-1, keepdims=True) & (
-            np.minimum(*lengths) > MIN_LENGTH_M
+            np.minimum(*lengths) > MIN_BONE_M
         )
         swing = rotation_between(
             np.where(is_known, current, 1.0), np.where(is_known, offset, 1.0)

@@ -6,7 +6,14 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import InvalidMotionError
-from ...motion import Motion, Skeleton, Tracks, local_rotations, skeleton_from_points
+from ...motion import (
+    MIN_BONE_M,
+    Motion,
+    Skeleton,
+    Tracks,
+    local_rotations,
+    skeleton_from_points,
+)
 from ...motion.humanoid import (
     MIN_RELIABILITY,
     MIN_RELIABLE_FRAMES,
@@ -16,7 +23,7 @@ from ...progress import Progress, unwatched
 from ...rotations import IDENTITY, fit_rotations, rotate
 from .clavicles import add_clavicle_joints
 from .fit_to_positions import fit_to_positions
-from .rotation_solver import MIN_LENGTH_M, RotationSolver
+from .rotation_solver import RotationSolver
 from .trunk_twist import LimbTwists, hinges_from_twists
 
 ANKLE_WEIGHT = 25.0
@@ -161,7 +168,7 @@ def _points_of_joints(skeleton: Skeleton, names: Sequence[str]) -> list[int]:
     for joint, name in enumerate(skeleton.names):
         if name in names:
             points.append(list(names).index(name))
-        elif np.linalg.norm(skeleton.offsets[joint]) <= MIN_LENGTH_M and joint > 0:
+        elif np.linalg.norm(skeleton.offsets[joint]) <= MIN_BONE_M and joint > 0:
             points.append(points[skeleton.parents[joint]])
         else:
             raise InvalidMotionError(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...motion import Skeleton, roles_by_name
+from ...motion import MIN_BONE_M, Skeleton, roles_by_name
 from ...rotations import IDENTITY, fit_rotations, multiply, rotate, rotation_between, slerp
 from .limb_twist import (
     HINGES,
@@ -18,9 +18,6 @@ from .limb_twist import (
     smooth_direction,
 )
 
-MIN_LENGTH_M = 1e-3
-"""Minimum length (m) of bones and offsets that define a direction. It guards joints that a
-device reports at one position up to the rounding of its file: x1000 costs 19 %."""
 GRANDCHILD_WEIGHT = 0.3
 """Weight of a child of zero length for its parent; the child also points by its own rotation.
 Chosen by hand: x0.5 costs 0.1 %, x2 gains 0.2 %."""
@@ -140,7 +137,7 @@ class RotationSolver:
         if joint in self.hands:  # a thumb is too noisy to orient the hand
             children = children[:1]
         for child in children:
-            if np.linalg.norm(self.skeleton.offsets[child]) > MIN_LENGTH_M:
+            if np.linalg.norm(self.skeleton.offsets[child]) > MIN_BONE_M:
                 rest.append(self.skeleton.offsets[child])
                 tracked.append(self._child_direction(joint, child))
                 is_exclusive.append(True)
@@ -155,7 +152,7 @@ class RotationSolver:
         directions = np.stack(tracked, axis=1) if tracked else np.zeros(shape)
         known = np.isfinite(directions).all(axis=-1)
         lengths = np.linalg.norm(np.nan_to_num(directions), axis=-1, keepdims=True)
-        directions = np.where(lengths > MIN_LENGTH_M, directions, np.nan)
+        directions = np.where(lengths > MIN_BONE_M, directions, np.nan)
         return _ChildDirections(
             np.array(rest).reshape(-1, 3), directions, np.array(is_exclusive, bool), known
         )

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, row_blocks
 from ...motion.humanoid import HIPS, rates_from_directions
 from ...progress import Progress, within
 from ...signals import smooth_gaussian
@@ -48,8 +48,6 @@ hand: x0.5 gains 0.3 %, x2 costs 0.1 %."""
 MODEL_ERROR_M = 0.03
 """Standard deviation (m) of a pose on which all neighbors agree. Chosen by hand: x0.5 costs
 nothing, x2 gains 0.2 %."""
-BLOCK_FRAMES = 256
-"""Number of frames whose pose spaces are in memory at once."""
 CORRECTION_FRAMES = 150
 """Frames of the take, evenly spaced, to which the bone axes of the library are fitted. It
 bounds the run time: x0.5 and x2 change no figure by 0.5 %."""
@@ -238,8 +236,7 @@ def synthesize(
     values, spread = np.empty_like(take.postures), np.empty_like(take.reliability)
     twists = np.zeros((len(values), N_TWISTED_LIMBS), np.complex128)
     last = None
-    for start in range(0, len(values), BLOCK_FRAMES):
-        part = slice(start, min(start + BLOCK_FRAMES, len(values)))
+    for part in row_blocks(len(values), settings.n_neighbors * values[0].size):
         spaces = local_pca(body.positions[indices[part]], settings.n_dimensions)
         reliability, near = take.reliability[part], spaces.neighbors
         targets = EnergyTargets(take.postures[part], reliability, near, take.lengths)

@@ -6,13 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Integers, Single
+from ...arrays import Array, Integers, Single, row_blocks
 from ...progress import Progress, unwatched
 from ..joint_rotations import BodyPostures
 from ..residual_correction import squared_distances
 
-BLOCK_FRAMES = 128
-"""Number of frames per block of the search."""
 CANDIDATE_FACTOR = 1.3
 """Ratio of candidates from the float32 distances to neighbors from the exact ones. It guards
 the order of neighbors against rounding; x0.5 would find too few."""
@@ -129,8 +127,8 @@ def nearest_postures(
     indices = np.empty((n_frames, n_neighbors), dtype=np.intp)
     distances = np.empty((n_frames, n_neighbors))
     search_all = len(index.starts) == 2 or len(index.order) <= n_looked_at
-    for start in range(0, n_frames, BLOCK_FRAMES):
-        part = slice(start, min(start + BLOCK_FRAMES, n_frames))
+    n_compared = len(index.order) if search_all else n_looked_at
+    for part in row_blocks(n_frames, n_compared):
         points, weights = _as_points(query.slice(part.start, part.stop))
         if search_all:
             indices[part], distances[part] = _search_all(index, points, weights, n_neighbors)

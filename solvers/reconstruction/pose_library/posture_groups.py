@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Single
+from ...arrays import Single, row_blocks
 from ...motion.humanoid import ADULT_BONE_LENGTHS_M, positions_from_directions
 
 MIN_POSTURES = 5000
@@ -15,8 +15,6 @@ away. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
 N_ROUNDS = 6
 """Number of iterations of k-means. It bounds the run time of indexing: groups that have not
 converged only make searches slower."""
-BLOCK = 4096
-"""Poses whose distances are in memory at once. It bounds the memory."""
 
 
 def group_postures(directions: Single) -> NDArray[np.int32]:
@@ -52,7 +50,7 @@ def group_postures(directions: Single) -> NDArray[np.int32]:
 def _nearest_centers(points: Single, centers: Single) -> NDArray[np.int32]:
     squares = np.einsum("ij,ij->i", centers, centers)
     indices = [
-        np.argmin(squares - 2.0 * (points[start : start + BLOCK] @ centers.T), axis=1)
-        for start in range(0, len(points), BLOCK)
+        np.argmin(squares - 2.0 * (points[block] @ centers.T), axis=1)
+        for block in row_blocks(len(points), len(centers))
     ]
     return np.asarray(np.concatenate(indices), dtype=np.int32)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from ...arrays import Array, Single
+from ...arrays import Array, Single, row_blocks
 from ...motion.humanoid import N_JOINTS, mirror_postures
 from ...npz_members import flags, integers, numbers
 from ...signals import smooth_gaussian
@@ -35,8 +35,6 @@ PACE_S = 0.2
 """Time (s) that converts velocity to distance. Chosen by hand: x10 costs 0.3 %; the shipped
 prior was learned with it."""
 N_PARTS = 5
-BLOCK = 512
-"""Frames whose distances to the examples are in memory at once. It bounds the memory."""
 
 
 KEYS = {"center": "centre"}
@@ -158,8 +156,7 @@ class MovementProcess:
             np.empty((len(projected), self.weights.shape[1])),
             np.empty(len(projected)),
         )
-        for start in range(0, len(projected), BLOCK):
-            rows = slice(start, start + BLOCK)
+        for rows in row_blocks(len(projected), len(self.weights)):
             distances = movement_distances(projected[rows], self.points)
             predicted[rows] = movement_covariance(distances, SHARED_STRENGTHS) @ self.weights
             squares[rows] = distances.context.min(axis=1)

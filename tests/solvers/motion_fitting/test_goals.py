@@ -195,7 +195,7 @@ def test_only_straight_limbs_are_bent_before_a_fit(start, flexion):
     step[:, start.columns(knee)] = turn[:, None] * axis
     bent = start.moved(step)
 
-    after = with_bent_hinge(bent, hinge_limit(bent, knee, ankle, axis, 0.1, 0.01))
+    after = with_bent_hinge(bent, hinge_limit(bent, knee, ankle, axis, 0.1))
 
     expected = np.radians(3.0) if abs(flexion) < np.radians(3.0) else flexion
     assert_allclose(hinge_flexion(after, knee, ankle, axis), expected, atol=0.02)
@@ -210,7 +210,7 @@ def test_a_knee_that_bends_backward_by_a_few_degrees_does_not_bend_farther(walk,
     straight = walk.with_poses(rotations)
     start = FittedMotion(straight, straight, (hip, knee, ankle))
 
-    limit = knee_limit(start, knee, ankle, 0.1, 0.01)
+    limit = knee_limit(start, knee, ankle, 0.1)
 
     assert limit.axis @ (1.0, 0.0, 0.0) == pytest.approx(1.0, abs=0.01)
     assert_allclose(limit.minimum, np.radians(bend_deg), atol=np.radians(1.5))

@@ -8,7 +8,6 @@ from rigs import mixamo
 from solvers.motion import Motion, find_humanoid_map
 from solvers.recordings import read_recording
 from solvers.retargeting import ground_path
-from solvers.retargeting.root_motion import _smoothed
 from solvers.rotations.representations import (
     angle_between,
     multiply,
@@ -69,9 +68,3 @@ def rotating_body(hips: np.ndarray) -> Motion:
     rotations = np.tile([1.0, 0, 0, 0], (len(hips), rig.n_joints, 1))
     rotations[:, 0] = hips
     return Motion(rig, rotations, np.tile(rig.rest_positions[0], (len(hips), 1)), 60.0)
-
-
-def test_smoothed_path_keeps_its_speed_at_the_ends_of_a_clip():
-    path = np.arange(100.0)[:, None]
-
-    assert_allclose(_smoothed(path, 10.0), path, atol=0.01)

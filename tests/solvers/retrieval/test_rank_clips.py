@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from reference_warping import plain_cost
 from scipy.spatial.distance import cdist
 
+from solvers import arrays
 from solvers.motion.humanoid.posture_heading import rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.retrieval import Clip, FindSettings, build_clip_library, find_similar
@@ -64,9 +65,9 @@ def test_segments_are_loaded_from_their_blocks():
     assert_array_equal(steps[[1, 3]], first.summaries[[0, 2]].astype(np.float32))
 
 
-@pytest.mark.parametrize("at_once", [1, 300, reranking.MAX_CELLS])
+@pytest.mark.parametrize("at_once", [1, 300, arrays.MAX_BLOCK_VALUES])
 def test_distances_of_clips_equal_the_plain_algorithm(at_once, monkeypatch):
-    monkeypatch.setattr(reranking, "MAX_CELLS", at_once)
+    monkeypatch.setattr(arrays, "MAX_BLOCK_VALUES", at_once)
     sequences = RNG.normal(size=(5, 16, 3)).astype(np.float32)
     between = reranking.pairwise_warping_costs(sequences)
     for one, other in np.ndindex(5, 5):

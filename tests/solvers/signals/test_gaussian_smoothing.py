@@ -6,7 +6,11 @@ from scipy.ndimage import gaussian_filter1d
 
 from solvers.motion.humanoid.posture_heading import normalize_postures
 from solvers.motion.humanoid.posture_joints import N_JOINTS
-from solvers.signals.gaussian_smoothing import CausalSmoother, smooth_gaussian
+from solvers.signals.gaussian_smoothing import (
+    CausalSmoother,
+    smooth_gaussian,
+    smooth_to_the_ends,
+)
 from solvers.signals.linear_gaps import fill_gaps
 
 
@@ -82,3 +86,9 @@ def test_frame_by_frame_is_the_same(random):
     smoother = CausalSmoother(3.0)
     found = [smoother.update(each) for each in values]
     np.testing.assert_allclose(found, smooth_gaussian(values, 3.0, ahead=False), atol=1e-12)
+
+
+def test_a_walk_keeps_its_speed_at_the_ends_of_its_clip():
+    path = 0.01 * np.arange(30.0)[:, None] * (1.0, -2.0)
+
+    np.testing.assert_allclose(smooth_to_the_ends(path, 3.0), path, atol=1e-12)
