@@ -156,7 +156,7 @@ def _select_patterns(
         clips = "1 example clip" if n_clips == 1 else f"{n_clips} example clips"
         message = f"Patterns of {clips}."
         return bases.vectors[:, :, columns], bases.mean[columns], message
-    despiked = [fill_channel_gaps(remove_outliers(take, 4, 3.5)) for take in takes]
+    despiked = [fill_channel_gaps(remove_outliers(take, 4)) for take in takes]
     mean = np.concatenate(despiked).mean(axis=0)
     window = min(FilterBasesSettings().n_frames, len(takes[-1]))
     products = LagProducts(len(mean), window)

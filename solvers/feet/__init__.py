@@ -3,9 +3,10 @@
 from .legs import SIDES, LegJoints, find_foot_joints, find_legs
 from .plant_feet import Planted, plant_feet
 from .plant_settings import PlantSettings
-from .sole import sole_points
+from .sole import HEEL_FRACTION, sole_points
 
 __all__ = [
+    "HEEL_FRACTION",
     "SIDES",
     "LegJoints",
     "PlantSettings",

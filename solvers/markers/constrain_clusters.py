@@ -11,11 +11,7 @@ from ..errors import InvalidMotionError
 from ..motion import Tracks
 from ..progress import Progress, unwatched
 from .rigid_clusters import Cluster
-from .rigid_transform import fit_rigid_transform, transform_shape
-
-MIN_THICKNESS_M = 0.004
-"""Minimum rms distance of markers from their common line to determine the pose of a shape. It
-guards missing markers of a rod, which may be anywhere around it."""
+from .rigid_transform import MARKER_NOISE_M, fit_rigid_transform, transform_shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,4 +88,4 @@ def _is_determined(template: Array, observed: NDArray[np.bool_]) -> NDArray[np.b
     arms = template - (weights * template).sum(axis=1, keepdims=True)
     spread = np.einsum("fpk,fpi,fpj->fij", weights, arms, arms)
     thickness = np.sqrt(np.linalg.eigvalsh(spread)[:, 1].clip(min=0.0))
-    return np.asarray(thickness > MIN_THICKNESS_M)
+    return np.asarray(thickness > MARKER_NOISE_M)

@@ -8,13 +8,11 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..signals import MAD_TO_SIGMA
+from .rigid_transform import MARKER_NOISE_M
 
 MAX_NEIGHBORS = 6
 """Number of markers, those at the most constant distance, that a label is compared with. Chosen
 by hand: x0.5 costs 3.6 %, x2 costs nothing."""
-MIN_SPREAD_M = 0.004
-"""Lower bound of the spread of a distance. It guards markers whose distances are exact for most
-of a take: every label would be wrong where skin moves by millimeters."""
 RIGID_SPREAD_M = 0.02
 """Maximum spread of a distance that identifies a marker by itself. It guards markers that move
 freely, any of whose distances are those of another one at times."""
@@ -93,7 +91,7 @@ def learn_distances(positions: Array) -> Distances:
         few = np.isfinite(separation).sum(axis=0) < enough
         median[marker, few] = spread[marker, few] = np.nan
     np.fill_diagonal(spread, np.nan)
-    return Distances(median, np.maximum(spread, MIN_SPREAD_M))
+    return Distances(median, np.maximum(spread, MARKER_NOISE_M))
 
 
 def nan_median(values: Array) -> Array:

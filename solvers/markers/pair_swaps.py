@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..signals import find_runs
 from .distances import Distances
+from .rigid_transform import MARKER_NOISE_M
 
 MAX_JUMP_EVIDENCE, FORBIDDEN_COST = 10.0, 1e9
 """Maximum evidence of one jump as a log-odds weight, and cost of a swap where a pair moves
@@ -19,11 +20,11 @@ costs nothing, x2 costs 2.1 %."""
 FRAME_WEIGHT = 0.3
 """Weight of the distances in a frame, since consecutive frames are correlated. Chosen by hand:
 x0.5 costs 2.1 %, x2 costs nothing."""
-STEP_PERCENTILE, STEP_FACTOR, STEP_OFFSET_M = 90.0, 2.0, 0.004
+STEP_PERCENTILE, STEP_FACTOR = 90.0, 2.0
 """Typical step of a pair: this percentile of its relative steps, times the factor, plus the
-offset. A low percentile limits the influence of swaps in short takes. First chosen by hand:
-x0.5 costs nothing, x2 fails. The others guard hands that pass each other quickly in a slow
-take, and in one of an actor who stands still."""
+noise of a marker. A low percentile limits the influence of swaps in short takes. First chosen
+by hand: x0.5 costs nothing, x2 fails. The second guards hands that pass each other quickly in a
+slow take."""
 MIN_BAD_MISFIT, MIN_BAD_FRAMES = 3.0, 5
 """Misfit above which a label is bad, and minimum number of frames with two bad labels. It
 guards swaps that start in a gap, which would stay (`test_swap_between_gaps_is_corrected`)."""
@@ -108,7 +109,7 @@ def _steps(relative: Array) -> tuple[Array, Array, Array]:
         typical[has_steps] = STEP_FACTOR * np.nanpercentile(
             single[:, has_steps], STEP_PERCENTILE, axis=0
         )
-        typical[has_steps] += STEP_OFFSET_M
+        typical[has_steps] += MARKER_NOISE_M
     return step_unchanged, step_swapped, typical * gap
 
 

@@ -8,9 +8,13 @@ from ..rotations import nearest_rotations
 N_REWEIGHTINGS = 8
 """Iterations of the reweighted least squares. Chosen by hand: x0.5 costs nothing, x2 costs
 nothing."""
-CAUCHY_FACTOR, MIN_CAUCHY_SCALE_M = 3.0, 0.004
-"""Scale of the Cauchy weights: a multiple of the median residual, and a lower bound. It guards
-fits with an outlier, which equal weights follow (`test_rigid`)."""
+MARKER_NOISE_M = 0.004
+"""Meters by which a marker may be off its place on a body: skin moves by millimeters. It guards
+what is exact for most of a take, such as the distances of two markers, the steps of a pair, or
+a rod: every deviation would be significant."""
+CAUCHY_FACTOR = 3.0
+"""Scale of the Cauchy weights, a multiple of the median residual. It guards fits with an
+outlier, which equal weights follow (`test_rigid`)."""
 
 
 def fit_rigid_transform(template: Array, positions: Array) -> tuple[Array, Array]:
@@ -45,7 +49,7 @@ def fit_rigid_transform(template: Array, positions: Array) -> tuple[Array, Array
                 transform_shape(template, rotations, translations) - filled, axis=-1
             )
             typical = float(np.median(distances[observed])) if observed.any() else 0.0
-            scale = max(MIN_CAUCHY_SCALE_M, CAUCHY_FACTOR * typical)
+            scale = max(MARKER_NOISE_M, CAUCHY_FACTOR * typical)
             weights = observed / (1.0 + (np.nan_to_num(distances) / scale) ** 2)
             rotations, translations = _weighted(template, filled, weights)
     return rotations, translations

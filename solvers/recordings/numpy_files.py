@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 from ..motion import AxisName, JointRecording, Motion, Sensor, Tracks, roles_by_name
+from ..motion.humanoid import ADULT_STATURE_M
 from ..progress import Progress, Remark, unwatched
 from .containers import read_array
 from .conventions import (
@@ -21,7 +22,7 @@ from .conventions import (
     z_up_from_y_up,
 )
 from .joint_files import read_freemocap
-from .skeleton_files import NAMES_OF_BODY, STATURE_M, is_motion_x, read_motion_x
+from .skeleton_files import NAMES_OF_BODY, is_motion_x, read_motion_x
 
 HUMANML3D_RATE_HZ = 20.0
 HUMANML3D_FEATURES = 263
@@ -35,7 +36,7 @@ def read_npy(
     path: Path | str,
     *,
     scale: float | None = None,
-    height: float = STATURE_M,
+    height: float = ADULT_STATURE_M,
     on_floor: bool = True,
     progress: Progress = unwatched,
 ) -> Motion | JointRecording | Tracks:

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from ..motion import AxisName
+from ..motion.humanoid import ADULT_STATURE_M
 from ..settings import Choice, Settings, setting
-from .skeleton_files import STATURE_M
 
 
 class Axis(Choice):
@@ -85,7 +85,7 @@ class ReadingSettings(Settings):
         Unit.GUESS, "Length unit of the files; the import message reports what Auto found"
     )
     height: float = setting(
-        STATURE_M,
+        ADULT_STATURE_M,
         "Stature of the actor for SMPL files, which have no bone lengths",
         unit="m",
         minimum=0.1,

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..motion_fitting import FittedMotion
-from ..motion_fitting.goals import bone_directions
+from ..motion_fitting.goals import MIN_BEND, bone_directions
 from ..rotations import normalize, rotate
 from ..signals import smooth_gaussian
 from .body import HumanoidBody
@@ -13,9 +13,6 @@ from .limbs import Limb
 SMOOTHING_S = 0.1
 """Standard deviation of the Gaussian that smooths the axis. It guards limbs that are nearly
 straight, whose axis is noise."""
-USUAL_SINE = np.sin(np.radians(10.0))
-"""Sine of the flexion at which a limb's own axis and the usual one have the same weight. It
-guards straight limbs, which seem to bend sideways or backward."""
 
 
 def limb_hinge(body: HumanoidBody, fitted: FittedMotion, limb: Limb, usual: Array) -> Array:
@@ -29,4 +26,4 @@ def limb_hinge(body: HumanoidBody, fitted: FittedMotion, limb: Limb, usual: Arra
     backward = np.minimum(shown @ usual, 0.0)
     shown = shown - backward[:, None] * usual
     smooth = smooth_gaussian(shown, SMOOTHING_S * fitted.motion.frame_rate)
-    return normalize(smooth + USUAL_SINE * usual)
+    return normalize(smooth + MIN_BEND * usual)

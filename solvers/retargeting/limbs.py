@@ -11,6 +11,10 @@ from .placement import HipPlacement
 from .stances import Stance
 
 Limb = tuple[int, int, int]
+BLEND_S = 0.5
+"""Seconds over which the correction of a limb begins and ends. Chosen by hand: for feet x0.5
+gains 0.2 %, but 0.3 s makes knees jerk a tenth more in walks; for hands x0.5 costs 3.1 %; x2
+costs nothing."""
 
 
 @dataclass(frozen=True, eq=False)

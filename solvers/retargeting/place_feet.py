@@ -23,14 +23,11 @@ from ..progress import Progress, unwatched
 from .body import HumanoidBody
 from .foot_paths import FootPath, find_foot_paths
 from .hinges import limb_hinge
-from .limbs import Transfer
+from .limbs import BLEND_S, Transfer
 from .placement import leg_length
 from .soles import tip_of
 from .stances import LATERAL_AXIS, foot_bone
 
-BLEND_S = 0.5
-"""Seconds over which a correction begins and ends. Chosen by hand: x0.5 gains 0.2 %, x2 costs
-nothing, but 0.3 s makes knees jerk a tenth more in walks."""
 SWING_M, STANCE_M = 0.005, 0.01
 """Meters, for a leg of 0.9 m, by which ankles may leave their paths: of free and of standing
 feet, which must not slide. Chosen by hand: first, x0.5 gains 4.6 %, x2 costs 4.7 %; second,

@@ -20,20 +20,15 @@ from ..progress import Progress, unwatched
 from ..rotations import inverse, multiply
 from .hand_paths import HandPath, find_hand_paths, find_meeting
 from .hinges import limb_hinge
-from .limbs import Transfer
+from .limbs import BLEND_S, Transfer
 
-BLEND_S = 0.5
-"""Seconds over which a correction begins and ends. Chosen by hand: x0.5 costs 3.1 %, x2 costs
-nothing."""
 HAND_FRACTION = 0.02
 """Arm lengths by which hands may leave their paths. Chosen by hand: x0.5 costs 0.9 %, x2 costs
 nothing and lets hands that support the body slide."""
-MEETING_FRACTION = 0.002
-"""Arm lengths by which hands that meet may be off their distance. It guards hands that clap,
-which would stay apart on broad shoulders."""
-DEPTH_FRACTION = 0.002
-"""Arm lengths by which a wrist may be below its least height. It guards hands of a body that
-lies down, which would sink lower than the source's."""
+EXACT_FRACTION = 0.002
+"""Arm lengths by which hands that meet may be off their distance, and wrists below their least
+height. It guards hands that clap, which would stay apart on broad shoulders, and those of a
+body that lies down, which would sink lower than the source's."""
 ARM_RAD = np.radians(20.0)
 """Radians by which shoulders and elbows may turn. Chosen by hand: x0.5 costs nothing, x2 costs
 0.9 %."""
@@ -96,7 +91,7 @@ def place_hands(
             )
             goals += [
                 StayAbove(
-                    BonePoint(joint, np.zeros(3)), height[frames], DEPTH_FRACTION * path.length
+                    BonePoint(joint, np.zeros(3)), height[frames], EXACT_FRACTION * path.length
                 )
                 for joint, height in zip(path.arm[1:], path.least_heights or (), strict=False)
             ]
@@ -106,7 +101,7 @@ def place_hands(
             start_of_fit = with_bent_hinge(start_of_fit, elbow)
         if meeting:
             left, right = (BonePoint(path.arm[2], np.zeros(3)) for path in paths)
-            tolerance = MEETING_FRACTION * float(np.mean([path.length for path in paths]))
+            tolerance = EXACT_FRACTION * float(np.mean([path.length for path in paths]))
             wanted = meeting.wanted(*paths)[frames]
             weight = (meeting.weight[frames] > 0.0).astype(np.float64)
             goals.append(KeepSeparation(left, right, wanted, weight, tolerance))

@@ -5,15 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Array
+from ..feet import HEEL_FRACTION
 from ..motion import WorldPoses
 from ..motion_fitting.goals import BonePoint
 from .body import HumanoidBody
 from .placement import HipPlacement, rests_on_ground
 from .stances import foot_bone
 
-HEEL_FRACTION = 0.2
-"""Distance of the heel behind the ankle, relative to the distance from ankle to ball. Chosen by
-hand: x0.5 and x2 change the mean by less than 0.1 %."""
 ANKLE_FRACTION = 0.8
 """Height of the ankle of a foot in any pose, relative to that of a flat foot. It guards actors
 who kneel down, whose heels are behind their ankles."""

@@ -24,11 +24,12 @@ from .representations import (
     unwrap_euler,
     unwrap_rotation_vectors,
 )
-from .rotation_fit import fit_rotations, fit_similarity, nearest_rotations
+from .rotation_fit import RIGID_POINTS, fit_rotations, fit_similarity, nearest_rotations
 
 __all__ = [
     "FULL_TURN_RAD",
     "IDENTITY",
+    "RIGID_POINTS",
     "angle_between",
     "euler_from_quaternion",
     "fit_rotations",

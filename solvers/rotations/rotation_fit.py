@@ -5,6 +5,8 @@ import numpy as np
 from ..arrays import Array
 from .representations import quaternion_from_matrix
 
+RIGID_POINTS = 3
+"""Number of points that determine rotation and position of a rigid body, by definition."""
 MIN_SINGULAR_RATIO = 1e-4
 """Ratio of the second to the first singular value below which the rotation is undetermined."""
 

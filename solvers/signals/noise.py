@@ -16,6 +16,9 @@ DIFFERENCE_ORDER = 3
 DIFFERENCE_GAIN = np.sqrt(20.0)
 """Ratio of the standard deviation of third differences of white noise to its own, by
 definition."""
+OUTLIER_SIGMAS = 3.5
+"""Robust standard deviations of a moving window beyond which a sample is an outlier. Chosen by
+hand: x0.5 gains 0.3 %, x2 gains 1.0 %."""
 SHRINKAGE_LIMIT_SIGMAS = 3.0
 """Sampling error beyond which a channel keeps its own estimate (three-sigma rule). Chosen by
 hand: x0.5 costs 2.1 %, x2 costs 0.5 %."""
@@ -68,7 +71,7 @@ def shrink_noise(noise: Array, n_samples: NDArray[Any], efficiency: float = 1.0)
     return np.asarray(np.exp(center + weight * (logs - center)))
 
 
-def remove_outliers(values: Array, half_width: int, tolerance: float) -> Array:
+def remove_outliers(values: Array, half_width: int) -> Array:
     """Return the channels with outliers replaced by NaN (Hampel filter).
 
     Parameters
@@ -76,8 +79,6 @@ def remove_outliers(values: Array, half_width: int, tolerance: float) -> Array:
     values : shape (n_frames, n_channels)
         NaN where missing.
     half_width : int, frames to either side
-    tolerance : float
-        In robust standard deviations of the moving window.
     """
     from scipy.ndimage import median_filter  # slow to import: only when needed
 
@@ -87,7 +88,7 @@ def remove_outliers(values: Array, half_width: int, tolerance: float) -> Array:
     deviation = np.abs(filled - center)
     spread = MAD_TO_SIGMA * median_filter(deviation, size, mode="nearest")
     floor = 1e-9 + np.median(spread, axis=0)
-    return np.where(deviation > tolerance * np.maximum(spread, floor), np.nan, values)
+    return np.where(deviation > OUTLIER_SIGMAS * np.maximum(spread, floor), np.nan, values)
 
 
 def fill_channel_gaps(values: Array) -> Array:

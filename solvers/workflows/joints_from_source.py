@@ -6,13 +6,10 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..motion import JointRecording, Motion, Tracks, forward_kinematics, motion_from_points
 from ..motion.humanoid import fill_missing_hips
-from ..rotations import fit_similarity
+from ..rotations import RIGID_POINTS, fit_similarity
 
 MAX_DISTANCE_M = 0.002
 """Maximum distance in meters between matching joints, due to the rounding of keys."""
-MIN_SAMPLES = 3
-"""Number of observed samples that both takes need for a comparison. By definition: three points
-determine a rigid transform."""
 MAX_COSINE_DIFFERENCE = 1e-3
 """Maximum difference of the cosines of half angles of rotations in the preselection, due to the
 rounding of keys."""
@@ -67,7 +64,7 @@ def _candidate_starts(full: Array, segment: Array) -> NDArray[np.intp]:
 def _fit(source: Array, target: Array) -> tuple[Array, float, Array] | None:
     """Return rotation, scale and translation that map joints onto others; None if none does."""
     observed = np.isfinite(source).all(axis=-1)
-    if (observed != np.isfinite(target).all(axis=-1)).any() or observed.sum() < MIN_SAMPLES:
+    if (observed != np.isfinite(target).all(axis=-1)).any() or observed.sum() < RIGID_POINTS:
         return None
     axes, scale, shift = fit_similarity(source[observed], target[observed])
     moved = scale * source[observed] @ axes.T + shift

@@ -14,12 +14,11 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ..channels import Estimate, Smoothed
 from .measure_leverage import leverage
+from .remaining_noise import MIN_NOISE
 
 POOLED_JOINTS = 4.0
 """Weight, in joints, of the assumption that a smoother serves a joint as well as it serves the
 others. Chosen by hand on the development takes of the first press: x0.25 costs 0.5 %."""
-MIN_NOISE = 1e-3
-"""Degrees or centimeters. Guards a division."""
 RIDGE = 1e-9
 """Fraction of the trace. Guards equal candidates."""
 

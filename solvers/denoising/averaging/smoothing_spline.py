@@ -7,6 +7,7 @@ from scipy.linalg import eigh
 
 from ...arrays import Array
 from ..channels import Smoothed
+from ..motion_model import MAX_LEVERAGE
 
 MAX_BLOCK_FRAMES = 512
 """Frames smoothed at a time; longer takes are blended from overlapping blocks. It bounds the
@@ -14,8 +15,6 @@ run time, which rises with its cube."""
 SMOOTHNESS = np.geomspace(1e-4, 1e6, 61)
 """Candidate weights of the roughness, relative to the squared error, per frame to the fourth
 power. A grid from no smoothing to a straight line."""
-MAX_LEVERAGE = 1.0 - 1e-9
-"""Largest weight of a sample in its own estimate. Guards a division."""
 
 
 def smooth_by_spline(samples: Array) -> Smoothed:

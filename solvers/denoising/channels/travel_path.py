@@ -15,9 +15,6 @@ hand: x0.5 gains 0.2 %, x2 costs nothing."""
 SPIKE_HALF_WIDTH_S = 0.15
 """Half width of the neighborhood in which a spike of the path is detected, seconds. Chosen by
 hand: x0.5 costs 0.1 %, x2 costs nothing."""
-SPIKE_TOLERANCE = 3.5
-"""Robust standard deviations of the neighborhood beyond which a sample is a spike. Chosen by
-hand: x0.5 costs 0.1 %, x2 costs nothing."""
 MAX_ANGLE_RAD = np.radians(120.0)
 """Angle to a smooth reference within which rotation vectors are safe: two thirds of the half
 turn at which they jump. It guards takes that turn around, whose vectors would jump."""
@@ -78,7 +75,7 @@ def smooth_angles(angles: Array, frame_rate: float) -> Array:
 
 def _without_spikes(values: Array, frame_rate: float) -> Array:
     half_width = max(round(SPIKE_HALF_WIDTH_S * frame_rate), 2)
-    return remove_outliers(values, half_width, SPIKE_TOLERANCE)
+    return remove_outliers(values, half_width)
 
 
 def rotate_on_ground(ground_positions: Array, angle: float | Array) -> Array:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotri
 
 from ...arrays import Array
-from .blend_estimates import blend_weights
+from .blend_estimates import MIN_SQUARED_ERROR, blend_weights
 from .reference_markers import MIN_DEVIATION_M, ReferenceMarkers, fit_rigid_frames
 
 VARIANTS = ((3, 8), (3, 16), (8, 24), (3, 5), (5, 12))
@@ -36,9 +36,6 @@ KERNELS = (
     FrameKernel(1.0, 1.0, 2.0, 0.1, 0.03, 1e-4),
     FrameKernel(1.0, 1.0, 2.0, 0.1, 0.1, 1e-4),
 )
-MIN_SQUARED_ERROR = 1e-9
-"""Square meters: positions closer than 0.03 mm are the same. Guards a division. Guards a
-division."""
 
 
 class PredictedMarker(NamedTuple):

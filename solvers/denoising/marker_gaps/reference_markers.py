@@ -6,13 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Flags
-from ...rotations import nearest_rotations
+from ...rotations import RIGID_POINTS, nearest_rotations
 
 MAX_REFERENCES = 24
 """Reference markers that predict one marker. Chosen by hand: x0.5 gains 8.8 %, x2 costs
 nothing."""
-MIN_REFERENCES = 3
-"""Markers that span a frame, by definition."""
 MIN_GAP_COVERAGE, MIN_SHARED_FRACTION = 0.8, 0.6
 """Minimum fraction of the gap, and of the frames with the missing marker observed, in which all
 reference markers together must be available. Chosen by hand: first, x0.5 costs nothing, x2
@@ -81,7 +79,7 @@ def find_reference_markers(
         if shared.sum() >= min_shared and covered.sum() >= min_covered:
             training_frames, gap_frames = shared, covered
             chosen.append(int(other))
-    if len(chosen) < MIN_REFERENCES:
+    if len(chosen) < RIGID_POINTS:
         return None
     order = _order_by_span(positions[training_frames][:, chosen])
     points = np.array(chosen)[order]

@@ -3,10 +3,11 @@
 from .channel_noise import MAX_CONSTANT_RANGE, estimate_channel_noise
 from .learn_mixture import learn_motion_mixture
 from .motion_mixture import N_CHANNELS, SHIPPED, MotionMixture, load_motion_mixture
-from .smooth_joints import MixtureSmoother
+from .smooth_joints import MAX_LEVERAGE, MixtureSmoother
 
 __all__ = [
     "MAX_CONSTANT_RANGE",
+    "MAX_LEVERAGE",
     "N_CHANNELS",
     "SHIPPED",
     "MixtureSmoother",

@@ -9,6 +9,7 @@ from ...arrays import Array
 from ...progress import Progress, within
 from ...signals import estimate_noise, fill_channel_gaps, remove_outliers, shrink_noise
 from ..channels import Channels, Estimate
+from ..motion_model import MAX_CONSTANT_RANGE
 from ..window_priors import FilterBases, FilterBasesSettings, WindowPrior, Windows
 from .estimate_channels import estimate_channels
 from .prior_selection import (
@@ -21,15 +22,9 @@ from .prior_selection import (
 MAX_GROUP_CHANNELS = 96
 """Channels solved together; rigs with more are split between joints. Chosen by hand: x0.5 gains
 0.2 %, x2 costs nothing; it bounds the run time."""
-MAX_CONSTANT_RANGE = 1e-7
-"""Degrees or centimeters over which a channel that stands still varies. Guards against rounding
-errors."""
 SPIKE_HALF_WIDTH = 4
 """Frames to either side among which a spike of the first guess is found. Chosen by hand: x0.5
 gains 2.0 %, x2 gains 2.1 %."""
-SPIKE_TOLERANCE = 3.5
-"""Robust standard deviations of those frames beyond which a sample is a spike. Chosen by hand:
-x0.5 gains 0.3 %, x2 gains 1.0 %."""
 FIRST_GUESS_EFFICIENCY = 0.2
 """Of the median of overlapping differences, relative to a standard deviation. Chosen by hand:
 x0.5 gains 0.2 %, x2 costs 0.9 %."""
@@ -156,7 +151,7 @@ def _estimate_roughly(
     padded_errors = np.zeros(padded.shape, dtype=np.bool_)
     padded_errors[: len(noisy)] = is_error
     despiked = np.where(padded_errors, np.nan, padded)
-    despiked = remove_outliers(despiked, SPIKE_HALF_WIDTH, SPIKE_TOLERANCE)
+    despiked = remove_outliers(despiked, SPIKE_HALF_WIDTH)
     noise = np.maximum(estimate_noise(despiked), MIN_NOISE)
     windows = Windows(len(padded), length, length / window)
     return RoughTake(

@@ -9,13 +9,13 @@ import numpy as np
 from ...archives import ArchiveLayout
 from ...arrays import Array
 from ...errors import InvalidFileError, InvalidMotionError
+from ...motion.humanoid import ADULT_STATURE_M
 from ...npz_members import numbers, words
 from .tables import (
     CAPSULE_ENDS,
     CAPSULES,
     DEFAULT_LENGTHS_M,
     DEFAULT_RADII_M,
-    DEFAULT_STATURE_M,
     LENGTHS,
     OFFSETS,
     SIDES,
@@ -119,13 +119,13 @@ class BodyModel:
         LAYOUT.write(path, arrays | names)
 
 
-def default_body(stature: float = DEFAULT_STATURE_M) -> BodyModel:
+def default_body(stature: float = ADULT_STATURE_M) -> BodyModel:
     """Return an adult of default proportions, `stature` meters tall."""
     if not 0.5 <= stature <= 2.5:
         raise InvalidMotionError(
             f"The stature {stature:g} m is invalid. Give between 0.5 and 2.5 m."
         )
-    return BodyModel(DEFAULT_LENGTHS_M, DEFAULT_RADII_M).scaled(stature / DEFAULT_STATURE_M)
+    return BodyModel(DEFAULT_LENGTHS_M, DEFAULT_RADII_M).scaled(stature / ADULT_STATURE_M)
 
 
 def load_body_model(path: Path | str) -> BodyModel:

@@ -11,7 +11,7 @@ from .model import BodyModel
 from .tables import CAPSULE_SEGMENTS
 
 NO_SEGMENT = -1
-_MIN_DEPTH_M = 0.05
+MIN_DEPTH_M = 0.05
 """Nearer surfaces are not rendered. It guards a division."""
 _EPSILON = 1e-12
 """Square meters below which two directions are parallel. It guards a division."""
@@ -155,7 +155,7 @@ def _intersect(
     inside = b * b - square * c
     ends = -(b + np.sqrt(np.maximum(inside, 0.0))) / square
     depths = np.where(round_end, ends, depths)
-    valid = (~round_end | (inside >= 0.0)) & (depths > _MIN_DEPTH_M)
+    valid = (~round_end | (inside >= 0.0)) & (depths > MIN_DEPTH_M)
     hit[hit] = valid
     return hit, depths[valid]
 
@@ -168,7 +168,7 @@ def _boxes(
     ends = np.einsum("nij,nej->nei", frame[:, :3, :3], body.capsule_ends)
     ends += frame[:, np.newaxis, :3, 3]
     radii = body.radii.max(axis=1)[:, np.newaxis]
-    before = (ends[..., 2] > radii + _MIN_DEPTH_M).all(axis=1)
+    before = (ends[..., 2] > radii + MIN_DEPTH_M).all(axis=1)
     columns = _span(ends[..., 0], ends[..., 2], radii, camera.fx, camera.cx, camera.width)
     rows = _span(ends[..., 1], ends[..., 2], radii, camera.fy, camera.cy, camera.height)
     widths, heights = (np.maximum(span[1] - span[0] + 1, 0) for span in (columns, rows))
@@ -184,7 +184,7 @@ def _span(
     sideways: Array, forward: Array, radii: Array, focal: float, center: float, size: int
 ) -> tuple[Integers, Integers]:
     """Return the first and last pixel between the tangents to the balls at both ends."""
-    safe = np.maximum(forward, radii + _MIN_DEPTH_M)
+    safe = np.maximum(forward, radii + MIN_DEPTH_M)
     root = radii * np.sqrt(sideways**2 + safe**2 - radii**2)
     low = (sideways * safe - root) / (safe**2 - radii**2)
     high = (sideways * safe + root) / (safe**2 - radii**2)

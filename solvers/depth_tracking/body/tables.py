@@ -49,8 +49,6 @@ foot from ankle to toes, the others from joint to joint."""
 DEFAULT_LENGTHS_M = np.array([0.09, 0.10, 0.14, 0.325, 0.075, 0.08]
     + 2 * [0.165, 0.26, 0.255, 0.17, 0.43, 0.435, 0.17])  # fmt: skip
 """Lengths of an adult of 1.75 m."""
-DEFAULT_STATURE_M = 1.75
-"""Stature of the default body in meters. By definition of an adult."""
 
 
 class CapsuleRow(NamedTuple):

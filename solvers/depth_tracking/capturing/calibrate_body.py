@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidMotionError
+from ...motion.humanoid import ADULT_STATURE_M
 from ...progress import Progress, unwatched, within
 from ...settings import setting
-from ..body import CAPSULES, DEFAULT_STATURE_M, SIDES, BodyModel, default_body
+from ..body import CAPSULES, SIDES, BodyModel, default_body
 from ..detection import detect_pose, subsample_image
 from ..forest import PARTS, PixelForest, classify_pixels
 from .refine_body import refine_body
@@ -165,7 +166,7 @@ def body_from_cylinders(cylinders: dict[str, Cylinder], trunk: float) -> BodyMod
     if np.isfinite(trunk):
         lengths |= {name: default.length(name) * trunk / default_trunk for name in TRUNK}
     ratios = [length / default.length(name) for name, length in lengths.items()]
-    stature = float(np.clip(DEFAULT_STATURE_M * np.median(ratios), *STATURE_RANGE_M))
+    stature = float(np.clip(ADULT_STATURE_M * np.median(ratios), *STATURE_RANGE_M))
     return _with_radii(default_body(stature).with_lengths(**lengths), cylinders).symmetric()
 
 

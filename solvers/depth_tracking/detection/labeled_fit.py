@@ -10,6 +10,8 @@ from ...rotations import nearest_rotations
 from ..body import (
     CAPSULE_SEGMENTS,
     COORDINATES,
+    LIMIT_WEIGHT,
+    MAX_STEP,
     N_COORDINATES,
     N_ROOT,
     BodyModel,
@@ -32,9 +34,6 @@ from .robust_parts import FoundParts
 
 EquationList = list[SegmentEquations]
 
-LIMIT_WEIGHT = 1.0
-"""Weight per square radian beyond the joint limits. Chosen by hand: x0.5 costs 16.1 %, x2 gains
-2.6 %."""
 REST_WEIGHT = 2e-3
 """Weight per square radian; a fully observed part weighs 1 per square meter. Chosen by hand:
 x0.5 gains 2.6 %, x2 costs 4.5 %."""
@@ -46,9 +45,6 @@ SURFACE_STD_M = 0.06
 20.1 %, x2 costs 10.9 %."""
 MIN_PROBABILITY = 0.02
 """Minimum probability of a part. Chosen by hand: x0.5 costs 22.1 %, x2 costs 0.1 %."""
-MAX_STEP = 0.5
-"""Maximum change of a coordinate in one step, radians or meters. Chosen by hand: x0.5
-gains 2.6 %, x2 gains 2.6 %."""
 TRUNK_PARTS = ("hips", "spine", "chest", "neck", "head", "Shoulder", "UpperArm")
 """Parts that determine position and heading; all parts if fewer than four are observed."""
 

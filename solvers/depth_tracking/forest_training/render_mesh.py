@@ -7,11 +7,10 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...depth_scene import Camera
+from ..body import MIN_DEPTH_M
 
 NO_PART = 255
 """Label of pixels off the body."""
-MIN_DEPTH_M = 0.05
-"""Triangles with a nearer corner are not rendered. Chosen by hand; used in training only."""
 
 
 class RenderedMesh(NamedTuple):

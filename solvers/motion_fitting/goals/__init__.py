@@ -11,6 +11,7 @@ from .contact_points import (
 )
 from .follow_source import FollowSource
 from .hinge_limit import (
+    MIN_BEND,
     HingeLimit,
     bone_directions,
     flexion_in_reserve,
@@ -22,6 +23,7 @@ from .hinge_limit import (
 )
 
 __all__ = [
+    "MIN_BEND",
     "BonePoint",
     "FollowPosition",
     "FollowRotation",

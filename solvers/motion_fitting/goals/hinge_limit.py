@@ -14,8 +14,9 @@ START_RAD = np.radians(3.0)
 """Radians by which a straight limb is bent before the fit. It guards limbs that are exactly
 straight."""
 MIN_BEND = np.sin(np.radians(10.0))
-"""Sine of the mean flexion below which the axis of a hinge is unknown. It guards straight
-limbs, whose bones have an angle by noise, and knees that bend backward by a few degrees."""
+"""Sine of the flexion at which the axis that a limb shows counts as much as its usual one; with
+a mean flexion below it is unknown. It guards straight limbs, whose bones have an angle by
+noise, and knees that bend backward by a few degrees."""
 HINGE_RAD = np.radians(1.0)
 """Radians by which a hinge may pass its limit. It guards knees, elbows and toes against bending
 the wrong way."""

@@ -16,6 +16,7 @@ from ...motion.humanoid import (
 )
 from ...motion.skeletons import INFERRED
 from ...progress import Progress, unwatched, within
+from ...rotations import RIGID_POINTS
 from ..joint_rotations import (
     JointOffsets,
     LimbTwists,
@@ -28,10 +29,6 @@ from ..pose_library import PostureLibrary, load_posture_library
 from ..reliability import Reliability, measure_reliability, posture_reliability
 from .complete_postures import Completer, FittedLibrary, ObservedTake, complete_postures
 from .settings import DEFAULT_SETTINGS, PostureSettings
-
-MIN_JOINTS = 3
-"""Minimum number of posture joints observed in one frame. By definition: three points determine
-position and rotation of a rigid body."""
 
 
 class CompletedJoints(NamedTuple):
@@ -152,28 +149,28 @@ def complete_joints(
 
 def _check_observed(recording: JointRecording, positions: Array, reliability: Array) -> None:
     """Raise InvalidMotionError with the reason if no frame has enough reliable joints."""
-    if _max_joints(reliability > 0.0) >= MIN_JOINTS:
+    if _max_joints(reliability > 0.0) >= RIGID_POINTS:
         return
     recognized = posture_joint_indices(recording.names)
-    if len(recognized) < MIN_JOINTS:
+    if len(recognized) < RIGID_POINTS:
         raise InvalidMotionError(
             f"Only {len(recognized)} joints have recognized names"
-            f" ({', '.join(recognized)}). Use a recording with at least {MIN_JOINTS},"
+            f" ({', '.join(recognized)}). Use a recording with at least {RIGID_POINTS},"
             " including the hips and limbs."
         )
     state = recording.tracking_state
-    if state is None or _max_joints(np.isfinite(positions)[..., 0]) < MIN_JOINTS:
+    if state is None or _max_joints(np.isfinite(positions)[..., 0]) < RIGID_POINTS:
         raise InvalidMotionError(
-            f"No frame shows {MIN_JOINTS} joints of a body. Choose a recording of a tracked"
+            f"No frame shows {RIGID_POINTS} joints of a body. Choose a recording of a tracked"
             " actor."
         )
     if (state == INFERRED).any():
         raise InvalidMotionError(
-            f"No frame has {MIN_JOINTS} tracked joints; the tracker infers the others. Raise"
+            f"No frame has {RIGID_POINTS} tracked joints; the tracker infers the others. Raise"
             " Weight of Inferred Joints (--inferred) to use those."
         )
     raise InvalidMotionError(
-        f"No frame has {MIN_JOINTS} joints with the tracking state `tracked`, although"
+        f"No frame has {RIGID_POINTS} joints with the tracking state `tracked`, although"
         " positions exist. If the positions are right, remove the tracking states from the"
         " recording."
     )

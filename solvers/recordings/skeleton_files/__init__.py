@@ -9,12 +9,10 @@ from .motion_x import is_motion_x, read_motion_x
 from .mvnx import is_mvnx, open_mvnx
 from .segment_recordings import recording_from_segments
 from .smpl import NAMES_OF_BODY, is_smpl, open_smpl
-from .smpl_body import STATURE_M
 from .vrma import is_vrma, read_vrma
 
 __all__ = [
     "NAMES_OF_BODY",
-    "STATURE_M",
     "find_skeleton",
     "is_kimodo",
     "is_motion_x",

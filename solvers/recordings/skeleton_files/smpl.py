@@ -8,6 +8,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError, InvalidSettingError
 from ...motion import Motion, Skeleton
+from ...motion.humanoid import ADULT_STATURE_M
 from ...progress import Progress, Remark, unwatched
 from ...rotations import quaternion_from_rotation_vector
 from ..containers import archive_names, read_archive_members
@@ -25,7 +26,7 @@ from ..conventions import (
     z_up_from_y_up,
 )
 from .kimodo import open_kimodo
-from .smpl_body import BODY, FINGERS, STATURE_M, smpl_joints
+from .smpl_body import BODY, FINGERS, smpl_joints
 from .smpl_people import split_people
 
 ROTATIONS = ("poses", "smpl_poses", "fullpose")
@@ -78,7 +79,7 @@ def open_smpl(
     path: Path | str,
     *,
     scale: float | None = None,
-    height: float = STATURE_M,
+    height: float = ADULT_STATURE_M,
     on_floor: bool = True,
     progress: Progress = unwatched,
 ) -> Bodies[Motion]:

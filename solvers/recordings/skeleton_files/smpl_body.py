@@ -8,9 +8,9 @@ bones here are those of an adult of 1.75 m by Drillis and Contini (1966), scaled
 import numpy as np
 from numpy.typing import NDArray
 
+from ...motion.humanoid import ADULT_STATURE_M
+
 FINGERS = ("index", "middle", "pinky", "ring", "thumb")
-STATURE_M = 1.75
-"""Stature of this body, meters, by definition of the table below."""
 
 BODY: tuple[tuple[str, str, tuple[float, float, float]], ...] = (
     ("pelvis", "", (0.0, 0.96, 0.0)),
@@ -49,7 +49,7 @@ _KNUCKLES = {
 
 
 def smpl_joints(
-    hands: bool, height: float = STATURE_M
+    hands: bool, height: float = ADULT_STATURE_M
 ) -> tuple[tuple[str, ...], tuple[int, ...], NDArray[np.float64]]:
     """Return names, parents and offsets, shape (n_joints, 3), of a body in meters, Y up."""
     rows = list(BODY)
@@ -62,5 +62,5 @@ def smpl_joints(
                 parent = name
     names = tuple(name for name, _, _ in rows)
     parents = tuple(names.index(parent) if parent else -1 for _, parent, _ in rows)
-    offsets = np.array([offset for _, _, offset in rows]) * (height / STATURE_M)
+    offsets = np.array([offset for _, _, offset in rows]) * (height / ADULT_STATURE_M)
     return names, parents, offsets

@@ -16,6 +16,7 @@ from ...motion.humanoid import (
     rotate_about_vertical,
     segment_lengths,
 )
+from ...rotations import RIGID_POINTS
 from .clip_postures import ClipPostures
 
 N_COORDINATES = 3 * N_JOINTS
@@ -30,9 +31,6 @@ MIN_PATH_M = 0.01
 MIN_OBSERVED_FRACTION = 0.9
 """Fraction of frames with an observed joint above which it helps to find the heading. It guards
 takes whose joints are lost one after the other: at 0.5 no frame may show all such joints."""
-MIN_HEADING_JOINTS = 3
-"""Minimum number of such joints for the estimation of a heading. By definition: three points
-determine a rotation."""
 N_HEADING_FRAMES = 24
 """Number of frames, evenly spaced, used for the heading. It bounds the run time. Chosen by
 hand: x0.5 costs nothing, x2 costs nothing."""
@@ -100,7 +98,7 @@ class PostureDistribution:
         frequent = (
             np.isfinite(postures.positions).all(axis=-1).mean(axis=0) > MIN_OBSERVED_FRACTION
         )
-        if frequent.all() or frequent.sum() < MIN_HEADING_JOINTS:
+        if frequent.all() or frequent.sum() < RIGID_POINTS:
             return postures
         observed = postures.positions[:, frequent]
         complete = observed[np.isfinite(observed).all(axis=(1, 2))]
