@@ -6,17 +6,17 @@ NAME = "Depth Points"
 MADE = "mocap_assist_depth_points"
 """Custom property of the node group, whatever it is called meanwhile."""
 RADIUS = 0.006  # meters
+OBSERVED = "seen"
+"""Attribute of a point: whether the camera measured a depth there."""
 
 
-def point_nodes(attribute_name: str) -> bpy.types.NodeTree:
-    """Return the node group that shows vertices with the attribute as points."""
-    existing = next(
-        (each for each in bpy.data.node_groups if each.get(MADE) == attribute_name), None
-    )
+def point_nodes() -> bpy.types.NodeTree:
+    """Return the node group that shows the observed vertices as points."""
+    existing = next((each for each in bpy.data.node_groups if each.get(MADE) == OBSERVED), None)
     if existing is not None and existing.library is None:
         return existing
     tree = bpy.data.node_groups.new(NAME, "GeometryNodeTree")
-    tree[MADE] = attribute_name
+    tree[MADE] = OBSERVED
     for direction in ("INPUT", "OUTPUT"):
         tree.interface.new_socket(
             "Geometry", in_out=direction, socket_type="NodeSocketGeometry"
@@ -27,7 +27,7 @@ def point_nodes(attribute_name: str) -> bpy.types.NodeTree:
     )
     attribute = tree.nodes.new("GeometryNodeInputNamedAttribute")
     attribute.data_type = "BOOLEAN"
-    attribute.inputs["Name"].default_value = attribute_name
+    attribute.inputs["Name"].default_value = OBSERVED
     points.inputs["Radius"].default_value = RADIUS
     for column, node in enumerate((given, points, made)):
         node.location = (220.0 * column, 0.0)

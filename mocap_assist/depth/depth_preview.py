@@ -23,7 +23,7 @@ from ..blender.path_properties import absolute
 from ..blender.permissions import allow_recording, recording_allowed
 from ..blender.stored_json import load_json, store_json
 from ..scene.scene_objects import add_object, in_object_mode
-from .depth_points import point_nodes
+from .depth_points import OBSERVED, point_nodes
 
 logger = logging.getLogger(__name__)
 
@@ -31,8 +31,6 @@ KEY = "mocap_assist_depth"
 """Custom property of a mesh: its recording and timing, as JSON."""
 PROBLEM = "mocap_assist_depth_problem"
 """Custom property of a mesh: why it shows no points."""
-OBSERVED = "seen"
-"""Attribute of a point: whether the camera measured a depth there."""
 NOT_ALLOWED = (
     "This file shows a depth recording that has not been opened on this machine yet."
     " Press Show Points."
@@ -124,7 +122,7 @@ def build_preview(
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = scale * rotation, scale * translation
     preview.matrix_world = Matrix(matrix.tolist())
-    preview.modifiers.new("Points", "NODES").node_group = point_nodes(OBSERVED)
+    preview.modifiers.new("Points", "NODES").node_group = point_nodes()
     shown.write(mesh)
     add_object(context, preview)
     _show(mesh, context.scene.frame_current_final)

@@ -163,7 +163,7 @@ def learn_body_relation(motions: Iterable[Motion], *, trained_on: str = "") -> B
     """
     total, n_frames = np.zeros((2 * N_FEATURES * 3 * len(KEYS),) * 2), 0
     for motion in motions:
-        values = canonical_values(encode(motion), KEYS)
+        values = canonical_values(encode(motion))
         gap, hop = (round(seconds * motion.frame_rate) for seconds in (GAP_S, HOP_S))
         if len(values) < 2 * gap:
             continue
@@ -181,14 +181,14 @@ def learn_body_relation(motions: Iterable[Motion], *, trained_on: str = "") -> B
     return BodyRelation(KEYS, total / n_frames, trained_on)
 
 
-def canonical_values(channels: Channels, keys: Sequence[str]) -> Array:
-    """Return the channels of some parts as if the rig's rest pose were the T-pose.
+def canonical_values(channels: Channels) -> Array:
+    """Return the channels of `KEYS` as if the rig's rest pose were the T-pose.
 
     Shape (n_frames, n_keys, 3); zero where the recording lacks the part.
     """
-    result = np.zeros((len(channels.values), len(keys), 3))
+    result = np.zeros((len(channels.values), len(KEYS), 3))
     index = {key: part for part, key in enumerate(channels.keys)}
-    for column, key in enumerate(keys):
+    for column, key in enumerate(KEYS):
         if key in index:
             values = channels.values[:, index[key]]
             is_rotation = key != BODY_POSITION

@@ -135,7 +135,7 @@ def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
     """
     n_neighbors = min(N_NEIGHBORS, len(prior.poses))
     _, nearest = prior.tree.query(pose[N_ROOT:], k=n_neighbors)
-    successors = following_poses(prior, np.atleast_1d(nearest), N_FOLLOWING)
+    successors = following_poses(prior, np.atleast_1d(nearest))
     mean = successors.mean(axis=0)
     values, vectors = np.linalg.eigh(np.cov(successors.T, bias=True))
     explained = np.cumsum(values[::-1]) / max(values.sum(), 1e-300)
@@ -143,13 +143,13 @@ def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
     return LocalPca(mean, vectors[:, ::-1][:, :n_components])
 
 
-def following_poses(prior: MotionPrior, indices: NDArray[np.intp], ahead: int) -> Array:
-    """Return the next `ahead` poses (n, 30) after each index within its clip.
+def following_poses(prior: MotionPrior, indices: NDArray[np.intp]) -> Array:
+    """Return the next `N_FOLLOWING` poses (n, 30) after each index within its clip.
 
-    If none follows, or `ahead` is 0, return the poses themselves.
+    If none follows, return the poses themselves.
     """
-    following = (indices[:, np.newaxis] + np.arange(1, ahead + 1)).ravel()
-    clips = np.repeat(prior.clips[indices], ahead)
+    following = (indices[:, np.newaxis] + np.arange(1, N_FOLLOWING + 1)).ravel()
+    clips = np.repeat(prior.clips[indices], N_FOLLOWING)
     inside = following < len(prior.poses)
     inside[inside] = prior.clips[following[inside]] == clips[inside]
     successors: Array = prior.poses[following[inside]] if inside.any() else prior.poses[indices]

@@ -124,12 +124,12 @@ class Vocabulary:
         return codes
 
 
-def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
+def learn_vocabulary(clips: list[ClipPostures]) -> Vocabulary:
     """Learn the codewords of clips.
 
     Principal components, then k-means with the seeding of Arthur and Vassilvitskii (2007).
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     n_frames = sum(clip.n_frames for clip in clips)
     posture_distribution = learn_posture_distribution(clips)
     step = max(n_frames // MAX_TRAINING_FRAMES, 1)
