@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
-from .curve_modifiers import Written, keep_outside
+from .curve_modifiers import LAST_FRAME, Written, keep_outside
 
 CONSTANT, LINEAR = 0, 1  # Blender's numbers for interpolation
 MEASURED, GENERATED = 0, 5  # and for its key types KEYFRAME and GENERATED
@@ -18,7 +18,6 @@ ON_FRAME = 1e-3
 """Frames that are only rounding: keys are 32-bit numbers, whose precision at frame 10,000 is
 this."""
 
-LAST_FRAME = 1_048_574  # Blender's MAXFRAME
 
 # Everything that a key is, with its Blender array length and the value of a new key.
 KEY = {
@@ -100,7 +99,7 @@ def _fault(times: NDArray[np.float32]) -> str:
         )
     if (beyond := times[np.abs(times) > LAST_FRAME]).size:
         return (
-            f"a key at frame {beyond[0]:.3g}; Blender plays no key beyond {LAST_FRAME:,}."
+            f"a key at frame {beyond[0]:.3g}; Blender plays no key beyond {LAST_FRAME:,.0f}."
             " Delete that key."
         )
     if (np.diff(times) < 0.0).any():

@@ -21,6 +21,7 @@ from .armature_write import (
 from .bone_channels import Curves, animated_curves, curves_of, sampled
 from .curves import deselect, write_first
 from .rotation_modes import quaternions_from_channels
+from .unchanged_samples import MIN_CHANGE
 
 SUFFIX = ".delta"
 N_CHANNELS = {
@@ -30,9 +31,6 @@ N_CHANNELS = {
     "rotation_axis_angle": 4,
 }
 """Properties of a bone that a result may change, and how many channels each has."""
-MIN_DELTA = 1e-6
-"""Radians, quaternion components or units below which two actions are the same. It bounds the
-rounding of keys, which have 32 bits."""
 
 
 def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Source:
@@ -68,7 +66,7 @@ def _deltas(
         times = [channel.keys[:, 0] for channel in (*old.values(), *new.values())]
         frames = np.unique(np.concatenate(times))
         values = [sampled(each, getattr(bone, name), frames) for each in (old, new)]
-        if np.abs(values[1] - values[0]).max() < MIN_DELTA:
+        if np.abs(values[1] - values[0]).max() < MIN_CHANGE:
             continue
         if name == "rotation_quaternion":
             raw, clean = (quaternions_from_channels(each, "QUATERNION") for each in values)

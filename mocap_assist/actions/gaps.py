@@ -6,10 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.arrays import Array
+from .frames import MAX_RECORDED_STEP_FRAMES
 
-MAX_RECORDED_STEP_FRAMES = 2.5
-"""Median distance of keys, in frames, above which there are no gaps. It guards actions that an
-animator keyed by hand."""
 MAX_KEY_SPACING_RATIO = 1.5
 """Distance between neighbors, relative to the median one, that is no gap. By definition between
 1, no gap, and 2, one missing key."""

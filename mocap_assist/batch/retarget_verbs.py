@@ -8,6 +8,7 @@ import bpy
 from ...solvers.command_line import add_preset_option
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
+from ...solvers.recordings.conventions import CENTIMETER
 from ...solvers.retargeting import RetargetSettings, UnbakeSettings
 from ..retarget.button_settings import (
     RetargetBundle,
@@ -20,8 +21,6 @@ from ..retarget.unbaking import read_unbaking, write_unbaked
 from ..scene import history
 from .solving import solve_in_subprocess
 
-CENTIMETER = 0.01
-"""Meters, by definition."""
 VerbResult = tuple[str, dict[str, Any]]
 
 

@@ -14,14 +14,21 @@ import bpy
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import open_regular
 from ...solvers.json_text import parse_json
+from ...solvers.motion.skeletons import MAX_FRAME_RATE_HZ
 from ...solvers.recordings import SCENE_SUFFIXES, refuse_stand_ins, suffix_by_content
-from .gltf_skins import dict_of, find_joint_trees, list_of, write_with_skins
+from .gltf_skins import (
+    GLB_JSON,
+    GLB_MAGIC,
+    dict_of,
+    find_joint_trees,
+    list_of,
+    write_with_skins,
+)
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
 MIN_RATE_HZ = 12.0
 """Below it, keys are sparse: no sampled motion, but one that was set by hand."""
 RATE_OF_SPARSE_KEYS_HZ = 30.0
-MAX_RATE_HZ = 10_000.0
 RATE_TOLERANCE = 0.01
 MAX_JSON_BYTES = 1 << 28
 USD_OPTIONS = {
@@ -30,8 +37,6 @@ USD_OPTIONS = {
 }  # fmt: skip
 DAMAGED_FBX = ("Failed to load", "Empty file", "Truncated file")
 """Reasons that Blender's importer of FBX gives for files that were cut off."""
-GLB_MAGIC = 0x46546C67
-GLB_JSON = 0x4E4F534A
 
 
 def open_scene_file(path: str, *, meshes: bool = False) -> None:
@@ -192,4 +197,4 @@ def _key_rate(accessor: dict[str, Any]) -> list[float]:
         rate = (count - 1) / duration if duration > 0.0 else 0.0
     except (IndexError, TypeError, ValueError, OverflowError):
         return []
-    return [round(rate, 3)] if 0.0 < rate < MAX_RATE_HZ else []
+    return [round(rate, 3)] if 0.0 < rate < MAX_FRAME_RATE_HZ else []

@@ -6,13 +6,13 @@ import struct
 from ...solvers.files import open_regular
 from ...solvers.motion import AxisName, FileConventions
 from ...solvers.recordings import suffix_by_content
+from ...solvers.recordings.conventions import CENTIMETER
 
 HEAD_BYTES = 1 << 20
 """Of a file; each of these formats states its axes near its beginning."""
 MAX_PROPERTY_BYTES = 200
 BINARY_FBX = b"Kaydara FBX Binary"
 FBX_CODES = {b"I": "<i", b"D": "<d"}
-CENTIMETER = 0.01
 FBX_AXES: tuple[AxisName, ...] = ("X", "Y", "Z")
 Y_UP: tuple[AxisName, AxisName] = ("Y", "Z")
 Z_UP: tuple[AxisName, AxisName] = ("Z", "-Y")

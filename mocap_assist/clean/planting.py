@@ -10,15 +10,11 @@ from ..actions.armature_read import read_take
 from ..actions.armature_write import Output, check_writable, put_to_use, write_take
 from ..actions.contact_keys import animators_contacts, write_contacts
 from ..blender.time_slices import Sliced, Steps
-from ..jobs.job import ShortSolve
+from ..jobs.job import MAX_SHORT_SOLVE_FRAMES, ShortSolve
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from .solve_planting import Replanted, plant
-
-MAX_SHORT_SOLVE_FRAMES = 5000
-"""Number of frames up to which no other process is started. Chosen by hand: they are solved in
-0.5 s, less than that takes."""
 
 
 class FeetBundle(NamedTuple):

@@ -12,6 +12,7 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, within
 from ...solvers.recordings import write_bvh
+from ...solvers.recordings.conventions import CENTIMETER
 from ...solvers.rotations import IDENTITY, inverse, multiply
 from ..actions.take import skeleton_of
 from ..blender import compat
@@ -29,7 +30,6 @@ from .plain_armature import (
 from .solve_exporting import TAKE, ExportRequest, WrittenTake
 from .stick_mesh import add_stick_mesh
 
-CENTIMETER = 0.01
 FBX_OPTIONS = {
     "use_selection": True, "object_types": {"ARMATURE", "MESH"}, "add_leaf_bones": False,
     "apply_unit_scale": True, "apply_scale_options": "FBX_SCALE_NONE", "bake_anim": True,

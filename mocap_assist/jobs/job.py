@@ -41,6 +41,11 @@ class ProcessDied(MocapAssistError):
         )
 
 
+MAX_SHORT_SOLVE_FRAMES = 5000
+"""Number of frames up to which feet are planted, or a take retargeted, without another process.
+Chosen by hand: they are solved in 0.5 s, less than a process takes to start."""
+
+
 class ShortSolve(partial[Result]):
     """A solve that is short enough to run in Blender's process."""
 

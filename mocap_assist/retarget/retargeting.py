@@ -20,7 +20,7 @@ from ..blender.block_references import SourceReference
 from ..blender.compat import Source
 from ..blender.name_lists import split_names
 from ..blender.time_slices import Sliced, Steps
-from ..jobs.job import ShortSolve
+from ..jobs.job import MAX_SHORT_SOLVE_FRAMES, ShortSolve
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.rigify import is_rigify
 from ..rigs.role_confidence import explain_rig_roles
@@ -36,10 +36,6 @@ from .solve_retargeting import (
     StagedMotion,
     retarget_and_report,
 )
-
-MAX_SHORT_SOLVE_FRAMES = 5000
-"""Number of frames up to which no other process is started. Chosen by hand: they are solved in
-0.5 s, less than that takes."""
 
 
 class RetargetScene(NamedTuple):

@@ -13,7 +13,7 @@ from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion
 from ..actions.bone_channels import animated_curves, read_bone, rotation_curves
 from ..actions.curves import Channel
-from ..actions.frames import Grid
+from ..actions.frames import MAX_GRID_OFFSET_STEPS, Grid
 from ..actions.take import ArmatureTake, BoneChannels, TakePart, part_of
 from ..blender.block_references import BlockReference, SourceReference
 from ..blender.compat import Source
@@ -23,9 +23,6 @@ from .tracked_body import TrackedBody, armature_from_motion, bones_of
 from .tracked_checks import check_keyed, check_posed
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
-MAX_GRID_OFFSET_STEPS = 0.05
-"""Maximum offset between the ends of an action and a depth image, a fraction of a step. Chosen
-by hand: 2 ms at 30 Hz."""
 
 
 @dataclass(frozen=True, eq=False)

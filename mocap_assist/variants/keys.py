@@ -13,13 +13,12 @@ from ...solvers.motion import Motion
 from ..actions.bone_channels import animated_curves
 from ..actions.curves import CONSTANT, deselect, write_first
 from ..actions.take import ArmatureTake, TakePart, basis_rotations, root_locations
+from ..actions.unchanged_samples import MIN_CHANGE
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene.controls import BoneKeys
 from ..scene.rig import Placement
 
-MIN_CHANGE = 1e-6
-"""Change of a quaternion component that is only rounding: the bone does not move."""
 BONE = re.compile(r'pose\.bones\["(.+?)"\]')
 
 

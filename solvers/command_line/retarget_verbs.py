@@ -17,12 +17,11 @@ from ..motion import (
     write_humanoid_map,
 )
 from ..progress import Progress, within
+from ..recordings.conventions import CENTIMETER
 from ..retargeting import RetargetSettings, UnbakeSettings, reduce_keys, retarget
 from .files import add_reading_options, read, with_body, write
 from .options import add_preset_option, arguments_from, settings_from_arguments
 from .verb import Outcome, Task
-
-CENTIMETER = 0.01
 
 
 class RetargetTarget(NamedTuple):

@@ -3,7 +3,7 @@
 from .body_trackers import NUITRACK, ZED_BODIES
 from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
 from .file_conventions import AxisName, FileConventions, unit_name
-from .frame_rate import check_frame_rate
+from .frame_rate import MAX_FRAME_RATE_HZ, check_frame_rate
 from .joint_limits import ROTATION_VECTOR, JointLimits
 from .joint_recording import INFERRED, TRACKED, JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
@@ -29,6 +29,7 @@ __all__ = [
     "COMPUTED_JOINTS",
     "HAND_POINTS",
     "INFERRED",
+    "MAX_FRAME_RATE_HZ",
     "MIN_BONE_M",
     "MIN_SHOT_S",
     "NUITRACK",

@@ -62,6 +62,7 @@ from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import bodies_of_joints, bodies_of_markers
 from .time_stamps import (
     DEFAULT_FRAME_RATE,
+    MAX_TIME_S,
     ConstantRate,
     common_rate,
     constant_rate_from_times,
@@ -72,6 +73,7 @@ __all__ = [
     "ALL_BODIES",
     "CENTIMETER",
     "DEFAULT_FRAME_RATE",
+    "MAX_TIME_S",
     "METERS",
     "MIN_BODY_JOINTS",
     "PLAUSIBLE_REACH_M",

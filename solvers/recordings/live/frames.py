@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidMotionError
 from ...json_text import parse_json
 from ...motion import JointRecording, Sensor
+from ..conventions import MAX_TIME_S
 
 FORMAT = "mocap-assist-live"
 VERSION = 1
@@ -25,8 +26,6 @@ in the garbage collector."""
 MAX_NAME_LENGTH = 64
 MAX_POSITION_M = 100.0
 """Maximum distance from the sensor on each axis, meters."""
-MAX_TIME_S = 1e11
-"""Maximum time in seconds, thousands of years."""
 MAX_BODY = 2**53
 NUMBERS = (int, float)
 

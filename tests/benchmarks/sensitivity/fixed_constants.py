@@ -62,7 +62,6 @@ REASONS: dict[str, tuple[str, ...]] = {
         "mocap_assist/actions/curve_modifiers.*",
         "mocap_assist/actions/curves.AUTO_CLAMPED",
         "mocap_assist/actions/curves.GENERATED",
-        "mocap_assist/actions/curves.LAST_FRAME",
         "mocap_assist/actions/curves.LINEAR",
         "mocap_assist/retarget/sparse_write.*",
         "mocap_assist/rigs/rigify.IK_PARENT_ROOT",
