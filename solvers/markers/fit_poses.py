@@ -22,8 +22,6 @@ gains 0.5 %, x2 costs 0.8 %."""
 DAMPING = 1e-3
 """Initial weight of Levenberg-Marquardt damping, relative to the diagonal: that of Madsen,
 Nielsen, Tingleff (2004), Methods for non-linear least squares problems, eq. 3.14."""
-MIN_DAMPING, MAX_DAMPING = 1e-6, 1e6
-"""Bounds of the weight of the damping. They guard the search."""
 MAX_STEP_RAD = 0.5
 """Radians: maximum rotation of a joint in one step. Chosen by hand: x0.5 gains 3.9 %, x2 costs
 nothing."""
@@ -101,7 +99,6 @@ def _fit(body: MarkerBody, observed: Array, poses: Poses, most_steps: int) -> Po
         settled = (cost - new_cost)[better] <= MIN_COST_GAIN * cost[better]
         cost = np.where(better, new_cost, cost)
         damping = np.where(better, damping / 5.0, damping * 8.0)
-        damping = damping.clip(MIN_DAMPING, MAX_DAMPING)
         if settled.all() and better.mean() > 0.5:
             break
     return poses

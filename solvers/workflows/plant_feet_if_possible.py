@@ -9,13 +9,10 @@ from ..denoising import Planted, PlantSettings, plant_feet
 from ..errors import InvalidMotionError
 from ..feet import SIDES, find_legs
 from ..motion import Motion
-from ..motion.humanoid import detect_contacts
+from ..motion.humanoid import MIN_RELIABILITY, detect_contacts
 from ..progress import Progress, unwatched
 from .flatten_toes import flatten_toes
 
-MIN_RELIABILITY = 0.6
-"""Reliability of an ankle, 0 to 1, above which its observed position is right. Chosen by hand:
-x2 fails `test_reliable_ankle_is_planted_near_its_rest_position`."""
 RELIABLE_WEIGHT = 5.0
 """Weight of the path of such an ankle, relative to that of others. Chosen by hand: 1 fails
 `test_reliable_ankle_is_planted_near_its_rest_position`."""

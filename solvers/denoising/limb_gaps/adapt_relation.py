@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...signals import find_runs
+from ..averaging import MIN_NOISE
 from .bridges import N_FEATURES, Bridge
 
 MIN_GAP_S = 0.25
@@ -29,8 +30,6 @@ gains 0.8 %, x2 costs 0.1 %."""
 PRIOR_TRIALS = 1.0
 """Number of gaps of evidence that the prediction is right as it is, by definition one. It
 guards takes too short to test it."""
-MIN_VARIANCE = 1e-6
-"""Square degrees. Guards a division."""
 
 
 class Trials(NamedTuple):
@@ -119,7 +118,7 @@ def adapt_relation(trials: Trials, general: Array) -> AdaptedRelation:
     x, y = trials.features, trials.deviations
     if not len(x):
         return AdaptedRelation(general, 1.0, None)
-    scale = OWN_RIDGE * np.maximum((y**2).mean(axis=0), MIN_VARIANCE)
+    scale = OWN_RIDGE * np.maximum((y**2).mean(axis=0), MIN_NOISE**2)
     predicted = np.zeros_like(y)
     order = np.argsort(trials.bounds[:, 0], kind="stable")
     for fold in np.array_split(order, min(N_FOLDS, len(order))):
@@ -127,7 +126,7 @@ def adapt_relation(trials: Trials, general: Array) -> AdaptedRelation:
         others = (trials.bounds[:, 1] <= first) | (trials.bounds[:, 0] >= last)
         predicted[fold] = x[fold] @ _ridge(x[others], y[others], general, scale)
     power, agreement = (predicted**2).sum(), (predicted * y).sum()
-    prior = PRIOR_TRIALS / trials.n_independent * power + MIN_VARIANCE
+    prior = PRIOR_TRIALS / trials.n_independent * power + MIN_NOISE**2
     weight = float(np.clip((agreement + prior) / (power + prior), 0.0, 1.0))
     variance = ((y - weight * predicted) ** 2).mean(axis=0) / trials.length
     return AdaptedRelation(_ridge(x, y, general, scale), weight, variance)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...signals import CausalSmoother, fill_gaps, smooth_gaussian
+from ..skeletons import MIN_BONE_M
 from .posture_joints import HIPS, MIRROR_JOINTS, POSTURE_JOINTS
 
 LATERAL_JOINTS = tuple(
@@ -29,9 +30,6 @@ are less parallel to the heading: a chest is not in the middle of its shoulders.
 HEADING_SMOOTHING_S = 0.1
 """Standard deviation of the Gaussian that smooths the heading. It guards hips and shoulders
 with jitter, which would rotate the complete body."""
-MIN_LATERAL_M = 0.02
-"""Horizontal distance of left and right joint below which there is no heading. It guards bodies
-that lie on a side, or are seen as a line, which have no heading."""
 
 REVERSAL_WINDOW_S = 1.0
 """Window over which opposite headings are compared with the mean, to detect swaps. It guards
@@ -135,7 +133,7 @@ def _lateral_directions(
         positions[missing], reliability[missing], HALF_LATERAL_JOINTS
     )
     lengths = np.linalg.norm(lateral, axis=-1, keepdims=True)
-    return lateral / np.maximum(lengths, 1e-9), lengths[:, 0] > MIN_LATERAL_M * 1e-3
+    return lateral / np.maximum(lengths, 1e-9), lengths[:, 0] > MIN_BONE_M * 1e-3
 
 
 def _without_heading(

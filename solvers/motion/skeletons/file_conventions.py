@@ -10,8 +10,6 @@ UNIT_NAMES = {
     0.0254: "inches", 0.3048: "feet",
 }  # fmt: skip
 OFFSET_ADDED = "positions added to offsets"
-MIN_CERTAIN_CONFIDENCE = 0.995
-"""Confidence, a probability, from which rounding to whole percents gives 100. By definition."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +36,7 @@ class FileConventions:
     @property
     def is_certain(self) -> bool:
         """Whether a report need not mention the confidence in the up axis."""
-        return self.confidence >= MIN_CERTAIN_CONFIDENCE
+        return f"{self.confidence:.0%}" == "100%"
 
     def sentence(self) -> str:
         """Return what was judged, for a report: without a period."""

@@ -19,12 +19,9 @@ from ...arrays import Array
 
 Real = TypeVar("Real", NDArray[np.float64], NDArray[np.float32])
 
-MIN_VARIANCE_RATIO, MAX_VARIANCE_RATIO = 1e-4, 10.0
-"""Bounds of each variance, relative to the variance of the errors. They guard the search for a
-maximum of the likelihood."""
-MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 0.3, 10.0
-"""Bounds of each length, relative to the spread of the examples. They guard the search for a
-maximum of the likelihood."""
+MIN_VARIANCE_RATIO, MIN_LENGTH_RATIO, MAX_RATIO = 1e-4, 0.3, 10.0
+"""Bounds of each variance, relative to the variance of the errors, and of each length, relative
+to the spread of the examples. They guard the search for a maximum of the likelihood."""
 MAX_ITERATIONS = 40
 """Maximum number of iterations of the search for a maximum of the likelihood. It bounds the run
 time."""
@@ -100,10 +97,8 @@ def learn_kernel(
     total = max(float(centered.var()), 1e-12)
     same = tuple((one[:, None] == one).astype(np.float64) for one in (takes, actors))
     start = np.log([*spread, *(total * np.array([0.2, 0.2, 0.1, 0.1, 0.1, 0.2, 0.1]))])
-    bounds = [
-        (np.log(MIN_LENGTH_RATIO * one), np.log(MAX_LENGTH_RATIO * one)) for one in spread
-    ]
-    bounds += [(np.log(MIN_VARIANCE_RATIO * total), np.log(MAX_VARIANCE_RATIO * total))] * 7
+    bounds = [(np.log(MIN_LENGTH_RATIO * one), np.log(MAX_RATIO * one)) for one in spread]
+    bounds += [(np.log(MIN_VARIANCE_RATIO * total), np.log(MAX_RATIO * total))] * 7
     if simple:
         for index in (3, 4, 5, 6, 7):
             start[index] = np.log(MIN_VARIANCE_RATIO * total * 1e-3)

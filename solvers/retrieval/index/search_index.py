@@ -6,14 +6,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Integers, Single
+from ...arrays import MAX_BLOCK_VALUES, Integers, Single
 from .clip_segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 from .index_block import IndexBlock
 from .reranking import pairwise_warping_costs
-
-MAX_PAIRWISE_SEGMENTS = 1000
-"""Segments of a library up to which all pairwise distances are computed once. It bounds the run
-time and the memory."""
 
 
 class SearchIndex:
@@ -84,7 +80,7 @@ class SearchIndex:
 
         Return None for a library that is too large to cache all distances.
         """
-        if len(self.clips) > MAX_PAIRWISE_SEGMENTS:
+        if len(self.clips) ** 2 > MAX_BLOCK_VALUES:
             return None
         return np.asarray(self._all_distances[np.ix_(segments, segments)])
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ...motion import MIN_BONE_M
 from ...motion.humanoid import (
     ADULT_BONE_LENGTHS_M,
     HALF_LATERAL_JOINTS,
@@ -26,8 +27,6 @@ clips that hardly move: from x0.001 to x1000 the mean changes by 0.01 %."""
 MAX_LENGTH_RATIO = 1.4
 """Maximum ratio by which a path past missing joints is scaled up or down. Chosen by hand: x0.5
 costs 1.7 %, x2 costs nothing."""
-MIN_PATH_M = 0.01
-"""Minimum length of such a path in meters. It guards a division where a joint rests."""
 MIN_OBSERVED_FRACTION = 0.9
 """Fraction of frames with an observed joint above which it helps to find the heading. It guards
 takes whose joints are lost one after the other: at 0.5 no frame may show all such joints."""
@@ -155,7 +154,7 @@ def _correct_proportions(positions: Array, observed: NDArray[np.bool_]) -> Array
             standard[:, above] + ADULT_BONE_LENGTHS_M[joint],
         )
         scale = np.clip(
-            since[1] / np.maximum(since[0], MIN_PATH_M),
+            since[1] / np.maximum(since[0], MIN_BONE_M),
             1.0 / MAX_LENGTH_RATIO,
             MAX_LENGTH_RATIO,
         )

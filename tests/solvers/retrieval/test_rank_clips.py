@@ -84,7 +84,7 @@ def test_only_small_libraries_cache_clip_distances(monkeypatch):
     assert_allclose(
         distances, reranking.pairwise_warping_costs(steps.reshape(3, 16, 40)), atol=2e-3
     )
-    monkeypatch.setattr(search_index, "MAX_PAIRWISE_SEGMENTS", 5)
+    monkeypatch.setattr(search_index, "MAX_BLOCK_VALUES", 35)
     assert index.pairwise_distances(segments) is None
 
 
