@@ -9,7 +9,6 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import (
-    MIN_BONE_M,
     HumanoidMap,
     Motion,
     Skeleton,
@@ -45,6 +44,10 @@ guard takes in a wrong unit."""
 MIN_FRAME_RATE_HZ = 5.0
 """Minimum frame rate. It guards takes with a few poses a second, between which no path is
 known."""
+
+MIN_LENGTH_M = 0.01
+"""Meters, for legs of 0.9 m: a shorter segment is a sphere. It guards rigs with bones of zero
+length, which have no direction."""
 
 
 class JointFrame(NamedTuple):
@@ -249,7 +252,7 @@ def _segment_end(
     length = SEGMENT_LENGTHS_M.get(role_without_side(role), 0.1) * size
     children = skeleton.children[joint]
     direction = rest[list(children)].mean(axis=0) - start if children else np.zeros(3)
-    if np.linalg.norm(direction) < MIN_BONE_M * size:
+    if np.linalg.norm(direction) < MIN_LENGTH_M * size:
         direction = up if role in {"head", "neck"} else skeleton.offsets[joint]
     return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-9) * length)
 
@@ -261,7 +264,7 @@ def _capsule(joint: int, end: Array, mass: float, size: float) -> Capsule:
         return Capsule(
             joint, np.zeros((2, 3)), 0.02 * size, MIN_MASS_KG * size**3, touches=False
         )
-    if length < MIN_BONE_M * size:
+    if length < MIN_LENGTH_M * size:
         radius = (0.75 * mass / (np.pi * DENSITY_KG_M3)) ** (1 / 3)
         return Capsule(joint, np.zeros((2, 3)), min(radius, MAX_RADIUS_M * size), mass)
     radius = (mass / (DENSITY_KG_M3 * np.pi * length)) ** 0.5
