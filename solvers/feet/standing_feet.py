@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Motion, forward_kinematics, still_joints
+from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import (
     GROUND_PERCENTILE,
     ContactSettings,
@@ -14,6 +14,7 @@ from ..motion.humanoid import (
     foot_points,
     without_short_runs,
 )
+from ..motion.skeletons import still_joints
 from .legs import SIDES, LegJoints
 
 MIN_HIP_HEIGHT = 0.2

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..motion import MIN_BONE_M
+from ..motion.skeletons import MIN_BONE_M
 from ..rotations import (
     matrix_from_quaternion,
     normalize,

@@ -36,7 +36,6 @@ from .humanoid import (
     write_humanoid_map,
 )
 from .skeletons import (
-    MIN_BONE_M,
     SENSOR_JOINTS,
     Alignment,
     AxisName,
@@ -55,7 +54,6 @@ from .skeletons import (
     local_rotations,
     reach,
     resample,
-    still_joints,
     unit_name,
     warp,
     world_poses,
@@ -64,7 +62,6 @@ from .skeletons import (
 __all__ = [
     "BODY_PARTS",
     "HUMANOID_ROLES",
-    "MIN_BONE_M",
     "SENSOR_JOINTS",
     "Alignment",
     "AxisName",
@@ -103,7 +100,6 @@ __all__ = [
     "resample",
     "roles_by_name",
     "skeleton_from_points",
-    "still_joints",
     "t_pose_alignment",
     "transfer_motion",
     "unit_name",

@@ -8,15 +8,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import InvalidMotionError
-from ..motion import (
-    HumanoidMap,
-    Motion,
-    Skeleton,
-    leg_length,
-    still_joints,
-    t_pose_alignment,
-)
+from ..motion import HumanoidMap, Motion, Skeleton, leg_length, t_pose_alignment
 from ..motion.humanoid import HUMAN_LEG_LENGTH_M
+from ..motion.skeletons import still_joints
 from ..rotations import IDENTITY, multiply, rotate
 from .tables import (
     DEFAULT_STRENGTH_NM,

@@ -153,8 +153,12 @@ def _unknown_format(path: Path | str) -> InvalidFileError:
 
 
 def read_motion_or_tracks(
-    path: Path | str, *, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> Motion | Tracks:
     """Read a recording as `read_tracked` does; return the joints of a camera as points."""
-    recording = read_tracked(path, progress=progress)
+    recording = read_tracked(path, scale=scale, body=body, progress=progress)
     return recording.tracks if isinstance(recording, JointRecording) else recording

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...motion import HumanoidMap, Motion, still_joints
+from ...motion import HumanoidMap, Motion
+from ...motion.skeletons import still_joints
 from ...rotations import inverse, multiply, rotate
 from ...signals import fill_rotation_gaps
 

@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion
-from ...motion.humanoid import canonical_rotations, find_humanoid_map
+from ...motion.humanoid import HumanoidMap, canonical_rotations, find_humanoid_map
 from ...motion.skeletons import ROTATION_VECTOR, JointLimits
 from ...progress import Progress, unwatched
 from ...rotations import (
@@ -54,6 +54,7 @@ class JointLimitsSettings(Settings):
 
 def learn_joint_limits(
     motions: Sequence[Motion],
+    humanoid_maps: Sequence[HumanoidMap] | None = None,
     *,
     settings: JointLimitsSettings = JointLimitsSettings(),
     progress: Progress = unwatched,
@@ -71,6 +72,8 @@ def learn_joint_limits(
     ----------
     motions : sequence of Motion
         NaN is skipped.
+    humanoid_maps : sequence of HumanoidMap, one for each motion
+        Found if not given.
     settings : JointLimitsSettings
     progress : Progress
 
@@ -88,9 +91,11 @@ def learn_joint_limits(
     """
     if not motions:
         raise InvalidMotionError("Joint limits need at least one example motion.")
+    if humanoid_maps is None:
+        humanoid_maps = [find_humanoid_map(motion.skeleton) for motion in motions]
     examples: dict[Key, list[Array]] = {}
-    for index, motion in enumerate(motions):
-        for key, rotations in _observed_rotations(motion).items():
+    for index, (motion, humanoid) in enumerate(zip(motions, humanoid_maps, strict=True)):
+        for key, rotations in _observed_rotations(motion, humanoid).items():
             examples.setdefault(key, []).append(rotations)
         progress(0.5 * (index + 1) / len(motions), "Reading the examples")
     boxes = {}
@@ -111,9 +116,9 @@ def learn_joint_limits(
     )
 
 
-def _observed_rotations(motion: Motion) -> dict[Key, Array]:
+def _observed_rotations(motion: Motion, humanoid: HumanoidMap) -> dict[Key, Array]:
     """Return the observed rotations, (n, 4), of each joint below the hips."""
-    skeleton, humanoid = motion.skeleton, find_humanoid_map(motion.skeleton)
+    skeleton = motion.skeleton
     canonical = canonical_rotations(motion, humanoid)
     hips = humanoid.indices(skeleton).get("hips", 0)
     free = {0, hips, *skeleton.ancestors(hips)}

@@ -5,7 +5,6 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import (
-    MIN_BONE_M,
     HumanoidMap,
     Motion,
     find_humanoid_map,
@@ -13,6 +12,7 @@ from ...motion import (
     local_rotations,
 )
 from ...motion.humanoid import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, postures_from_motion
+from ...motion.skeletons import MIN_BONE_M
 from ...rotations import fit_rotations, inverse, multiply, rotate, rotation_between, slerp
 from ...signals import fill_gaps, fill_rotation_gaps
 

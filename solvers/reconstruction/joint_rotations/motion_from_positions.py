@@ -6,19 +6,13 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import InvalidMotionError
-from ...motion import (
-    MIN_BONE_M,
-    Motion,
-    Skeleton,
-    Tracks,
-    local_rotations,
-    skeleton_from_points,
-)
+from ...motion import Motion, Skeleton, Tracks, local_rotations, skeleton_from_points
 from ...motion.humanoid import (
     MIN_RELIABILITY,
     MIN_RELIABLE_FRAMES,
     posture_positions,
 )
+from ...motion.skeletons import MIN_BONE_M
 from ...progress import Progress, unwatched
 from ...rotations import IDENTITY, fit_rotations, rotate
 from .clavicles import add_clavicle_joints

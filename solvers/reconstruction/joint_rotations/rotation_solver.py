@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...motion import MIN_BONE_M, Skeleton, roles_by_name
+from ...motion import Skeleton, roles_by_name
+from ...motion.skeletons import MIN_BONE_M
 from ...rotations import IDENTITY, fit_rotations, multiply, rotate, rotation_between, slerp
 from .limb_twist import (
     HINGES,

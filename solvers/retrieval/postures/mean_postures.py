@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...motion import MIN_BONE_M
 from ...motion.humanoid import (
     ADULT_BONE_LENGTHS_M,
     HALF_LATERAL_JOINTS,
@@ -17,6 +16,7 @@ from ...motion.humanoid import (
     rotate_about_vertical,
     segment_lengths,
 )
+from ...motion.skeletons import MIN_BONE_M
 from ...rotations import RIGID_POINTS
 from .clip_postures import ClipPostures
 

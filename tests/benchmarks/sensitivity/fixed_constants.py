@@ -11,6 +11,9 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/marker_gaps/gap_boundaries.MEDIAN_NORM",
         "denoising/denoise.HALF_CONFIDENCE_DEVIATION",
         "denoising/motion_model/motion_mixture.N_CHANNELS",
+        "denoising/limb_gaps/predict_limbs.BOW_VARIANCE",
+        "depth_tracking/capturing/retrack._N_CONTEXT_FRAMES",
+        "variation/plant_variant.N_CYCLES",
         "denoising/quality/bone_drift.*_PERCENTILE",
         "denoising/quality/worst_issues.SEVERE_EXCESS",
         "motion_fitting/goals/follow_source.FADE_TIME_CONSTANTS",
@@ -159,7 +162,16 @@ REASONS: dict[str, tuple[str, ...]] = {
         "depth_tracking/body/segment_kinematics._SMALL_ANGLE",
         "depth_tracking/terms/closest_surface._NO_SURFACE",
     ),
-    "of a published method, which stays as it is": ("denoising/published.*", "*/published/*"),
+    "of a published method, which stays as it is": (
+        "denoising/published.*",
+        "*/published/*",
+        "depth_tracking/body/motion_prior.EXPLAINED_VARIANCE",
+        "depth_tracking/body/motion_prior.N_*",
+        "depth_tracking/tracking/failure_test.PUBLISHED_*",
+    ),
+    "learned by a script of tests/training": (
+        "depth_tracking/tracking/failure_test.LEARNED_*",
+    ),
     "order or weight of a list that is read by people": (
         "denoising/quality/worst_issues.CUT_SEVERITY",
         "denoising/quality/worst_issues.LONG_GAP_S",
