@@ -176,6 +176,11 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/quality/worst_issues.CUT_SEVERITY",
         "denoising/quality/worst_issues.LONG_GAP_S",
     ),
+    "decides a sentence of a report only": (
+        "denoising/window_estimates/channel_groups.POOR_FIT_FRACTION",
+        "motion/humanoid/role_evidence.MIN_CONFIDENCE",
+        "variation/learn_variation.MAX_DISTANCE_RATIO",
+    ),
     "decides what is drawn only": (
         "markers/stick_sets.MIN_LABELS",
         "mocap_assist/actions/empties_build.*",
