@@ -55,7 +55,7 @@ from .marker_files import (
     open_trc,
     open_vicon_csv,
 )
-from .numpy_files import read_npy
+from .numpy_files import is_point_archive, read_npy, read_point_archive
 from .refuse_stand_ins import REFUSALS
 from .skeleton_files import (
     is_kimodo,
@@ -118,6 +118,7 @@ FORMATS = (
     Format("MSR Action3D", is_msr_action3d, one_body(read_msr_action3d)),
     Format("UI-PRMD", is_ui_prmd, one_body(read_ui_prmd)),
     Format("freemocap", is_npy, one_body(read_npy), lacks_bones=True),
+    Format("joints of NumPy", is_point_archive, one_body(read_point_archive)),
     Format("ZED JSON", is_zed_json, open_zed_json),
     Format("Nuitrack CSV", is_nuitrack_csv, open_nuitrack_csv),
     Format("Nuitrack JSON", is_nuitrack_json, open_nuitrack_json),

@@ -10,6 +10,7 @@ from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_p
 from .limb_ik import ReachSettings, reach
 from .mediapipe import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
 from .motion import Motion
+from .point_layouts import LAYOUTS
 from .resampling import resample
 from .shot_boundaries import (
     MIN_SHOT_S,
@@ -29,6 +30,7 @@ __all__ = [
     "COMPUTED_JOINTS",
     "HAND_POINTS",
     "INFERRED",
+    "LAYOUTS",
     "MAX_FRAME_RATE_HZ",
     "MIN_BONE_M",
     "MIN_SHOT_S",

@@ -1,7 +1,8 @@
 """Joints of body trackers that name more of them than the cameras of Microsoft.
 
 Sources: the enumerations BODY_18_PARTS, BODY_34_PARTS and BODY_38_PARTS of the ZED SDK 4, and
-JointType of Nuitrack. Joints that the Azure Kinect has too are called as there.
+JointType of Nuitrack; joints that the Azure Kinect has too are called as there. JOINT_NAMES of
+smplx for the video models that find an SMPL body.
 """
 
 _SIDES = ("Left", "Right")
@@ -62,3 +63,45 @@ NUITRACK = {"HEAD": "Head", "NECK": "Neck", "TORSO": "SpineNavel", "WAIST": "Pel
     for joint, name in limb.items()
 }
 """Our names of Nuitrack's joints, in the order of its numbers, which begin with 1."""
+
+_SMPL_SIDE = {
+    "collar": "spine3", "shoulder": "collar", "elbow": "shoulder", "wrist": "elbow",
+    "hand": "wrist", "hip": "pelvis", "knee": "hip", "ankle": "knee", "foot": "ankle",
+}  # fmt: skip
+_SMPL_ORDER = (
+    "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "spine2",
+    "left_ankle", "right_ankle", "spine3", "left_foot", "right_foot", "neck", "left_collar",
+    "right_collar", "head", "left_shoulder", "right_shoulder", "left_elbow", "right_elbow",
+    "left_wrist", "right_wrist", "left_hand", "right_hand",
+)  # fmt: skip
+SMPL_FINGERS = tuple(
+    f"{side}_{finger}{joint}"
+    for side in ("left", "right")
+    for finger in ("index", "middle", "pinky", "ring", "thumb")
+    for joint in (1, 2, 3)
+)
+"""Joints of both hands of SMPL-H and SMPL-X, in their order."""
+
+
+def _smpl_parent(name: str) -> str:
+    side, _, part = name.partition("_")
+    if part in _SMPL_SIDE:
+        parent = _SMPL_SIDE[part]
+        return f"{side}_{parent}" if parent in _SMPL_SIDE else parent
+    trunk = {"spine1": "pelvis", "spine2": "spine1", "spine3": "spine2", "neck": "spine3"}
+    return "neck" if name == "head" else trunk.get(name, "")
+
+
+SMPL = {name: _smpl_parent(name) for name in _SMPL_ORDER}
+"""Each joint of SMPL and its parent, in its order."""
+SMPL_HANDS = {
+    name: f"{name.partition('_')[0]}_wrist" if name[-1] == "1" else name[:-1] + str(int(name[-1]) - 1)
+    for name in SMPL_FINGERS
+}
+"""Each joint of a hand and its parent."""
+SMPL_T_POSE = {
+    "left_collar": (0.4, 0.0, 1.0), "left_foot": (0.0, -1.0, -0.5), "left_hand": (1.0, 0.0, 0.0),
+    **{name: (0.6, -0.8, 0.0) if "thumb" in name else (1.0, 0.0, 0.0)
+       for name in SMPL_FINGERS if name.startswith("left")},
+}  # fmt: skip
+"""Directions from the parent; see `depth_sensors.rest_direction`."""

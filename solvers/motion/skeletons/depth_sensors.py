@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from enum import Enum
 
-from .body_trackers import ZED_T_POSE, zed_parents
+from .body_trackers import SMPL, SMPL_HANDS, SMPL_T_POSE, ZED_T_POSE, zed_parents
 from .mediapipe import MEDIAPIPE, MEDIAPIPE_T_POSE
 
 
@@ -94,7 +94,7 @@ T_POSE = {
     "HandTipLeft": OUT, "LUpArm": OUT, "LForeArm": OUT, "LHand": OUT,
     "ThumbLeft": (0.6, -0.8, 0.0),
     "Nose": (0.0, -1.0, 0.2), "EyeLeft": (0.3, -0.9, 0.5), "EarLeft": (0.8, -0.1, 0.3),
-    **MEDIAPIPE_T_POSE, **ZED_T_POSE,
+    **MEDIAPIPE_T_POSE, **ZED_T_POSE, **SMPL_T_POSE,
 }  # fmt: skip
 
 
@@ -117,7 +117,9 @@ def joint_parents(names: Sequence[str]) -> tuple[int, ...]:
     out is a child of its nearest ancestor in `names`. In the order of the Kinect v2 a parent
     may come after its children.
     """
-    tables = (KINECT_V2, KINECT_V1, AZURE_KINECT, ZED, UI_PRMD, MEDIAPIPE)
+    tables = (
+        KINECT_V2, KINECT_V1, AZURE_KINECT, ZED, UI_PRMD, MEDIAPIPE, SMPL | SMPL_HANDS,
+    )  # fmt: skip
     table = max(tables, key=lambda known: len(known.keys() & set(names)))
     indices = {name: index for index, name in enumerate(names)}
     parents = []

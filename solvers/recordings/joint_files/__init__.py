@@ -2,7 +2,7 @@
 
 from .azure_csv import is_azure_csv, open_azure_csv
 from .azure_json import is_azure_json, open_azure_json
-from .freemocap import is_npy, read_freemocap
+from .freemocap import is_npy, read_freemocap, read_freemocap_points
 from .irds import is_irds, open_irds
 from .joint_csv import is_joint_csv, open_joint_csv, write_joint_csv
 from .joint_json import is_joint_json, open_joint_json, write_joint_json
@@ -17,10 +17,14 @@ from .nuitrack import (
     open_nuitrack_csv,
     open_nuitrack_json,
 )
+from .point_arrays import body_of_points, points_of_array, read_body
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
+from .unnamed_joints import has_layout
 from .zed_json import is_zed_json, open_zed_json
 
 __all__ = [
+    "body_of_points",
+    "has_layout",
     "is_azure_csv",
     "is_azure_json",
     "is_irds",
@@ -45,7 +49,10 @@ __all__ = [
     "open_nuitrack_csv",
     "open_nuitrack_json",
     "open_zed_json",
+    "points_of_array",
+    "read_body",
     "read_freemocap",
+    "read_freemocap_points",
     "read_kinect_csv",
     "read_mediapipe_csv",
     "read_mediapipe_json",

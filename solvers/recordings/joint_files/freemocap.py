@@ -20,6 +20,7 @@ from ..conventions import (
     points_z_up,
     up_along,
 )
+from .point_arrays import points_of_array
 
 WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
@@ -74,12 +75,18 @@ def read_freemocap(
         Raised by `progress`.
     """
     check_scale(scale)
-    points = read_array(path)
-    if points.ndim != 3 or points.shape[2] != 3:
-        raise InvalidFileError(
-            f"{path} holds an array of shape {points.shape}; points over time have the shape"
-            " (frames, points, 3)."
-        )
+    points = points_of_array(path, read_array(path))
+    return read_freemocap_points(path, points, scale, frame_rate, progress)
+
+
+def read_freemocap_points(
+    path: Path | str,
+    points: NDArray[np.float64],
+    scale: float | None,
+    frame_rate: float,
+    progress: Progress,
+) -> JointRecording | Tracks:
+    """Read points, shape (n_frames, n_points, 3), as `read_freemocap` does."""
     points = np.where(np.isfinite(points).all(axis=-1)[..., None], points, np.nan)
     if np.isnan(points).all():
         raise InvalidFileError(f"{path} has no points that are observed in any frame.")

@@ -1,0 +1,213 @@
+"""Read arrays of the joints of one body, which say nothing but their shape."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ...motion import AxisName, FileConventions, JointRecording, Sensor, roles_by_name
+from ...motion.humanoid import ADULT_STATURE_M
+from ...progress import Progress, Remark
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    conventions_of,
+    describe_guessed_axis,
+    file_conventions,
+    is_mirrored,
+    joint_recording,
+    judge_up_of_joints,
+    reinterpreted,
+    stature,
+    with_conventions,
+    z_up_from_y_up,
+)
+from .unnamed_joints import NamedJoints, has_layout, name_joints
+
+UP: dict[AxisName, float] = {"Y": 0.2, "Z": 0.2, "-Y": 0.2}
+"""Evidence for each axis that is possible: scenes have Y or Z up, cameras have Y down."""
+UP_OF_SMPL: dict[AxisName, float] = {"Y": 0.8, "Z": 0.0, "-Y": 0.0}
+"""The same of the joints of HumanML3D, which have Y up."""
+SMPL = "SMPL"
+"""Layout of HumanML3D."""
+HUMANML3D_RATE_HZ = 20.0
+MIN_PIXELS = 10.0
+"""Extent of a person in a picture, pixels; bodies in meters are smaller. It guards scores of
+2D points, 0 to 1, from being read as depth."""
+MAX_STATURE_M, MIN_STATURE_M = 4.0, 0.5
+"""Statures, meters, outside which lengths have no known unit. They guard normalized points."""
+LEGS = ("left", "right")
+MIN_FLEXION = 0.03
+"""Distance of the knee from the line between hip and ankle, relative to the leg, that shows
+where the body faces. It guards straight legs, whose knees are noise."""
+
+
+def body_of_points(path: Path | str, points: NDArray[np.float64]) -> NamedJoints | None:
+    """Return the joints of an array, shape (n_frames, n_points, 3), if they form a body.
+
+    Raises
+    ------
+    InvalidFileError
+        The points lie in a picture.
+    """
+    _refuse_pictures(path, points)
+    return name_joints(points) if has_layout(points.shape[1]) else None
+
+
+def points_of_array(path: Path | str, array: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return an array as points over time, shape (n_frames, n_points, 3).
+
+    Of a body, coordinates may also be the first or the second axis, or all be in one row. A
+    fourth coordinate is the confidence, which is left out.
+
+    Raises
+    ------
+    InvalidFileError
+        The array has another shape, several takes, or no depth.
+    """
+    if array.ndim == 4 and 1 in array.shape[:2]:
+        array = np.squeeze(array, axis=array.shape.index(1))
+    shape = array.shape
+    if array.ndim == 4 and 3 in shape[2:]:
+        raise InvalidFileError(
+            f"{path} holds {shape[0]} takes or people in one array. Save each of them as a file"
+            " of its own, with numpy.save."
+        )
+    if array.ndim == 3 and shape[2] == 2 and has_layout(shape[1]):
+        raise _flat(path)
+    for points in _as_points(array):
+        if points.shape[2] == 3 and (points is array or has_layout(points.shape[1])):
+            return points
+    raise InvalidFileError(
+        f"{path} holds an array of shape {shape}; points over time have the shape (frames,"
+        " points, 3)."
+    )
+
+
+def _as_points(array: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
+    """Yield an array in all orders of its axes that may be (frames, points, coordinates)."""
+    if array.ndim == 3:
+        yield array
+        if array.shape[2] == 4:
+            yield array[..., :3]
+        yield np.moveaxis(array, 1, 2)
+        yield np.moveaxis(array, 2, 0)
+        yield np.moveaxis(array, 0, 2)
+    elif array.ndim == 2 and array.shape[1] % 3 == 0:
+        rows = array.reshape(len(array), -1, 3)
+        if has_layout(rows.shape[1]) and name_joints(rows) is not None:
+            yield rows
+
+
+def read_body(
+    path: Path | str,
+    body: NamedJoints,
+    scale: float | None,
+    progress: Progress,
+) -> JointRecording:
+    """Return a recognized body in meters, Z up, with what was judged."""
+    is_smpl = body.layout == SMPL
+    positions = z_up_from_y_up(body.positions)
+    roles = {role: body.names.index(name) for role, name in roles_by_name(body.names).items()}
+    judged = judge_up_of_joints(positions, roles, UP_OF_SMPL if is_smpl else UP)
+    if not judged.is_clear:
+        progress(0.8, Remark(describe_guessed_axis(judged.axis)))
+    rate = HUMANML3D_RATE_HZ if is_smpl else DEFAULT_FRAME_RATE
+    progress(0.8, Remark(_describe(body, rate)))
+    recording = joint_recording(
+        path,
+        body.names,
+        positions,
+        Sensor.OTHER,
+        frame_rate=rate,
+        nan_only=True,
+        scale=scale,
+        conventions=file_conventions("Y"),
+        progress=progress,
+    )
+    standing = reinterpreted(recording, judged.axis, None)
+    noted = replace(conventions_of(standing), confidence=judged.confidence)
+    standing = with_conventions(_unmirrored(standing, progress), noted)
+    return standing if scale is not None else _sized(standing, noted, progress)
+
+
+def _describe(body: NamedJoints, rate: float) -> str:
+    return (
+        f"The joints have no names; by their bones they are in the order of {body.layout} with"
+        f" {body.confidence:.0%} confidence. {rate:g} Hz is assumed"
+    )
+
+
+def _sized(
+    recording: JointRecording, noted: FileConventions, progress: Progress
+) -> JointRecording:
+    """Give a body whose lengths have no unit the size of an adult."""
+    tall = stature(recording)
+    if tall is None or MIN_STATURE_M <= tall <= MAX_STATURE_M:
+        return recording
+    factor = ADULT_STATURE_M / tall
+    progress(
+        1.0,
+        Remark(
+            f"Lengths have no known unit; the actor is scaled to {ADULT_STATURE_M:g} m. Set"
+            " Scale if that is wrong"
+        ),
+    )
+    larger = recording.tracks.with_positions(factor * recording.tracks.positions)
+    return with_conventions(
+        recording.with_tracks(larger), replace(noted, unit=noted.unit * factor)
+    )
+
+
+def _unmirrored(recording: JointRecording, progress: Progress) -> JointRecording:
+    """Mirror a body whose front shows that its left side is on the right."""
+    points = recording.tracks.positions
+    named = roles_by_name(recording.names)
+    joints = {
+        role: points[:, recording.names.index(name)] for role, name in named.items()
+    }
+    front = _front(joints)
+    sides = [joints[f"{side}UpperLeg"] for side in LEGS]
+    shown = np.stack([*sides, np.zeros_like(front), front], axis=1)
+    if not is_mirrored(shown, 0, 1, 2, 3):
+        return recording
+    progress(1.0, Remark("Left and right are exchanged in the file; the take is mirrored"))
+    mirrored = points * np.array([-1.0, 1.0, 1.0])
+    return recording.with_tracks(recording.tracks.with_positions(mirrored))
+
+
+def _front(joints: Mapping[str, Array]) -> Array:
+    """Return where feet or, without toes, bent knees point; NaN where neither does."""
+    if {f"{side}Toes" for side in LEGS} <= joints.keys():
+        return np.asarray(sum(joints[f"{side}Toes"] - joints[f"{side}Foot"] for side in LEGS))
+    front = np.zeros_like(joints["leftFoot"])
+    for side in LEGS:
+        hip, knee, ankle = (joints[f"{side}{part}"] for part in ("UpperLeg", "LowerLeg", "Foot"))
+        flexion = knee - (hip + ankle) / 2.0
+        is_bent = np.linalg.norm(flexion, axis=1) > MIN_FLEXION * np.linalg.norm(
+            hip - ankle, axis=1
+        )
+        front += np.where(is_bent[:, None], flexion, 0.0)
+    return np.where((front != 0.0).any(axis=1, keepdims=True), front, np.nan)
+
+
+def _refuse_pictures(path: Path | str, points: Array) -> None:
+    """Refuse 2D points with a score, or nothing, as the third coordinate."""
+    with np.errstate(invalid="ignore"):
+        third = points[..., 2][np.isfinite(points[..., 2])]
+        extents = np.nanmax(points[..., :2], axis=1) - np.nanmin(points[..., :2], axis=1)
+    if not len(third) or not has_layout(points.shape[1]):
+        return
+    is_score = third.min() >= 0.0 and third.max() <= 1.0
+    if (is_score and np.nanmedian(extents.max(axis=1)) > MIN_PIXELS) or np.ptp(third) == 0.0:
+        raise _flat(path)
+
+
+def _flat(path: Path | str) -> InvalidFileError:
+    return InvalidFileError(
+        f"{path} holds 2D points of images, without depth. Import the 3D joints of your tracker,"
+        " shape (frames, joints, 3)."
+    )
