@@ -21,8 +21,6 @@ from .joint_files import (
 from .skeleton_files import is_motion_x, read_motion_x
 
 HUMANML3D_FEATURES = 263
-FREEMOCAP_BODY = 33
-"""Number of the points of MediaPipe's body, which freemocap stores in meters or millimeters."""
 POINT_MEMBERS = (
     "positions", "joints", "joint_positions", "joints3d", "joints_3d", "keypoints3d",
     "keypoints_3d", "kps3d", "pose3d", "pose_3d", "poses3d", "poses_3d", "points3d",
@@ -111,7 +109,7 @@ def _read_points(
     points = np.where(np.isfinite(points).all(axis=-1)[..., None], points, np.nan)
     body = body_of_points(path, points)
     n_points = points.shape[1]
-    if body is not None and n_points != FREEMOCAP_BODY:
+    if body is not None:
         return read_body(path, body, scale, progress)
     if body is None and has_layout(n_points):
         progress(

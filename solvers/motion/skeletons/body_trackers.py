@@ -74,13 +74,6 @@ _SMPL_ORDER = (
     "right_collar", "head", "left_shoulder", "right_shoulder", "left_elbow", "right_elbow",
     "left_wrist", "right_wrist", "left_hand", "right_hand",
 )  # fmt: skip
-SMPL_FINGERS = tuple(
-    f"{side}_{finger}{joint}"
-    for side in ("left", "right")
-    for finger in ("index", "middle", "pinky", "ring", "thumb")
-    for joint in (1, 2, 3)
-)
-"""Joints of both hands of SMPL-H and SMPL-X, in their order."""
 
 
 def _smpl_parent(name: str) -> str:
@@ -95,13 +88,16 @@ def _smpl_parent(name: str) -> str:
 SMPL = {name: _smpl_parent(name) for name in _SMPL_ORDER}
 """Each joint of SMPL and its parent, in its order."""
 SMPL_HANDS = {
-    name: f"{name.partition('_')[0]}_wrist" if name[-1] == "1" else name[:-1] + str(int(name[-1]) - 1)
-    for name in SMPL_FINGERS
+    f"{side}_{finger}{joint}": f"{side}_{finger}{joint - 1}" if joint > 1 else f"{side}_wrist"
+    for side in ("left", "right")
+    for finger in ("index", "middle", "pinky", "ring", "thumb")
+    for joint in (1, 2, 3)
 }
-"""Each joint of a hand and its parent."""
+"""Each joint of the hands of SMPL-H and SMPL-X and its parent, in their order."""
 SMPL_T_POSE = {
-    "left_collar": (0.4, 0.0, 1.0), "left_foot": (0.0, -1.0, -0.5), "left_hand": (1.0, 0.0, 0.0),
+    "left_collar": (0.4, 0.0, 1.0), "left_foot": (0.0, -1.0, -0.5),
+    "left_hand": (1.0, 0.0, 0.0),
     **{name: (0.6, -0.8, 0.0) if "thumb" in name else (1.0, 0.0, 0.0)
-       for name in SMPL_FINGERS if name.startswith("left")},
+       for name in SMPL_HANDS if name.startswith("left")},
 }  # fmt: skip
 """Directions from the parent; see `depth_sensors.rest_direction`."""

@@ -6,7 +6,7 @@ the KIT motion-language data set; extract.py of LaFAN1. Joints have the names th
 has for them: those of Microsoft's cameras, MediaPipe or SMPL.
 """
 
-from .body_trackers import SMPL, SMPL_FINGERS, ZED_34, ZED_38
+from .body_trackers import SMPL, SMPL_HANDS, ZED_34, ZED_38
 from .depth_sensors import AZURE_KINECT, KINECT_V1, KINECT_V2, UI_PRMD
 from .mediapipe import BODY_POINTS
 
@@ -100,7 +100,7 @@ LAYOUTS: dict[str, tuple[str, ...]] = {
     "MediaPipe": BODY_POINTS,
     "ZED 34": ZED_34,
     "ZED 38": ZED_38,
-    "SMPL-H": (*tuple(SMPL)[:22], *SMPL_FINGERS),
-    "SMPL-X": (*tuple(SMPL)[:22], "", "", "", *SMPL_FINGERS),
+    "SMPL-H": (*tuple(SMPL)[:22], *SMPL_HANDS),
+    "SMPL-X": (*tuple(SMPL)[:22], "", "", "", *SMPL_HANDS),
 }  # fmt: skip
 """Names in the order of each layout; points without a name are left out."""

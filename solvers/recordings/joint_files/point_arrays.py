@@ -34,6 +34,12 @@ UP_OF_SMPL: dict[AxisName, float] = {"Y": 0.8, "Z": 0.0, "-Y": 0.0}
 SMPL = "SMPL"
 """Layout of HumanML3D."""
 HUMANML3D_RATE_HZ = 20.0
+SENSORS = {
+    "Kinect v1": Sensor.KINECT_V1, "Kinect v2 or NTU": Sensor.KINECT_V2,
+    "Azure Kinect": Sensor.AZURE_KINECT, "MediaPipe": Sensor.MEDIAPIPE,
+    "ZED 34": Sensor.ZED, "ZED 38": Sensor.ZED,
+}  # fmt: skip
+"""Camera or tracker of a layout."""
 MIN_PIXELS = 10.0
 """Extent of a person in a picture, pixels; bodies in meters are smaller. It guards scores of
 2D points, 0 to 1, from being read as depth."""
@@ -121,7 +127,7 @@ def read_body(
         path,
         body.names,
         positions,
-        Sensor.OTHER,
+        SENSORS.get(body.layout, Sensor.OTHER),
         frame_rate=rate,
         nan_only=True,
         scale=scale,
@@ -166,9 +172,7 @@ def _unmirrored(recording: JointRecording, progress: Progress) -> JointRecording
     """Mirror a body whose front shows that its left side is on the right."""
     points = recording.tracks.positions
     named = roles_by_name(recording.names)
-    joints = {
-        role: points[:, recording.names.index(name)] for role, name in named.items()
-    }
+    joints = {role: points[:, recording.names.index(name)] for role, name in named.items()}
     front = _front(joints)
     sides = [joints[f"{side}UpperLeg"] for side in LEGS]
     shown = np.stack([*sides, np.zeros_like(front), front], axis=1)
@@ -185,7 +189,7 @@ def _front(joints: Mapping[str, Array]) -> Array:
         return np.asarray(sum(joints[f"{side}Toes"] - joints[f"{side}Foot"] for side in LEGS))
     front = np.zeros_like(joints["leftFoot"])
     for side in LEGS:
-        hip, knee, ankle = (joints[f"{side}{part}"] for part in ("UpperLeg", "LowerLeg", "Foot"))
+        hip, knee, ankle = (joints[side + part] for part in ("UpperLeg", "LowerLeg", "Foot"))
         flexion = knee - (hip + ankle) / 2.0
         is_bent = np.linalg.norm(flexion, axis=1) > MIN_FLEXION * np.linalg.norm(
             hip - ankle, axis=1
@@ -196,18 +200,18 @@ def _front(joints: Mapping[str, Array]) -> Array:
 
 def _refuse_pictures(path: Path | str, points: Array) -> None:
     """Refuse 2D points with a score, or nothing, as the third coordinate."""
-    with np.errstate(invalid="ignore"):
-        third = points[..., 2][np.isfinite(points[..., 2])]
-        extents = np.nanmax(points[..., :2], axis=1) - np.nanmin(points[..., :2], axis=1)
-    if not len(third) or not has_layout(points.shape[1]):
+    observed = points[np.isfinite(points).all(axis=2).any(axis=1)]
+    if not len(observed) or not has_layout(points.shape[1]):
         return
+    third = observed[..., 2][np.isfinite(observed[..., 2])]
+    extents = np.nanmax(observed[..., :2], axis=1) - np.nanmin(observed[..., :2], axis=1)
     is_score = third.min() >= 0.0 and third.max() <= 1.0
-    if (is_score and np.nanmedian(extents.max(axis=1)) > MIN_PIXELS) or np.ptp(third) == 0.0:
+    if (is_score and np.median(extents.max(axis=1)) > MIN_PIXELS) or np.ptp(third) == 0.0:
         raise _flat(path)
 
 
 def _flat(path: Path | str) -> InvalidFileError:
     return InvalidFileError(
-        f"{path} holds 2D points of images, without depth. Import the 3D joints of your tracker,"
-        " shape (frames, joints, 3)."
+        f"{path} holds 2D points of images, without depth. Import the 3D joints of your"
+        " tracker, shape (frames, joints, 3)."
     )

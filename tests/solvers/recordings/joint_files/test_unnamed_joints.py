@@ -1,0 +1,148 @@
+"""Arrays of joints without names come in as the body that they form, or say that they do not."""
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidFileError
+from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics, roles_by_name
+from solvers.recordings import read_recording
+from solvers.samples import walking_gait
+
+LEG, ARM = ("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand")
+
+
+def _both(*parts):
+    return [side + part for part in parts for side in ("left", "right")]
+
+
+def _one(side, *parts):
+    return [side + part for part in parts]
+
+
+ORDERS = {
+    "Human3.6M": ["hips", *_one("right", *LEG), *_one("left", *LEG), "spine", "neck", "neck",
+                  "head", *_one("left", *ARM), *_one("right", *ARM)],
+    "COCO": ["head"] * 5 + _both(*ARM, *LEG),
+    "BODY_25": ["head", "neck", *_one("right", *ARM), *_one("left", *ARM), "hips",
+                *_one("right", *LEG), *_one("left", *LEG), *["head"] * 4,
+                *["leftToes"] * 2, "leftFoot", *["rightToes"] * 2, "rightFoot"],
+    "SMPL": ["hips", *_both("UpperLeg"), "spine", *_both("LowerLeg"), "chest", *_both("Foot"),
+             "chest", *_both("Toes"), "neck", *_both("Shoulder"), "head", *_both(*ARM)],
+}  # fmt: skip
+"""Joint of the walker at each index, as the data sets publish them."""
+AXES = {
+    "Y up": lambda points: np.stack([points[..., 0], points[..., 2], -points[..., 1]], axis=-1),
+    "Z up": lambda points: points,
+    "camera": lambda points: np.stack(
+        [points[..., 0], -points[..., 2], points[..., 1] + 3.0], axis=-1
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def walk():
+    """Positions of the joints of a walker by their role, meters, Z up."""
+    motion = walking_gait()
+    positions = forward_kinematics(motion).positions
+    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    return {role: positions[:, joint] for role, joint in roles.items()}
+
+
+def ordered(walk, layout):
+    return np.stack([walk.get(role, walk["neck"]) for role in ORDERS[layout]], axis=1)
+
+
+def read(tmp_path, array):
+    """Return the recording and what the reader says."""
+    np.save(tmp_path / "joints.npy", array)
+    said = []
+    recording = read_recording(
+        tmp_path / "joints.npy", progress=lambda _, text="": said.append(str(text))
+    )
+    return recording, " ".join(said)
+
+
+@pytest.mark.parametrize("axes", AXES)
+@pytest.mark.parametrize("layout", ORDERS)
+def test_a_body_is_named_and_stands(tmp_path, walk, layout, axes):
+    recording, said = read(tmp_path, 1000.0 * AXES[axes](ordered(walk, layout)))
+
+    assert isinstance(recording, JointRecording)
+    assert f"in the order of {layout} with 100%" in said
+    joints = {
+        role: recording.tracks.positions[:, recording.names.index(name)]
+        for role, name in roles_by_name(recording.names).items()
+    }
+    for role in ("leftHand", "rightLowerArm", "leftFoot", "rightLowerLeg"):
+        from_hips = joints[role] - joints["hips"]
+        middle = (walk["leftUpperLeg"] + walk["rightUpperLeg"]) / 2.0
+        hips = walk["hips"] if "hips" in ORDERS[layout] else middle
+        assert np.allclose(from_hips, walk[role] - hips, atol=1e-6), role
+    assert sum(parent < 0 for parent in recording.parents) == 1
+
+
+def test_mirrored_axes_are_undone_and_reported(tmp_path, walk):
+    points = ordered(walk, "SMPL")
+
+    recording, said = read(tmp_path, points * (-1.0, 1.0, 1.0))
+
+    assert "Left and right are exchanged" in said
+    assert np.allclose(recording.tracks.positions, points)
+
+
+def test_points_without_a_unit_get_the_size_of_an_adult(tmp_path, walk):
+    points = ordered(walk, "Human3.6M")
+
+    recording, said = read(tmp_path, 0.1 * points)
+
+    assert "scaled to 1.75 m" in said
+    height = np.ptp(recording.tracks.positions[..., 2], axis=1).max()
+    assert height == pytest.approx(np.ptp(points[..., 2], axis=1).max(), rel=0.1)
+
+
+def test_points_in_another_order_are_no_body(tmp_path, walk):
+    shuffled = np.random.default_rng(2).permutation(17)
+
+    recording, said = read(tmp_path, ordered(walk, "COCO")[:, shuffled])
+
+    assert not isinstance(recording, JointRecording)
+    assert "form no body in a known order" in said
+
+
+@pytest.mark.parametrize("make", [
+    lambda points: points[None],
+    lambda points: np.moveaxis(points, 2, 1),
+    lambda points: np.moveaxis(points, 0, 2),
+    lambda points: points.reshape(len(points), -1),
+    lambda points: np.concatenate([points, np.ones_like(points[..., :1])], axis=-1),
+])  # fmt: skip
+def test_other_orders_of_the_axes_are_understood(tmp_path, walk, make):
+    points = ordered(walk, "Human3.6M")
+
+    recording, _ = read(tmp_path, make(points))
+
+    assert np.allclose(recording.tracks.positions[:, 0], points[:, 0])
+
+
+def test_an_archive_of_joints_is_read(tmp_path, walk):
+    points = ordered(walk, "COCO")
+    np.savez(tmp_path / "joints.npz", keypoints3d=points, scores=np.ones(3))
+
+    recording = read_recording(tmp_path / "joints.npz")
+
+    assert np.allclose(recording.tracks.positions[:, :17], points)
+
+
+@pytest.mark.parametrize("third", [None, 0.0, 0.9])
+def test_points_of_images_are_refused(tmp_path, walk, third):
+    flat = 300.0 * ordered(walk, "COCO")[..., [0, 2]]
+    scores = np.full_like(flat[..., :1], 0.0 if third is None else third)
+    array = flat if third is None else np.concatenate([flat, scores], axis=-1)
+
+    with pytest.raises(InvalidFileError, match="2D points of images, without depth"):
+        read(tmp_path, array)
+
+
+def test_several_takes_in_one_array_are_refused(tmp_path, walk):
+    with pytest.raises(InvalidFileError, match="2 takes or people in one array"):
+        read(tmp_path, np.stack([ordered(walk, "COCO")] * 2))
