@@ -28,6 +28,7 @@ from .joint_files import (
     is_ntu_skeleton,
     is_nuitrack_csv,
     is_nuitrack_json,
+    is_point_table,
     is_ui_prmd,
     is_zed_json,
     open_azure_csv,
@@ -43,6 +44,7 @@ from .joint_files import (
     read_mediapipe_csv,
     read_mediapipe_json,
     read_msr_action3d,
+    read_point_table,
     read_ui_prmd,
 )
 from .marker_files import (
@@ -126,6 +128,7 @@ FORMATS = (
     Format("MediaPipe JSON", is_mediapipe_json, one_body(read_mediapipe_json)),
     Format("joint CSV", is_joint_csv, open_joint_csv),
     Format("joint JSON", is_joint_json, open_joint_json),
+    Format("table of points", is_point_table, one_body(read_point_table)),
 )
 """Supported formats; add a line here for a new one."""
 

@@ -18,6 +18,7 @@ from .nuitrack import (
     open_nuitrack_json,
 )
 from .point_arrays import body_of_points, points_of_array, read_body
+from .point_table import is_point_table, read_point_table
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
 from .unnamed_joints import has_layout
 from .zed_json import is_zed_json, open_zed_json
@@ -38,6 +39,7 @@ __all__ = [
     "is_ntu_skeleton",
     "is_nuitrack_csv",
     "is_nuitrack_json",
+    "is_point_table",
     "is_ui_prmd",
     "is_zed_json",
     "open_azure_csv",
@@ -57,6 +59,7 @@ __all__ = [
     "read_mediapipe_csv",
     "read_mediapipe_json",
     "read_msr_action3d",
+    "read_point_table",
     "read_ui_prmd",
     "read_ui_prmd_pair",
     "write_joint_csv",

@@ -49,7 +49,13 @@ def is_mediapipe_csv(head: bytes) -> bool:
         return sum(name.encode() in head.lower() for name in BODY_POINTS[:3]) == 3 or (
             "landmark" in titles[_index_column(titles)]
         )
-    return sum(axis == 0 for _, axis in _columns(titles)) >= MIN_LANDMARKS
+    columns = _columns(titles)
+    is_named = any(
+        re.search("[a-z]{2}", title) for title in titles if _landmark_and_channel(title)
+    )
+    if not is_named and (N_POINTS - 1, 0) not in columns:
+        return False  # numbered points of another tracker
+    return sum(axis == 0 for _, axis in columns) >= MIN_LANDMARKS
 
 
 def read_mediapipe_csv(

@@ -109,25 +109,67 @@ def _as_points(array: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
 
 
 def read_body(
+    path: Path | str, body: NamedJoints, scale: float | None, progress: Progress
+) -> JointRecording:
+    """Return a recognized body in meters, Z up, with what was judged."""
+    rate = HUMANML3D_RATE_HZ if body.layout == SMPL else DEFAULT_FRAME_RATE
+    progress(
+        0.8,
+        Remark(
+            f"The joints have no names; by their bones they are in the order of {body.layout}"
+            f" with {body.confidence:.0%} confidence. {rate:g} Hz is assumed"
+        ),
+    )
+    return stand_body(
+        path,
+        body.names,
+        body.positions,
+        up=UP_OF_SMPL if body.layout == SMPL else UP,
+        rate=rate,
+        sensor=SENSORS.get(body.layout, Sensor.OTHER),
+        scale=scale,
+        progress=progress,
+    )
+
+
+def stand_body(
     path: Path | str,
-    body: NamedJoints,
+    names: tuple[str, ...],
+    positions: Array,
+    *,
+    up: Mapping[AxisName, float] = UP,
+    rate: float = DEFAULT_FRAME_RATE,
+    times: Array | None = None,
+    sensor: Sensor = Sensor.OTHER,
     scale: float | None,
     progress: Progress,
 ) -> JointRecording:
-    """Return a recognized body in meters, Z up, with what was judged."""
-    is_smpl = body.layout == SMPL
-    positions = z_up_from_y_up(body.positions)
-    roles = {role: body.names.index(name) for role, name in roles_by_name(body.names).items()}
-    judged = judge_up_of_joints(positions, roles, UP_OF_SMPL if is_smpl else UP)
+    """Return joints whose axes, sides and unit are unknown as a body in meters, Z up.
+
+    Parameters
+    ----------
+    path : Path or str
+    names : names of joints with humanoid roles
+    positions : shape (n_frames, n_joints, 3), in the unit and axes of the file
+    up : evidence of the format for each axis
+    rate : float, hertz
+    times : shape (n_frames,), seconds, or None for the rate
+    sensor : Sensor
+    scale : float, meters per unit of the file, or None
+    progress : Progress
+        Receives what was judged.
+    """
+    positions = z_up_from_y_up(positions)
+    roles = {role: names.index(name) for role, name in roles_by_name(names).items()}
+    judged = judge_up_of_joints(positions, roles, up)
     if not judged.is_clear:
         progress(0.8, Remark(describe_guessed_axis(judged.axis)))
-    rate = HUMANML3D_RATE_HZ if is_smpl else DEFAULT_FRAME_RATE
-    progress(0.8, Remark(_describe(body, rate)))
     recording = joint_recording(
         path,
-        body.names,
+        names,
         positions,
-        SENSORS.get(body.layout, Sensor.OTHER),
+        sensor,
+        times=times,
         frame_rate=rate,
         nan_only=True,
         scale=scale,
@@ -138,13 +180,6 @@ def read_body(
     noted = replace(conventions_of(standing), confidence=judged.confidence)
     standing = with_conventions(_unmirrored(standing, progress), noted)
     return standing if scale is not None else _sized(standing, noted, progress)
-
-
-def _describe(body: NamedJoints, rate: float) -> str:
-    return (
-        f"The joints have no names; by their bones they are in the order of {body.layout} with"
-        f" {body.confidence:.0%} confidence. {rate:g} Hz is assumed"
-    )
 
 
 def _sized(

@@ -1,0 +1,111 @@
+"""Recognize a body in points that a tracker has named in its own way."""
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ...motion import roles_by_name
+from ...motion.skeletons import COMPUTED_JOINTS
+
+PARTS = {
+    "shoulder": "shoulder", "elbow": "elbow", "wrist": "wrist", "hip": "hip", "knee": "knee",
+    "ankle": "ankle", "heel": "heel", "bigtoe": "foot_index", "footindex": "foot_index",
+    "toe": "foot_index", "eye": "eye", "ear": "ear",
+}  # fmt: skip
+"""Keypoints of both sides, as MediaPipe calls them."""
+MIDDLE = {
+    "nose": "nose", "neck": "neck_center", "midhip": "hips_center", "hips": "hips_center",
+    "pelvis": "hips_center", "hipcenter": "hips_center", "hipscenter": "hips_center",
+    "hip": "hips_center", "root": "hips_center", "head": "head_center",
+    "headtop": "head_center",
+}  # fmt: skip
+SIDES = {"l": "left", "left": "left", "r": "right", "right": "right"}
+LIMBS = tuple(
+    f"{side}_{part}"
+    for side in ("left", "right")
+    for part in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
+)
+"""Keypoints that a body must have."""
+NAMES_OF_ROLES = {
+    "hips": "pelvis", "spine": "spine1", "chest": "spine2", "upperChest": "spine3",
+    "neck": "neck", "head": "head",
+    **{f"{side}{role}": f"{side}_{name}" for side in ("left", "right") for role, name in (
+        ("Shoulder", "collar"), ("UpperArm", "shoulder"), ("LowerArm", "elbow"),
+        ("Hand", "wrist"), ("UpperLeg", "hip"), ("LowerLeg", "knee"), ("Foot", "ankle"),
+        ("Toes", "foot"),
+    )},
+}  # fmt: skip
+"""Names of SMPL, by role."""
+NEEDED_ROLES = frozenset(
+    side + part
+    for side in ("left", "right")
+    for part in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
+)
+"""Roles that a body must have."""
+
+
+class NamedBody(NamedTuple):
+    """Joints with names that this project knows."""
+
+    names: tuple[str, ...]
+    positions: Array
+    """Shape (n_frames, n_joints, 3)."""
+
+
+def body_of_named_points(names: Sequence[str], points: Array) -> NamedBody | None:
+    """Return the body among named points; None if limbs are missing.
+
+    Keypoints of image trackers, such as `LShoulder` or `left_hip`, get MediaPipe's names and
+    the joints in the middle of the body; joints of skeletons get those of SMPL. Points without
+    a role are left out.
+
+    Parameters
+    ----------
+    names : length n_points
+    points : shape (n_frames, n_points, 3)
+    """
+    keypoints: dict[str, int] = {}
+    for column, name in enumerate(names):
+        keypoints.setdefault(_keypoint(name), column)
+    keypoints.pop("", None)
+    if keypoints.keys() >= {*LIMBS}:
+        return _with_centers({key: points[:, column] for key, column in keypoints.items()})
+    roles = roles_by_name(names)
+    if not roles.keys() >= NEEDED_ROLES:
+        return None
+    found = {
+        NAMES_OF_ROLES[role]: points[:, list(names).index(name)]
+        for role, name in roles.items()
+        if role in NAMES_OF_ROLES
+    }
+    if "pelvis" not in found:
+        middle = (found["left_hip"] + found["right_hip"]) / 2.0
+        found["pelvis"] = (
+            points[:, keypoints["hips_center"]] if "hips_center" in keypoints else middle
+        )
+    return NamedBody(tuple(found), np.stack(list(found.values()), axis=1))
+
+
+def _keypoint(name: str) -> str:
+    """Return MediaPipe's name of a keypoint; empty if it has none."""
+    words = [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)]
+    plain = "".join(words)
+    if plain in MIDDLE:
+        return MIDDLE[plain]
+    for side in (words[0], words[-1]) if len(words) > 1 else ():
+        rest = "".join(words[1:] if side is words[0] else words[:-1])
+        if side in SIDES and rest in PARTS:
+            return f"{SIDES[side]}_{PARTS[rest]}"
+    if plain[:1] in SIDES and plain[1:] in PARTS:  # such as rshoulder
+        return f"{SIDES[plain[0]]}_{PARTS[plain[1:]]}"
+    return ""
+
+
+def _with_centers(joints: dict[str, Array]) -> NamedBody:
+    for center, sides in COMPUTED_JOINTS.items():
+        if center not in joints and joints.keys() >= {*sides}:
+            joints[center] = np.mean([joints[side] for side in sides], axis=0)
+    return NamedBody(tuple(joints), np.stack(list(joints.values()), axis=1))

@@ -1,0 +1,165 @@
+"""Read tables of any program whose columns are named after points and coordinates."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ...motion import JointRecording, Tracks
+from ...progress import Progress, Remark, unwatched, within
+from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    ConstantRate,
+    check_scale,
+    guess_unit_of_points,
+    meters_from_unit_name,
+    stand_markers,
+)
+from .named_points import body_of_named_points
+from .point_arrays import body_of_points, read_body, stand_body
+
+COORDINATE = re.compile(
+    r"(?P<name>.*?)([\s_.:\-]+(pos(ition)?|loc(ation)?|translat(e|ion)|tr?|world))?[\s_.:\-]*"
+    r"(?P<axis>[xyz])(\s*[(\[](?P<unit>\w+)[)\]])?",
+    re.IGNORECASE,
+)
+AXIS_FIRST = re.compile(r"(?P<axis>[xyz])[\s_.:\-]?(?P<name>\d+)", re.IGNORECASE)
+NO_POSITION = re.compile(
+    r"(rotation|rotate|quat(ernion)?|euler|orientation|velocity|acceleration"
+    r"|(^|[\s_.:\-])(rot|orient|angles?|scale|vel|acc|gyro|mag|std|error|[qr]))$",
+    re.IGNORECASE,
+)
+"""Ends of the names of columns that hold no positions."""
+TIMES = {
+    "time": 1.0, "times": 1.0, "timestamp": 1.0, "t": 1.0, "seconds": 1.0, "time_s": 1.0,
+    "timestamp_s": 1.0, "time (s)": 1.0, "time(s)": 1.0, "time [s]": 1.0, "sec": 1.0,
+    "time_ms": 0.001, "timestamp_ms": 0.001, "time (ms)": 0.001, "milliseconds": 0.001,
+}  # fmt: skip
+"""Seconds per unit of a time stamp, by the title of its column."""
+MIN_POINTS = 8
+"""Number of points of a table. It guards tables of something else, such as of one sensor."""
+
+
+class _Columns(NamedTuple):
+    """Columns of a table."""
+
+    names: tuple[str, ...]
+    places: Array
+    """Column of x, y and z of each point, shape (n_points, 3)."""
+    time: int | None
+    second: float
+    unit: float | None
+    """Meters, by the titles; None if they do not say it."""
+    width: int
+
+
+def is_point_table(head: bytes) -> bool:
+    """Return whether the first line of a file names the coordinates of points."""
+    lines = head.lstrip().splitlines()
+    if len(lines) < 2:
+        return False
+    columns = _columns(_titles(lines[0]))
+    return columns is not None and len(columns.names) >= MIN_POINTS
+
+
+def read_point_table(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> JointRecording | Tracks:
+    """Read a table with a column for x, y and z of each point, a line for each frame.
+
+    Columns are called `LeftHand_x`, `Hip_position_x`, `nose.X`, `Head X (mm)` or `x0`; others
+    are left out. Points that form a body, by their names or, if these are numbers, by their
+    bones (`name_joints`), are its joints. Their axes, and their unit if it is not stated, are
+    judged from the body. Without a column of times, 30 Hz are assumed.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, meters per unit of the file, or None
+    progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or has no points that are observed.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    reader = LineReader(path)
+    first = reader.take(1)
+    columns = _columns(_titles(first[0])) if first else None
+    if columns is None:
+        raise InvalidFileError(f"{path} has no columns of points. Export it again.")
+    rows = stream_cells(
+        reader, find_separator(first[0]), columns.width, path, within(progress, 0.0, 0.8)
+    )
+    points = rows[:, columns.places.astype(int)]
+    points = np.where(np.isfinite(points).all(axis=-1, keepdims=True), points, np.nan)
+    if not len(points) or np.isnan(points).all():
+        raise InvalidFileError(f"{path} has no points that are observed in any frame.")
+    times = None if columns.time is None else columns.second * rows[:, columns.time]
+    if times is None or not np.isfinite(times).all():
+        times = None
+        progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
+    return _recording(path, columns, points, times, scale, progress)
+
+
+def _recording(
+    path: Path | str,
+    columns: _Columns,
+    points: Array,
+    times: Array | None,
+    scale: float | None,
+    progress: Progress,
+) -> JointRecording | Tracks:
+    unit = columns.unit if scale is None else scale
+    if all(name.isdigit() for name in columns.names):
+        unnamed = body_of_points(path, points)
+        if unnamed is not None:
+            return read_body(path, unnamed, unit, progress)
+    body = body_of_named_points(columns.names, points)
+    if body is not None:
+        return stand_body(
+            path, body.names, body.positions, times=times, scale=unit, progress=progress
+        )
+    rate = DEFAULT_FRAME_RATE
+    if times is not None:
+        resampler = ConstantRate(path, times)
+        points, rate = resampler.positions(points), resampler.frame_rate
+    unit = guess_unit_of_points(points) if unit is None else unit
+    return stand_markers(columns.names, points * unit, rate, unit, "")
+
+
+def _titles(line: bytes) -> list[str]:
+    line = line.lstrip(b"#").strip()
+    return [decode_text(cell) for cell in split_cells(line, find_separator(line))]
+
+
+def _columns(titles: Sequence[str]) -> _Columns | None:
+    """Return the columns of points; None if none has all three coordinates."""
+    found: dict[str, dict[str, int]] = {}
+    units: set[str] = set()
+    for column, title in enumerate(titles):
+        match = AXIS_FIRST.fullmatch(title) or COORDINATE.fullmatch(title)
+        name = match["name"].strip(" _.:-") if match else ""
+        if match is None or not name or NO_POSITION.search(name):
+            continue
+        found.setdefault(name, {}).setdefault(match["axis"].lower(), column)
+        units.add(match.groupdict().get("unit") or "")
+    points = {name: axes for name, axes in found.items() if len(axes) == 3}
+    if not points:
+        return None
+    lower = [title.lower() for title in titles]
+    time = next((column for column, title in enumerate(lower) if title in TIMES), None)
+    unit = meters_from_unit_name(units.pop()) if len(units) == 1 else None
+    places = np.array([[axes[axis] for axis in "xyz"] for axes in points.values()])
+    second = 1.0 if time is None else TIMES[lower[time]]
+    return _Columns(tuple(points), places, time, second, unit, len(titles))
