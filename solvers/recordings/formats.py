@@ -17,6 +17,7 @@ from .format import Format, one_body
 from .joint_files import (
     is_azure_csv,
     is_azure_json,
+    is_frames_json,
     is_irds,
     is_joint_csv,
     is_joint_json,
@@ -33,6 +34,7 @@ from .joint_files import (
     is_zed_json,
     open_azure_csv,
     open_azure_json,
+    open_frames_json,
     open_irds,
     open_joint_csv,
     open_joint_json,
@@ -128,6 +130,7 @@ FORMATS = (
     Format("MediaPipe JSON", is_mediapipe_json, one_body(read_mediapipe_json)),
     Format("joint CSV", is_joint_csv, open_joint_csv),
     Format("joint JSON", is_joint_json, open_joint_json),
+    Format("JSON of joints", is_frames_json, open_frames_json),
     Format("table of points", is_point_table, one_body(read_point_table)),
 )
 """Supported formats; add a line here for a new one."""

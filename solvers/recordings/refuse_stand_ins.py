@@ -8,6 +8,7 @@ from typing import NamedTuple, Never
 from ..errors import InvalidFileError
 from ..files import open_regular
 from ..progress import Progress, unwatched
+from .other_programs import PROGRAMS, is_old_pickle
 
 SCENE_MAGIC = (b"Kaydara FBX Binary", b"; FBX", b"glTF", b"PXR-USDC", b"#usda")
 
@@ -20,6 +21,10 @@ COCO = re.compile(
     rb'"(image_id|category_id|num_keypoints|keypoint_scores|bbox)"'
     rb'|"keypoints"\s*:\s*\[\s*\[\s*[-+\d.e]+\s*,\s*[-+\d.e]+\s*\]'
 )
+TRIPLES = re.compile(
+    rb'"keypoints"\s*:\s*\[\s*\[\s*[-+\d.e]+\s*,\s*[-+\d.e]+\s*,\s*[-+\d.e]+\s*\]'
+)
+"""Points with a third coordinate, which may be a score: `point_arrays` decides that."""
 DEEPLABCUT = re.compile(rb"scorer,[^\r\n]*\r?\n(individuals,[^\r\n]*\r?\n)?bodyparts,")
 OPENSIM_BODIES = re.compile(rb"#?\s*times?\s*,\s*(\w+)_x\s*,\s*\1_y\s*,\s*\1_z\s*,\s*\1_rotx")
 
@@ -56,7 +61,7 @@ def _is_flat(head: bytes) -> bool:
         rb'\s*\{\s*"version"\s*:[^{]*"people"\s*:\s*\[\s*\]', head
     )
     coco = re.match(rb"\s*[\[{]", head) and (
-        (b'"keypoints"' in head and COCO.search(head))
+        (b'"keypoints"' in head and COCO.search(head) and not TRIPLES.search(head))
         or (b'"annotations"' in head and b'"image_id"' in head)
         or re.match(rb'\s*\{\s*"(info|images|licenses)"\s*:.*"(license|file_name)"', head, re.S)
     )
@@ -79,7 +84,8 @@ def _is_pickle(head: bytes) -> bool:
     """Detect pickles, also those in the archives of PyTorch, joblib and NumPy."""
     in_archive = head[:4] == b"PK\x03\x04" and b"data.pkl" in head[:300]
     in_array = head[:6] == b"\x93NUMPY" and b"'|O'" in head[:128]
-    return in_archive or in_array or (head[:1] == b"\x80" and head[1:2] in b"\x02\x03\x04\x05")
+    is_new = head[:1] == b"\x80" and head[1:2] in b"\x02\x03\x04\x05"
+    return in_archive or in_array or is_new or is_old_pickle(head)
 
 
 def _is_web_page(head: bytes) -> bool:
@@ -147,10 +153,11 @@ REFUSALS = (
     Refusal(
         "pickle",
         _is_pickle,
-        "{path} is a pickle, which is never opened here: it may run any program. Save its"
-        " arrays as .npz where it was made. For an SMPL body: numpy.savez(file,"
+        "{path} is a pickle, which is never opened here: it may run any program. Where it was"
+        " made, convert it with to_npz.py (docs/formats/skeletons/smpl.md) or numpy.savez(file,"
         " global_orient=..., body_pose=..., transl=...), one row per frame.",
     ),
+    *(Refusal(*each) for each in PROGRAMS),
     Refusal(
         "compressed file",
         _is_compressed,

@@ -2,6 +2,7 @@
 
 from .azure_csv import is_azure_csv, open_azure_csv
 from .azure_json import is_azure_json, open_azure_json
+from .frames_json import is_frames_json, open_frames_json
 from .freemocap import is_npy, read_freemocap, read_freemocap_points
 from .irds import is_irds, open_irds
 from .joint_csv import is_joint_csv, open_joint_csv, write_joint_csv
@@ -28,6 +29,7 @@ __all__ = [
     "has_layout",
     "is_azure_csv",
     "is_azure_json",
+    "is_frames_json",
     "is_irds",
     "is_joint_csv",
     "is_joint_json",
@@ -44,6 +46,7 @@ __all__ = [
     "is_zed_json",
     "open_azure_csv",
     "open_azure_json",
+    "open_frames_json",
     "open_irds",
     "open_joint_csv",
     "open_joint_json",

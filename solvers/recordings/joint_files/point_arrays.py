@@ -109,15 +109,24 @@ def _as_points(array: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
 
 
 def read_body(
-    path: Path | str, body: NamedJoints, scale: float | None, progress: Progress
+    path: Path | str,
+    body: NamedJoints,
+    scale: float | None,
+    progress: Progress,
+    times: Array | None = None,
+    rate: float | None = None,
 ) -> JointRecording:
-    """Return a recognized body in meters, Z up, with what was judged."""
-    rate = HUMANML3D_RATE_HZ if body.layout == SMPL else DEFAULT_FRAME_RATE
+    """Return a recognized body in meters, Z up, with what was judged.
+
+    Without times, in seconds, and rate, in hertz, the rate of the format is assumed.
+    """
+    usual = HUMANML3D_RATE_HZ if body.layout == SMPL else DEFAULT_FRAME_RATE
+    assumed = f". {usual:g} Hz is assumed" if times is None and rate is None else ""
     progress(
         0.8,
         Remark(
             f"The joints have no names; by their bones they are in the order of {body.layout}"
-            f" with {body.confidence:.0%} confidence. {rate:g} Hz is assumed"
+            f" with {body.confidence:.0%} confidence{assumed}"
         ),
     )
     return stand_body(
@@ -125,7 +134,8 @@ def read_body(
         body.names,
         body.positions,
         up=UP_OF_SMPL if body.layout == SMPL else UP,
-        rate=rate,
+        rate=rate or usual,
+        times=times,
         sensor=SENSORS.get(body.layout, Sensor.OTHER),
         scale=scale,
         progress=progress,

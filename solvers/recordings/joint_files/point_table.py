@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
-from ...progress import Progress, Remark, unwatched, within
+from ...progress import READING, Progress, Remark, unwatched, within
 from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
 from ..conventions import (
     DEFAULT_FRAME_RATE,
@@ -108,7 +108,6 @@ def read_point_table(
     times = None if columns.time is None else columns.second * rows[:, columns.time]
     if times is None or not np.isfinite(times).all():
         times = None
-        progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     return _recording(path, columns, points, times, scale, progress)
 
 
@@ -124,7 +123,9 @@ def _recording(
     if all(name.isdigit() for name in columns.names):
         unnamed = body_of_points(path, points)
         if unnamed is not None:
-            return read_body(path, unnamed, unit, progress)
+            return read_body(path, unnamed, unit, progress, times)
+    if times is None:
+        progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     body = body_of_named_points(columns.names, points)
     if body is not None:
         return stand_body(
@@ -135,6 +136,7 @@ def _recording(
         resampler = ConstantRate(path, times)
         points, rate = resampler.positions(points), resampler.frame_rate
     unit = guess_unit_of_points(points) if unit is None else unit
+    progress(1.0, READING)
     return stand_markers(columns.names, points * unit, rate, unit, "")
 
 

@@ -1,4 +1,4 @@
-"""Arrays of joints without names come in as the body that they form, or say that they do not."""
+"""Arrays of joints without names come in as the body that they form, or as points."""
 
 import numpy as np
 import pytest

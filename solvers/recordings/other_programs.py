@@ -1,0 +1,90 @@
+"""Files of other programs that are refused, each with the format to export instead."""
+
+import re
+from collections.abc import Callable
+
+OLD_PICKLE = re.compile(
+    rb"\(dp?\d|\(lp?\d|\}q[\x00-\xff]|\]q[\x00-\xff]|c(copy_reg|copyreg|numpy|torch|__builtin__)"
+)
+"""First bytes of pickles of protocol 0 and 1."""
+HDF5 = b"\x89HDF\r\n\x1a\n"
+SAFETENSORS = re.compile(rb"[\x00-\xff]{8}\s*\{\s*\"[^\"]+\"\s*:\s*\{\s*\"(dtype|format)\"")
+
+Detector = Callable[[bytes], bool]
+
+
+def _starts(*magic: bytes) -> Detector:
+    return lambda head: head.lstrip().startswith(magic)
+
+
+def _member(*names: bytes) -> Detector:
+    """Return what detects an archive whose first members have one of these names."""
+    return lambda head: head[:4] == b"PK\x03\x04" and any(name in head[:300] for name in names)
+
+
+def is_old_pickle(head: bytes) -> bool:
+    """Detect pickles of protocol 0 and 1, which Python 2 wrote."""
+    return OLD_PICKLE.match(head) is not None
+
+
+PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
+    (
+        "MikuMikuDance motion",
+        _starts(b"Vocaloid Motion Data"),
+        "{path} is a motion of MikuMikuDance. Import it with MMD Tools, select its armature, and use"
+        " Clean there.",
+    ),
+    (
+        "Blender file",
+        _starts(b"BLENDER"),
+        "{path} is a Blender file. Open it, or append the action from it, and use Clean there.",
+    ),
+    (
+        "Maya scene",
+        lambda head: (
+            head.lstrip().startswith((b"//Maya ASCII", b"animVersion"))
+            or (head[:4] in {b"FOR4", b"FOR8"} and b"Maya" in head[:64])
+        ),
+        "{path} is a file of Maya. Export the skeleton with its animation as FBX.",
+    ),
+    (
+        "Unity asset",
+        lambda head: head.startswith(b"%YAML") and b"tag:unity3d.com" in head[:200],
+        "{path} is an asset of Unity. Export the animated character as FBX, with the FBX Exporter.",
+    ),
+    (
+        "HTR",
+        lambda head: re.match(rb"\s*\[Header\]\s*(#.*\s*)*FileType\s+[hg]tr", head) is not None,
+        "{path} is an HTR or GTR file. Export it as BVH, FBX or C3D.",
+    ),
+    (
+        "DAZ file",
+        lambda head: b'"file_version"' in head[:200] and b'"asset_info"' in head,
+        "{path} is a file of DAZ Studio. Export the figure with its animation as BVH or FBX.",
+    ),
+    (
+        "HDF5",
+        _starts(HDF5),
+        "{path} is an HDF5 file. Save its 3D points as a NumPy array of the shape (frames, joints, 3),"
+        " with numpy.save.",
+    ),
+    (
+        "tensors",
+        lambda head: SAFETENSORS.match(head) is not None,
+        "holds tensors. Save the pose as .npz where it was made; docs/formats/skeletons/smpl.md"
+        " has the names.",
+    ),
+    (
+        "workbook",
+        _member(b"[Content_Types].xml", b"xl/"),
+        "{path} is a workbook. Save its table of positions as CSV, or export BVH or MVNX from the"
+        " program that wrote it.",
+    ),
+    (
+        "USD archive",
+        _member(b".usdc", b".usda"),
+        "{path} is read by Blender's own importers. Import it in Blender, or run blender --background"
+        " --command mocap_assist import.",
+    ),
+)
+"""Name, detection from the first bytes, and the sentence that follows the path."""
