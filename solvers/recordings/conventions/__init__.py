@@ -1,6 +1,8 @@
 """Convert axes, units, time stamps and joints of files to the project's conventions."""
 
 from .axes import (
+    ACCLAIM_UNIT,
+    ADULT_REACH_M,
     CENTIMETER,
     MIN_BODY_JOINTS,
     PLAUSIBLE_REACH_M,
@@ -70,6 +72,8 @@ from .time_stamps import (
 from .tracked_joints import joint_recording
 
 __all__ = [
+    "ACCLAIM_UNIT",
+    "ADULT_REACH_M",
     "ALL_BODIES",
     "CENTIMETER",
     "DEFAULT_FRAME_RATE",

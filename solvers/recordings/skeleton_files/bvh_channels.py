@@ -12,6 +12,8 @@ from ...motion import Motion, Skeleton
 from ...progress import Progress, Remark
 from ...rotations import inverse, multiply, quaternion_from_euler, rotate, rotation_between
 from ..conventions import (
+    ACCLAIM_UNIT,
+    ADULT_REACH_M,
     CENTIMETER,
     PLAUSIBLE_REACH_M,
     describe_guessed_unit,
@@ -28,6 +30,12 @@ FRAMES_AT_ONCE = 2000
 MIN_REACH_M = 0.5
 """Meters from hand to foot of a small child. Chosen by hand: a file of 0.5 to 1.1 m in
 centimeters may as well be in another unit."""
+
+
+IMPERIAL = (0.0254, ACCLAIM_UNIT)
+LIKELY_REACH_M = (1.6, 3.0)
+"""Range of `ADULT_REACH_M` outside which inches and Acclaim's unit are unlikely. Chosen by
+hand: 1.8 to 2.4 m in such files of six makers; children are recorded in centimeters."""
 
 
 class BvhPoses(NamedTuple):
@@ -206,8 +214,17 @@ def motion_from_poses(
     if scale is None:
         offsets = offsets_of_body(skeleton)
         scale = guess_unit(parents, offsets)
-        reach = CENTIMETER * longest_bone_path(parents, offsets)
-        if scale != CENTIMETER and MIN_REACH_M < reach < PLAUSIBLE_REACH_M[0]:
+        path = longest_bone_path(parents, offsets)
+        reach = CENTIMETER * path
+        is_body = offsets is not skeleton.offsets
+        is_odd = (
+            is_body
+            and scale in IMPERIAL
+            and not LIKELY_REACH_M[0] < scale * path < LIKELY_REACH_M[1]
+        )
+        if is_odd:  # a unit of some program: the actor gets an adult's size
+            scale = float(f"{ADULT_REACH_M / path:.3g}")
+        if is_odd or (scale != CENTIMETER and MIN_REACH_M < reach < PLAUSIBLE_REACH_M[0]):
             progress(1.0, Remark(describe_guessed_unit(scale)))
     skeleton = replace(skeleton, offsets=scale * skeleton.offsets)
     noted = replace(file_conventions("Y", unit=scale), offset_added=poses.offset_added)

@@ -142,7 +142,8 @@ def in_camera(points):
 def test_json_of_frames_without_names_is_a_body(tmp_path, walk, wrap):
     order = [
         "hips", *(side + part for side in ("right", "left")
-                  for part in ("UpperLeg", "LowerLeg", "Foot")), "spine", "neck", "neck", "head",
+                  for part in ("UpperLeg", "LowerLeg", "Foot")),
+        "spine", "neck", "neck", "head",
         *(side + part for side in ("left", "right")
           for part in ("UpperArm", "LowerArm", "Hand")),
     ]  # fmt: skip

@@ -70,6 +70,17 @@ def test_travel_below_a_wrapper_is_not_size(read, scale):
     assert far.conventions.unit == pytest.approx(0.01 / scale)
 
 
+@pytest.mark.parametrize("scale", [0.08, 0.25])
+def test_units_of_no_program_give_an_adult_and_are_reported(read, scale, collected_messages):
+    """Inches would make a dwarf or a giant, as in takes of FAIR's Animated Drawings."""
+    messages, collect = collected_messages
+
+    motion = read(bvh_text(hierarchy(scale)), progress=collect)
+
+    assert stature(motion) == pytest.approx(1.75, rel=0.12)
+    assert any("units of 0." in message for message in messages)
+
+
 def test_prop_far_away_is_not_size(read):
     motion = read(bvh_text(wrapped(hierarchy(1), Gun=("Root", (2000, 0, 0)))))
 
