@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ..skeletons import Skeleton
@@ -30,6 +31,13 @@ NO_FOOT_MISFIT = 0.25
 """Added to the misfit, the logarithm of a length, of an ankle that ends a leg of four joints or
 more: its last one is rather the toes. Chosen by hand on the rigs of `tests/solvers/motion`."""
 
+FOOT_MISFIT = 0.25
+"""Added to the misfit, the logarithm of a length, of an ankle after a bone that points away
+from the leg: that bone is the foot. Chosen by hand on the rigs of `tests/solvers/motion`."""
+MAX_SHANK_COSINE = 0.7
+"""Cosine between a bone and the leg above it, up to which it is a foot. Chosen by hand: 45
+degrees; feet stand at 60 to 90 degrees to the shank."""
+
 
 def path_length(skeleton: Skeleton, joints: Sequence[int]) -> float:
     """Return the length along the bones from the first to the last of these joints."""
@@ -56,7 +64,18 @@ def divide_leg(
     excess = _log_excess(skeleton, leg, len(joints), MAX_FOOT_FRACTION * height)
     if len(joints) > 3 and joints[-1] == leg[-1]:
         excess[-1] += NO_FOOT_MISFIT
+    excess[3:] += FOOT_MISFIT * _is_foot(skeleton, joints)[3:]
     return _divide(skeleton, joints, LEG_FRACTIONS, height, np.zeros(len(joints)), excess)
+
+
+def _is_foot(skeleton: Skeleton, joints: Sequence[int]) -> NDArray[np.bool_]:
+    """Return for each joint whether its bone points away from the leg above it."""
+    positions = skeleton.rest_positions[list(joints)]
+    bones = np.diff(positions, axis=0, prepend=positions[:1])
+    legs = positions - bones - positions[0]
+    along = (bones * legs).sum(axis=1)
+    lengths = np.linalg.norm(bones, axis=1) * np.linalg.norm(legs, axis=1)
+    return np.asarray((along < MAX_SHANK_COSINE * lengths).astype(bool))
 
 
 def divide_arm(

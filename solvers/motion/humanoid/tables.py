@@ -217,6 +217,11 @@ TABLES: dict[str, tuple[str, ...]] = {
         "clavicle", "uarm", "larm", "hand",
         "thigh", "shank", "foot", "toes",
     ),
+    "Knees and elbows": (  # old skeletons of games and schools, with thighs below still hips
+        "hips", "spine1", "spine2", "spine4 spine3", "neck neck1", "head",
+        "clavicle", "shoulder", "elbow", "hand",
+        "thigh", "knee", "foot", "toes",
+    ),
     "Second Life": (
         "mPelvis", "mTorso", "mChest", "", "mNeck", "mHead",
         "mCollar", "mShoulder", "mElbow", "mWrist",

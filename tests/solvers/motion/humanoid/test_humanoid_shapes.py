@@ -65,6 +65,35 @@ def test_the_last_joint_of_a_short_foot_is_the_toes():
     assert by_shape(skeleton) == {name: joint for joint, name in enumerate(names)}
 
 
+def test_the_ankle_is_where_the_leg_turns_forward():
+    """Long limbs: the shank to the toes would fit a taller person."""
+    rows = [
+        ("hips", -1, (0.0, 0.0, 0.86)), ("spine", 0, (0.001, 0.0, 0.0)),
+        ("chest", 1, (0.0, 0.0, 0.142)), ("upperChest", 2, (0.0, 0.009, 0.237)),
+        ("neck", 3, (0.0, 0.005, 0.189)), ("head", 4, (0.0, 0.0, 0.12)),
+        ("head_end", 5, (0.0, -0.013, 0.119)),
+    ]  # fmt: skip
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        limbs = [
+            [("Shoulder", (0.001, 0.005, 0.189)), ("UpperArm", (0.151, 0.0, 0.0)),
+             ("LowerArm", (0.317, -0.028, 0.0)), ("Hand", (0.349, -0.062, 0.0)),
+             ("Hand_end", (0.122, -0.021, 0.003))],
+            [("Hip", (0.001, 0.0, 0.0)), ("UpperLeg", (0.123, 0.0, 0.0)),
+             ("LowerLeg", (0.028, 0.0, -0.53)), ("Foot", (0.024, 0.0, -0.466)),
+             ("Toes", (0.003, -0.128, -0.059)), ("Toes_end", (0.0, -0.097, -0.009))],
+        ]  # fmt: skip
+        for limb, top in zip(limbs, (3, 0), strict=True):
+            for part, (x, y, z) in limb:
+                rows.append((side + part, top, (sign * x, y, z)))
+                top = len(rows) - 1
+    names, parents, offsets = zip(*rows, strict=True)
+
+    found = by_shape(Skeleton(names, parents, np.array(offsets)))
+
+    for role in ("leftUpperLeg", "leftLowerLeg", "leftFoot", "leftToes", "rightFoot"):
+        assert names[found[role]] == role
+
+
 @pytest.mark.parametrize("actor", ["bd", "bk", "dg"])
 def test_roles_by_shape_of_acclaim_skeletons_except_fingers(recordings, actor):
     """Proportions do not distinguish joints a few centimeters apart in the hand."""
