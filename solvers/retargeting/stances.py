@@ -7,6 +7,7 @@ import numpy as np
 
 from ..arrays import Array, Flags
 from ..motion import Skeleton, WorldPoses
+from ..motion.humanoid import end_of_foot
 from ..rotations import (
     inverse,
     multiply,
@@ -117,7 +118,8 @@ def foot_bone(body: HumanoidBody, side: str) -> tuple[int, int]:
     foot = body.joints[f"{side}Foot"]
     skeleton: Skeleton = body.skeleton
     toes = body.joints.get(f"{side}Toes")
-    return foot, toes if toes in skeleton.subtree(foot) else (*skeleton.children[foot], foot)[0]
+    toes_index = toes if toes in skeleton.subtree(foot) else None
+    return foot, end_of_foot(skeleton, foot, toes_index)
 
 
 def _slope(vectors: Array) -> Array:

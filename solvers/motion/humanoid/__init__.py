@@ -20,7 +20,14 @@ from .bone_directions import (
     rates_from_directions,
 )
 from .bone_lengths import fit_bone_lengths, transfer_motion
-from .canonical import FORWARD, UP, canonical_rotations, from_canonical, t_pose_alignment
+from .canonical import (
+    FORWARD,
+    UP,
+    canonical_rotations,
+    end_of_foot,
+    from_canonical,
+    t_pose_alignment,
+)
 from .foot_contacts import (
     GROUND_PERCENTILE,
     HUMAN_LEG_LENGTH_M,
@@ -107,6 +114,7 @@ __all__ = [
     "contacts_of_points",
     "describe_low_confidence",
     "detect_contacts",
+    "end_of_foot",
     "estimate_body_scale",
     "estimate_bone_lengths",
     "evidence_figures",

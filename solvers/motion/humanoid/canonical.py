@@ -213,9 +213,19 @@ def _t_pose_bone(side: str, part: str) -> NDArray[np.float64]:
 
 def _foot_bone(skeleton: Skeleton, foot: int, toes: int | None) -> NDArray[np.float64]:
     """Return the vector from ankle to toes, or to the end site; zero without either."""
-    children = skeleton.children[foot]
-    end = toes if toes is not None else next(iter(children), foot)
+    end = end_of_foot(skeleton, foot, toes)
     return np.asarray(skeleton.rest_positions[end] - skeleton.rest_positions[foot])
+
+
+def end_of_foot(skeleton: Skeleton, foot: int, toes: int | None) -> int:
+    """Return the joint of the toes, otherwise the farthest one below the ankle, or the ankle.
+
+    The next joint may be at the sole, straight below the ankle, and show no direction.
+    """
+    if toes is not None:
+        return toes
+    away = np.linalg.norm(skeleton.rest_positions - skeleton.rest_positions[foot], axis=1)
+    return max(skeleton.subtree(foot), key=lambda joint: float(away[joint]))
 
 
 def _split(role: str) -> tuple[str, str]:

@@ -18,6 +18,7 @@ from solvers.motion import (
 from solvers.recordings import read_recording
 from solvers.retargeting import RetargetSettings, retarget
 from solvers.rotations.representations import rotate
+from solvers.samples import walking_gait
 
 RIG = mixamo()
 FEET = [
@@ -25,7 +26,7 @@ FEET = [
     for side in ("Left", "Right")
 ]
 AS_EVER = RetargetSettings()
-ACROSS = np.array([1.0, 0.0, 0.0])
+ACROSS, FORWARD = np.array([1.0, 0.0, 0.0]), np.array([0.0, -1.0, 0.0])
 SENSED = ("msr_action3d/a11_s03_e03", "msr_action3d/a13_s01_e01", "irds/215_18_0_5_1")
 TAKES = ("cmu_walk/07_05.bvh", "cmu_walk/07_01.bvh", "05_13.amc")
 
@@ -110,3 +111,29 @@ def retargeted_to(
 ) -> Motion:
     humanoid = find_humanoid_map(motion.skeleton)
     return retarget(motion, humanoid, rig, find_humanoid_map(rig), settings=settings)
+
+
+def test_a_joint_straight_below_the_ankle_is_no_direction_of_the_foot():
+    """In some files the joint below the ankle is at the sole, and the tip in front of it."""
+    walk = walking_gait()
+    skeleton = walk.skeleton
+    offsets, names = skeleton.offsets.copy(), list(skeleton.names)
+    for side in ("Left", "Right"):
+        ball = skeleton.index(f"{side}ToeBase")
+        offsets[ball], offsets[ball + 1] = (0.0, 0.0, offsets[ball][2]), (0.0, -0.2, 0.0)
+        names[ball], names[ball + 1] = f"{side}ForeFoot", f"{side}ForeFoot_end"
+    stub = Skeleton(tuple(names), skeleton.parents, offsets)
+
+    result, expected = (
+        retargeted_to(Motion(each, walk.rotations, walk.root_positions, walk.frame_rate))
+        for each in (stub, skeleton)
+    )
+
+    for foot, _, _ in FEET:
+        one, other = (
+            forward_kinematics(each).rotations[:, foot] for each in (result, expected)
+        )
+        cosines = (rotate(one, -ACROSS[[1, 0, 2]]) * rotate(other, -ACROSS[[1, 0, 2]])).sum(
+            axis=1
+        )
+        assert np.degrees(np.arccos(np.median(cosines))) < 20.0
