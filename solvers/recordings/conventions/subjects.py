@@ -1,6 +1,7 @@
 """Split named points into subjects: persons and props whose names begin the labels."""
 
 from collections.abc import Callable, Sequence
+from itertools import combinations
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -13,7 +14,12 @@ from .bodies import Bodies, observed_body
 from .points import point_names
 
 Recording = TypeVar("Recording", Tracks, JointRecording)
-SEPARATOR = ":"
+SEPARATOR, UNDERSCORE = ":", "_"
+SIDE_WORDS = frozenset({"l", "r", "left", "right", "lt", "rt"})
+"""Words before an underscore that are sides rather than people."""
+MIN_SHARED_FRACTION = 0.7
+"""Fraction of the markers of two people that have the same names. Chosen by hand: people of one
+recording wear one set, where single markers differ or are missing."""
 UNLABELED = "unlabeled"
 """Name of the points of no subject, if others have one."""
 MIN_PERSON_MARKERS = 12
@@ -41,22 +47,51 @@ class MarkerSubject(NamedTuple):
 def split_subjects(labels: Sequence[str]) -> list[MarkerSubject]:
     """Return the subjects that begin labels, such as Anna in `Anna:LFHD`; or one of all points.
 
+    Where no label has a colon, `Anna_LFHD` and `Ben_LFHD` are two people with the same markers.
     Points of no subject come last.
     """
+    separator = SEPARATOR
+    if not any(SEPARATOR in label for label in labels) and _are_people(labels):
+        separator = UNDERSCORE
     found: dict[str, list[int]] = {}
     for column, label in enumerate(labels):
-        found.setdefault(label.rpartition(SEPARATOR)[0], []).append(column)
+        found.setdefault(_split(label, separator)[0], []).append(column)
     unlabeled = found.pop("", [])
     if len(found) < 2:
         return [MarkerSubject("1", list(range(len(labels))), point_names(labels))]
     subjects = [
-        MarkerSubject(name, columns, point_names([labels[each] for each in columns]))
+        MarkerSubject(
+            name, columns, point_names([_split(labels[each], separator)[1] for each in columns])
+        )
         for name, columns in found.items()
     ]
     if unlabeled:
         names = point_names([labels[each] for each in unlabeled])
         subjects.append(MarkerSubject(UNLABELED, unlabeled, names))
     return subjects
+
+
+def _split(label: str, separator: str) -> tuple[str, str]:
+    """Return the subject and the name of a label; subjects end at the last colon."""
+    if separator == SEPARATOR:
+        subject, _, name = label.rpartition(separator)
+        return subject, name
+    subject, found, name = label.partition(separator)
+    return (subject, name) if found and name else ("", label)
+
+
+def _are_people(labels: Sequence[str]) -> bool:
+    """Return whether words before an underscore are people, who wear the same markers."""
+    worn: dict[str, set[str]] = {}
+    for label in labels:
+        subject, name = _split(label, UNDERSCORE)
+        if subject and subject.lower() not in SIDE_WORDS and not name.isdigit():
+            worn.setdefault(subject, set()).add(name)
+    people = [names for names in worn.values() if len(names) >= MIN_PERSON_MARKERS]
+    return any(
+        len(one & other) >= MIN_SHARED_FRACTION * min(len(one), len(other))
+        for one, other in combinations(people, 2)
+    )
 
 
 def bodies_of_markers(path: object, tracks: Tracks, labels: Sequence[str]) -> Bodies[Tracks]:

@@ -148,3 +148,18 @@ def test_body_parts_of_several_people(tmp_path, rng):
 
     assert len(list_bodies(tmp_path / "two.npz")) == 2
     assert read_recording(tmp_path / "two.npz", body="2").n_frames == 30
+
+
+def test_people_with_the_same_markers_may_be_separated_by_an_underscore(tmp_path, rng):
+    """As Qualisys writes them; sides before an underscore are no people."""
+    labels = [f"{who}_{side}M{n}" for who in ("Anna", "Ben") for side in "LR" for n in range(8)]
+    points = np.concatenate([person(rng, 32), person(rng, 1)], axis=1)
+    path = tmp_path / "take.c3d"
+    write_c3d(Tracks((*labels, "Stick_1"), points, 100.0), path)
+    sides = tmp_path / "sides.c3d"
+    names = [f"{side}_M{n}" for side in ("left", "right") for n in range(16)]
+    write_c3d(Tracks(tuple(names), points[:, :32], 100.0), sides)
+
+    assert [body.name for body in list_bodies(path)] == ["Anna", "Ben", "Stick"]
+    assert read_recording(path, body="Ben").names[:2] == ("LM0", "LM1")
+    assert list_bodies(sides) == ()
