@@ -12,6 +12,7 @@ from .conventions import (
     conventions_of,
     lacks_floor,
     put_on_floor,
+    question_of_depth,
     question_of_floor,
     question_of_size,
     reinterpreted,
@@ -101,11 +102,11 @@ def settle(recording: Recording, settings: ReadingSettings, floor: FloorPlacemen
 
 
 def questions_of(recording: Tracked, floor: FloorPlacement) -> list[str]:
-    """Ask whether size and height of an actor are right, where they are odd.
+    """Ask whether size, depth and height of an actor are right, where they are odd.
 
     Heights are not asked about where they are kept on request.
     """
-    found = [question_of_size(recording)]
+    found = [question_of_size(recording), question_of_depth(recording)]
     if floor is not FloorPlacement.NEVER:
         found.append(question_of_floor(recording))
     return [question for question in found if question]

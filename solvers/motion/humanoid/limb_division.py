@@ -64,7 +64,8 @@ def divide_leg(
     excess = _log_excess(skeleton, leg, len(joints), MAX_FOOT_FRACTION * height)
     if len(joints) > 3 and joints[-1] == leg[-1]:
         excess[-1] += NO_FOOT_MISFIT
-    excess[3:] += FOOT_MISFIT * _is_foot(skeleton, joints)[3:]
+    if len(joints) > 3:
+        excess[3:] += FOOT_MISFIT * _is_foot(skeleton, joints)[3:]
     return _divide(skeleton, joints, LEG_FRACTIONS, height, np.zeros(len(joints)), excess)
 
 

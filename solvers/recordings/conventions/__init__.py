@@ -41,6 +41,7 @@ from .file_axes import (
     with_axes,
     with_conventions,
 )
+from .flat_takes import question_of_depth
 from .floor import floor_level, lacks_floor, put_on_floor, question_of_floor
 from .points import (
     METERS,
@@ -120,6 +121,7 @@ __all__ = [
     "point_names",
     "points_z_up",
     "put_on_floor",
+    "question_of_depth",
     "question_of_floor",
     "question_of_size",
     "recorded_seconds",

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import InvalidFileError
 from ...motion import Motion
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, Remark, unwatched, within
 from ..containers import LineReader, UniqueNames, stream_rows
 from ..conventions import (
     MIN_BODY_JOINTS,
@@ -27,6 +27,13 @@ from .bvh_hierarchy import read_hierarchies
 
 COMMON_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 23.976, 29.97, 59.94, 119.88)
 DEFAULT_RATE_HZ = 30.0
+MIN_USUAL_RATE_HZ, MAX_POSES = 10.0, 20
+"""Frames per second below which the rate of a file is unusual, and the most frames of a list of
+poses, which has any rate. Chosen by hand: no capture software records less; programs that write
+a frame time of 1 s, as examples of research do, were seen."""
+MIN_FRAMES_FRACTION = 0.9
+"""Rows relative to the number in the header below which the file may be cut short. Chosen by
+hand: some programs count one frame more than they write."""
 MAX_BLANK_LINES = 4096
 MAX_HIERARCHY_BYTES = 1 << 24
 """Maximum length of the hierarchy, bytes."""
@@ -41,8 +48,9 @@ def read_bvh(
 ) -> Motion:
     """Read a BVH file, converted from Y up, facing +Z, to Z up, facing -Y.
 
-    The rest pose is that of the file. Rows are counted, and the number of frames in the header
-    is ignored. A missing frame time means 30 Hz; values that are not numbers are gaps.
+    The rest pose is that of the file. Rows are counted; a larger number of frames in the
+    header, and an unusual rate, are reported. A missing frame time means 30 Hz; values that are
+    not numbers are gaps.
 
     A `Motion` has bones of fixed length, so position channels of joints other than the root
     are approximated. In an unbranched chain below the root they move the root. Their median
@@ -116,13 +124,14 @@ def _read_bodies(
     """Read each body; the largest one shows unit and axes of all."""
     reader = LineReader(path)
     bodies = read_hierarchies(_hierarchy(reader, path), path)
-    frame_rate = _frame_rate(reader)
+    frame_rate, n_announced = _frame_rate(reader)
     widths = [sum(len(joint.channels) for joint in joints) for joints in bodies]
     if not sum(widths):
         raise InvalidFileError(f"{path} has no CHANNELS, so nothing in it moves.")
     rows = stream_rows(reader, sum(widths), path, within(progress, 0.0, 0.7))
     if not len(rows):
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
+    _check_header(len(rows), n_announced, frame_rate, progress)
     ends = np.cumsum(widths)
     columns = np.split(rows, ends[:-1], axis=1)
     del rows
@@ -143,6 +152,28 @@ def _read_bodies(
         )
         for body, joints in enumerate(bodies)
     ]
+
+
+def _check_header(
+    n_frames: int, n_announced: int, frame_rate: float, progress: Progress
+) -> None:
+    """Report a number of frames, or a rate, that is probably wrong."""
+    if n_frames < MIN_FRAMES_FRACTION * n_announced:
+        progress(
+            0.7,
+            Remark(
+                f"The file announces {n_announced} frames but has {n_frames}; it may be cut"
+                " short"
+            ),
+        )
+    if frame_rate < MIN_USUAL_RATE_HZ and n_frames > MAX_POSES:
+        progress(
+            0.7,
+            Remark(
+                f"The file states {frame_rate:.3g} frames per second, which is unusual; scale"
+                " the keys in time if it plays too slowly"
+            ),
+        )
 
 
 def _turn_like(first: Motion, motion: Motion) -> Motion:
@@ -169,17 +200,21 @@ def _hierarchy(reader: LineReader, path: Path | str) -> bytes:
     raise InvalidFileError(f"{path} has no MOTION section: it is cut short. Export it again.")
 
 
-def _frame_rate(reader: LineReader) -> float:
-    """Take the lines before the first frame; return the frame rate in hertz."""
-    rate = DEFAULT_RATE_HZ
+def _frame_rate(reader: LineReader) -> tuple[float, int]:
+    """Take the lines before the first frame; return the rate in hertz, and how many follow."""
+    rate, n_frames = DEFAULT_RATE_HZ, 0
     while line := reader.peek():
         words = line[0].lower().replace(b":", b" ").split()
         if words[:2] == [b"frame", b"time"] and len(words) == 3:
             rate = _rate_from_time(words[2].decode("ascii", "replace"))
+        elif (
+            words[:1] == [b"frames"] and words[1:] and words[1].isdigit() and len(words[1]) < 10
+        ):
+            n_frames = int(words[1])
         elif words and not words[0].startswith(b"frame"):
             break
         reader.take()
-    return rate
+    return rate, n_frames
 
 
 def _rate_from_time(word: str) -> float:

@@ -3,6 +3,8 @@
 import pytest
 
 from solvers.recordings.conventions import stature
+from solvers.recordings.read_as import questions_of
+from solvers.recordings.reading_settings import FloorPlacement
 
 BODY = {
     "Hips": ("", (0, 95, 0)), "Spine": ("Hips", (0, 10, 0)), "Spine1": ("Spine", (0, 12, 0)),
@@ -101,3 +103,28 @@ def test_prop_far_away_from_a_real_file_is_not_size(recordings, read):
     changed = read(first + hips + rest.replace("JOINT", prop, 1))
 
     assert stature(changed) == pytest.approx(stature(read(text)))
+
+
+def test_a_body_in_one_plane_is_asked_about(read):
+    flat = {
+        name: (parent, (*offset[:2], 0.0)) for name, (parent, offset) in hierarchy(1).items()
+    }
+
+    asked = [
+        " ".join(questions_of(read(bvh_text(joints)), FloorPlacement.AUTO))
+        for joints in (flat, hierarchy(1))
+    ]
+
+    assert "in one plane" in asked[0]
+    assert "in one plane" not in asked[1]
+
+
+def test_cut_files_and_unusual_rates_are_reported(read, collected_messages):
+    messages, collect = collected_messages
+    head, row = bvh_text(hierarchy(1)).replace("Frames: 1", "Frames: 900").split("0.01\n")
+
+    read(f"{head}1.0\n{row * 30}", progress=collect)
+
+    said = " ".join(map(str, messages))
+    assert "announces 900 frames but has 30" in said
+    assert "states 1 frames per second" in said
