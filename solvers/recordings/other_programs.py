@@ -71,8 +71,8 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
     (
         "tensors",
         lambda head: SAFETENSORS.match(head) is not None,
-        "holds tensors. Save the pose as .npz where it was made; docs/formats/skeletons/smpl.md"
-        " has the names.",
+        "{path} holds tensors. Save the pose as .npz where it was made: numpy.savez(file,"
+        " global_orient=..., body_pose=..., transl=...), one row per frame.",
     ),
     (
         "workbook",
@@ -87,4 +87,4 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
         " --command mocap_assist import.",
     ),
 )
-"""Name, detection from the first bytes, and the sentence that follows the path."""
+"""Name, detection from the first bytes, and the sentence, with `{path}` for the file."""

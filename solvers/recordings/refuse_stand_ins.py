@@ -154,8 +154,8 @@ REFUSALS = (
         "pickle",
         _is_pickle,
         "{path} is a pickle, which is never opened here: it may run any program. Where it was"
-        " made, convert it with to_npz.py (docs/formats/skeletons/smpl.md) or numpy.savez(file,"
-        " global_orient=..., body_pose=..., transl=...), one row per frame.",
+        " made, convert it with to_npz.py from the documentation of SMPL files, or with"
+        " numpy.savez(file, global_orient=..., body_pose=..., transl=...), one row per frame.",
     ),
     *(Refusal(*each) for each in PROGRAMS),
     Refusal(

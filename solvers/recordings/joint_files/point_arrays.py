@@ -34,6 +34,7 @@ UP_OF_SMPL: dict[AxisName, float] = {"Y": 0.8, "Z": 0.0, "-Y": 0.0}
 SMPL = "SMPL"
 """Layout of HumanML3D."""
 HUMANML3D_RATE_HZ = 20.0
+"""Frames per second of HumanML3D, hertz, by definition of the data set."""
 SENSORS = {
     "Kinect v1": Sensor.KINECT_V1, "Kinect v2 or NTU": Sensor.KINECT_V2,
     "Azure Kinect": Sensor.AZURE_KINECT, "MediaPipe": Sensor.MEDIAPIPE,
