@@ -44,6 +44,8 @@ ON_ONE_PYTHON = {
     "physics": (3, 13),
     "reconstruction": (3, 13),
     "recordings/depth_files/test_fuzz_depth.py": (3, 11),
+    "recordings/joint_files/test_point_tables.py": (3, 11),
+    "recordings/joint_files/test_unnamed_joints.py": (3, 11),
     "recordings/test_fuzz_joints.py": (3, 11),
     "recordings/test_streaming.py": (3, 11),
     "retargeting": (3, 13),
