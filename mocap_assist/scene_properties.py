@@ -20,6 +20,7 @@ from .live.live_take import LiveBundle
 from .markers.solving import SolveBundle
 from .physics.simulating import SimulateBundle
 from .reconstruct.button_settings import ReconstructBundle
+from .retarget.bone_highlight import show_pair
 from .retarget.bone_map import explain_edited
 from .retarget.button_settings import RetargetBundle, UnbakeBundle
 from .track.retracking import RetrackBundle
@@ -146,7 +147,11 @@ class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
     source_score: bpy.props.FloatProperty(name="Source Matched", subtype="FACTOR")
     target_score: bpy.props.FloatProperty(name="Target Matched", subtype="FACTOR")
     rows: bpy.props.CollectionProperty(type=MOCAP_PG_bone_pair)
-    active_row: bpy.props.IntProperty(name="Row", description="Selected row")
+    active_row: bpy.props.IntProperty(
+        name="Row",
+        description="Selected row; its bones are selected and highlighted on both armatures",
+        update=show_pair,
+    )
 
 
 class MOCAP_PG_issue(bpy.types.PropertyGroup):

@@ -13,9 +13,8 @@ from ..actions.limits import read_limits
 from ..actions.marker_take import MarkerTake, read_markers
 from ..actions.markers import markers_of, point_names
 from ..actions.take import ArmatureTake
-from ..blender import compat
 from ..blender.time_slices import Sliced, Steps
-from ..runtime.selection import played_source, selected_subject
+from ..runtime.selection import played_source, select_only_bone, selected_subject
 from ..runtime.subject import Subject, check_unchanged
 from ..scene.scene_objects import choose
 from .button_settings import CheckBundle
@@ -111,9 +110,7 @@ def jump_to(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> None:
 def _select_bone(armature: bpy.types.Object, name: str) -> None:
     if name not in armature.pose.bones:
         return
-    for bone in armature.pose.bones:
-        compat.select_bone(bone, bone.name == name)
-    armature.data.bones.active = armature.data.bones[name]
+    select_only_bone(armature, name)
     if armature.mode == "OBJECT" and armature.library is None:
         bpy.ops.object.mode_set(mode="POSE")
 

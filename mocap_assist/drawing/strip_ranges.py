@@ -96,6 +96,13 @@ def ranges_of(frames: Array, step: float, mark: Mark) -> tuple[Range, ...]:
     )
 
 
+def confidence_mark(confidence: float) -> Mark:
+    """Return the level of a confidence."""
+    if confidence < LOW_CONFIDENCE:
+        return Mark.LOW
+    return Mark.MEDIUM if confidence < HIGH_CONFIDENCE else Mark.HIGH
+
+
 def confidence_ranges(lowest: Array, frames: Array, step: float) -> tuple[Range, ...]:
     """Return the ranges of low, medium and high confidence, in order of their frames.
 

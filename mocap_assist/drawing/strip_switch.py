@@ -4,22 +4,19 @@ from collections.abc import Iterable
 from typing import Any
 
 import bpy
-import bpy.utils.previews
-import numpy as np
 from bpy.types import SpaceDopeSheetEditor, SpaceGraphEditor
 
 from ..panels.drawing import draw_sentence
+from .color_icons import square_icon
 from .strip_drawing import EDITORS, draw_strip
-from .strip_ranges import COLORS, MARKS, Mark, Row
+from .strip_ranges import MARKS, Mark, Row
 from .strip_reading import strip_of
 from .view_drawing import redraw
 
 SWITCH = "mocap_assist_strip"
 SPACES = (SpaceDopeSheetEditor, SpaceGraphEditor)
-ICON_PX = 16
 NOTHING = "Nothing to show yet. Run Clean or Check."
 _handles: list[tuple[Any, Any]] = []
-_icons: list[Any] = []
 
 
 def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -43,19 +40,7 @@ def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) ->
 def _draw_marks(layout: bpy.types.UILayout, marks: Iterable[Mark], *, columns: int) -> None:
     grid = layout.grid_flow(row_major=True, columns=columns, even_columns=True, align=True)
     for mark in marks:
-        grid.label(text=mark.value, icon_value=_icon_of(mark))
-
-
-def _icon_of(mark: Mark) -> int:
-    """Return the number of an icon that shows the color of a mark."""
-    icons = _icons[0]
-    if mark.name not in icons:
-        icon = icons.new(mark.name)
-        icon.icon_size = (ICON_PX, ICON_PX)
-        pixels = np.zeros((ICON_PX, ICON_PX, 4), np.float32)
-        pixels[2:-2, 2:-2] = (*COLORS[mark][:3], 1.0)
-        icon.icon_pixels_float.foreach_set(pixels.ravel())
-    return int(icons[mark.name].icon_id)
+        grid.label(text=mark.value, icon_value=square_icon(mark))
 
 
 def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
@@ -80,7 +65,6 @@ def register() -> None:
         default=True,
         update=_switched,
     )
-    _icons.append(bpy.utils.previews.new())
     _handles.extend(
         (space, space.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL")) for space in SPACES
     )
@@ -91,5 +75,4 @@ def unregister() -> None:
     while _handles:
         space, handle = _handles.pop()
         space.draw_handler_remove(handle, "WINDOW")
-    bpy.utils.previews.remove(_icons.pop())
     del bpy.types.WindowManager.mocap_assist_strip

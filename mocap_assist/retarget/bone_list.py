@@ -11,9 +11,12 @@ from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion import read_humanoid_map, write_humanoid_map
 from ..blender.mixins import OperatorMixin
 from ..blender.path_properties import absolute, path_property
+from ..drawing.color_icons import BARS, bars_icon
+from ..drawing.strip_ranges import MARKS, Mark, Row, confidence_mark
 from ..languages import translated
-from ..panels.drawing import draw_sentence
+from ..panels.drawing import draw_sentence, is_wide
 from ..runtime.selection import selected_armature, why_not_retarget
+from .bone_highlight import SWITCH, why_certain
 from .bone_map import (
     SIDES,
     BoneMaps,
@@ -21,14 +24,16 @@ from .bone_map import (
     find_maps,
     has_low_confidence,
     list_maps,
+    listed_armature,
     listed_maps,
 )
 from .retargeting import target_called
+from .role_labels import role_label
 
 FIND, SAVE, LOAD = (
     f"mocap_assist.{name}" for name in ("find_bones", "save_bone_map", "load_bone_map")
 )
-ROLE_COLUMN = 0.38  # of the list's width
+ROLE_COLUMN = 0.54  # of the list's width
 PRESETS = {
     (SAVE, "source"): "Save Source Map",
     (SAVE, "target"): "Save Target Map",
@@ -52,23 +57,30 @@ class MOCAP_UL_bones(bpy.types.UIList):
         active_property: str,
         index: int,
     ) -> None:
-        """Draw the role and both bones: missing ones in red, low confidence with an icon."""
+        """Draw the role and both bones: missing ones in red, others with confidence bars.
+
+        A narrow list has bars for the less certain bone alone.
+        """
+        bars = {side: _bars(row, side) for side in SIDES}
+        wide, known = is_wide(context), [each for each in bars.values() if each]
+        lowest = min(known, key=BARS.__getitem__, default=None)
         columns = layout.split(factor=ROLE_COLUMN, align=True)
-        columns.label(text=row.name, translate=False)
-        for side in SIDES:
-            armature, bone = listed_armature(context, listed, side), getattr(row, side)
+        _draw_cell(columns, role_label(row.name), None if wide else lowest)
+        for side, mark in bars.items():
+            armature, bone = listed_armature(listed, side), getattr(row, side)
             cell = columns.row()
             cell.alert = bool(bone) and armature is not None and bone not in armature.data.bones
-            mark = "ERROR" if has_low_confidence(row, side) else "NONE"
-            cell.label(text=bone or "-", translate=False, icon=mark)
+            _draw_cell(cell, bone or "-", mark if wide else None)
 
 
-def listed_armature(
-    context: bpy.types.Context, listed: bpy.types.PropertyGroup, side: str
-) -> bpy.types.Object | None:
-    """Return the armature on one side of the list, if it is still there."""
-    armature = context.scene.objects.get(getattr(listed, side))
-    return armature if armature is not None and armature.type == "ARMATURE" else None
+def _bars(row: bpy.types.PropertyGroup, side: str) -> Mark | None:
+    """Return the level of confidence in a bone of a row; None where there is no bone."""
+    confidence: float = getattr(row, f"{side}_confidence")
+    return confidence_mark(confidence) if getattr(row, side) else None
+
+
+def _draw_cell(layout: bpy.types.UILayout, text: str, mark: Mark | None) -> None:
+    layout.label(text=text, icon_value=0 if mark is None else bars_icon(mark), translate=False)
 
 
 class _BoneButton(OperatorMixin):
@@ -190,6 +202,7 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         score = getattr(listed, f"{side}_score")
         heads.label(text=f"{getattr(listed, side)} {score:.0%}", translate=False)
     layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
+    _draw_legend(layout, context)
     row = listed.rows[min(listed.active_row, len(listed.rows) - 1)]
     if n_marked := count_low_confidence(listed):
         marked = (
@@ -201,7 +214,7 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     _draw_reasons(layout, context, row)
     column = layout.column(align=True)
     for side in SIDES:
-        if (armature := listed_armature(context, listed, side)) is not None:
+        if (armature := listed_armature(listed, side)) is not None:
             column.prop_search(
                 row, side, armature.data, "bones", text=side.capitalize(), icon="BONE_DATA"
             )
@@ -211,16 +224,21 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
             row.operator(idname, text=PRESETS[idname, side], icon=icon).side = side
 
 
+def _draw_legend(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what the bars mean, and the switch of the highlight."""
+    row = layout.row(align=True)
+    for mark in MARKS[Row.CONFIDENCE]:
+        row.label(text=mark.value, icon_value=bars_icon(mark))
+    row.prop(context.window_manager, SWITCH, text="", icon="BONE_DATA", toggle=True)
+
+
 def _draw_reasons(
     layout: bpy.types.UILayout, context: bpy.types.Context, row: bpy.types.PropertyGroup
 ) -> None:
     """Draw how certain both bones of a row are, and why."""
     for side in SIDES:
-        reason = getattr(row, f"{side}_reason")
-        if getattr(row, side) and reason:
-            confidence = getattr(row, f"{side}_confidence")
+        if text := why_certain(row, side):
             icon = "ERROR" if has_low_confidence(row, side) else "CHECKMARK"
-            text = f"{side.capitalize()}: {confidence:.0%}, {reason}."
             draw_sentence(layout, context, text, icon=icon)
 
 

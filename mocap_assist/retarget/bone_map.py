@@ -89,8 +89,8 @@ def list_maps(
 def explain_rows(listed: bpy.types.PropertyGroup) -> None:
     """Write confidence and reason into all rows, for the armatures of the list."""
     for side, humanoid in zip(SIDES, listed_maps(listed), strict=True):
-        armature = listed.id_data.objects.get(getattr(listed, side))
-        if armature is None or armature.type != "ARMATURE":
+        armature = listed_armature(listed, side)
+        if armature is None:
             continue
         evidence = explain_rig_roles(armature, humanoid)
         for row in listed.rows:
@@ -98,6 +98,12 @@ def explain_rows(listed: bpy.types.PropertyGroup) -> None:
             lack = TAKEN if bone in armature.data.bones else MISSING
             setattr(row, f"{side}_confidence", found.confidence if found else 0.0)
             setattr(row, f"{side}_reason", found.text if found else lack if bone else "")
+
+
+def listed_armature(listed: bpy.types.PropertyGroup, side: str) -> bpy.types.Object | None:
+    """Return the armature on one side of the list, if it is still in the scene."""
+    armature = listed.id_data.objects.get(getattr(listed, side))
+    return armature if armature is not None and armature.type == "ARMATURE" else None
 
 
 def explain_edited(side: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:

@@ -109,6 +109,13 @@ def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:
     return selected
 
 
+def select_only_bone(armature: bpy.types.Object, name: str) -> None:
+    """Select a bone and no other; make it active."""
+    for bone in armature.pose.bones:
+        compat.select_bone(bone, bone.name == name)
+    armature.data.bones.active = armature.data.bones.get(name)
+
+
 def chosen_parts(subject: bpy.types.Object, choice: Bones) -> frozenset[str]:
     """Return the names of the bones or markers to change; raise InvalidMotionError if none."""
     if subject.type == "ARMATURE":

@@ -3,11 +3,11 @@
 from .. import languages
 from ..check import raw_key
 from ..clean import example_list
-from ..drawing import confidence_switch, overlay_switch, strip_switch
+from ..drawing import color_icons, confidence_switch, overlay_switch, strip_switch
 from ..exporting import export_menu
 from ..importing import import_menu
 from ..panels import presets
-from ..retarget import bone_list
+from ..retarget import bone_highlight, bone_list
 from ..retarget import panel as retarget_panel
 from ..search import panel as library_panel
 from ..search import source_list
@@ -18,7 +18,9 @@ PARTS = (
     languages,
     diagnostics,
     preferences,
+    color_icons,
     example_list,
+    bone_highlight,
     bone_list,
     retarget_panel,
     source_list,

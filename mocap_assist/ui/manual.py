@@ -43,6 +43,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.tick_action*": "retarget",
     "bpy.ops.mocap_assist.find_bones*": "retarget",
     "bpy.ops.mocap_assist.*_bone_map*": "retarget",
+    "bpy.types.windowmanager.mocap_assist_highlight*": "retarget",
     "bpy.ops.mocap_assist.reduce_keys*": "unbake",
     "bpy.types.mocap_pg_retarget*": "retarget",
     "bpy.types.mocap_pg_bone*": "retarget",
@@ -73,6 +74,8 @@ CHAPTERS = {
     "bpy.types.mocap_pg_check*": "check",
     "bpy.types.windowmanager.mocap_assist_strip*": "check",
     "bpy.types.windowmanager.mocap_assist_overlay*": "compare",
+    "bpy.types.windowmanager.mocap_assist_onion*": "compare",
+    "bpy.types.windowmanager.mocap_assist_wipe*": "compare",
     "bpy.types.mocap_ap_preferences*": "preferences",
 }
 

@@ -62,6 +62,16 @@ def find_the_bones(hero):
     yield from settle(pointer=AWAY)
     assert len(bpy.context.scene.mocap_assist.bone_map.rows) > 20
     bgui.shot("2-bones.png")
+    listed = bpy.context.scene.mocap_assist.bone_map
+    next(row for row in listed.rows if row.name == "leftFoot").target = "LeftHand"
+    sidebar = bgui.region()
+    yield from bgui.click(sidebar.x + 60, 492)  # the last row of the list
+    yield from settle(pointer=AWAY)
+    assert listed.active_row == 7, listed.active_row
+    assert bpy.context.window_manager.mocap_assist_highlight
+    bgui.shot("2b-row-clicked.png")
+    bpy.context.window_manager.mocap_assist_highlight = False
+    yield from press("mocap_assist.find_bones")
 
 
 def escape_leaves_all_as_it_was(hero):

@@ -156,3 +156,56 @@ def test_a_bone_without_effect_is_marked(listed, load, bone, reason):
 
     assert row.source_reason == reason
     assert load("mocap_assist.retarget.bone_map").has_low_confidence(row, "source")
+
+
+def test_roles_have_readable_and_different_names(load):
+    label_of = load("mocap_assist.retarget.role_labels").role_label
+    labels = {role: label_of(role) for role in load("solvers.motion").HUMANOID_ROLES}
+
+    assert labels["leftUpperLeg"] == "Upper Leg L"
+    assert labels["rightThumbMetacarpal"] == "Thumb 1 R"
+    assert labels["leftLittleDistal"] == "Little Finger 3 L"
+    assert len(set(labels.values())) == len(labels)
+
+
+@pytest.fixture
+def highlight(load):
+    return load("mocap_assist.retarget.bone_highlight")
+
+
+def test_click_on_a_row_selects_and_highlights_both_bones(listed, walker, blank, highlight):
+    target = blank.context.scene.objects["Unreal"]
+    index = [row.name for row in listed.rows].index("leftUpperArm")
+
+    listed.active_row = index
+
+    assert blank.context.window_manager.mocap_assist_highlight
+    for armature, bone in ((walker, "LeftArm"), (target, "upperarm_l")):
+        assert armature.data.bones.active.name == bone
+    (source, line), (other, _) = highlight.highlighted_bones(blank.context)
+    assert (source, other) == (walker, target)
+    assert line[0, 0] == pytest.approx(walker.pose.bones["LeftArm"].head)
+
+    blank.context.view_layer.objects.active = None
+    assert not highlight.highlighted_bones(blank.context)
+
+
+def test_row_without_a_bone_on_one_side_highlights_the_other(listed, blank, highlight):
+    index = [row.name for row in listed.rows].index("head")
+    listed.rows[index].target = ""
+
+    listed.active_row = index
+
+    ((armature, _),) = highlight.highlighted_bones(blank.context)
+    assert armature.name == listed.source
+
+
+def test_levels_differ_without_colors(load):
+    icons, ranges = (load(f"mocap_assist.drawing.{n}") for n in ("color_icons", "strip_ranges"))
+
+    levels = [ranges.confidence_mark(each) for each in (0.4, 0.7, 0.8)]
+
+    assert [each.name for each in levels] == ["LOW", "MEDIUM", "HIGH"]
+    painted = [icons._bars((1.0, 1.0, 1.0, 1.0), icons.BARS[each]) for each in levels]
+    lit = [int((each[..., 3] == 1.0).sum()) for each in painted]
+    assert lit[0] < lit[1] < lit[2]
