@@ -4,10 +4,10 @@ import bpy
 
 from ..actions.delta_layer import delta_strip
 from ..blender.mixins import PanelMixin
+from ..drawing.overlay_switch import draw_overlay_switches
 from ..exporting.export_menu import EXPORT, draw_export
 from ..languages import translated
 from ..panels.drawing import exists
-from ..panels.preference_values import preferences
 from ..runtime.selection import played_result, selected_subject
 from ..scene import history
 from .raw_key import key_text
@@ -24,10 +24,7 @@ class ComparePanel(PanelMixin):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         _draw_actions(layout, context)
-        column = layout.column(align=True)
-        column.prop(context.window_manager, "mocap_assist_overlay", toggle=True, icon="OVERLAY")
-        if preferences() is not None:
-            _draw_colors(column)
+        draw_overlay_switches(layout, context)
         _draw_key(layout, context)
         if exists(REVERT):
             layout.operator(REVERT, icon="LOOP_BACK")
@@ -41,17 +38,6 @@ def _draw_key(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if key and played_result(selected_subject(context)):
         text = translated(HOLD).format(key=key)
         layout.label(text=text, icon="HIDE_OFF", translate=False)
-
-
-def _draw_colors(column: bpy.types.UILayout) -> None:
-    colors = column.row(align=True)
-    for color in ("raw_color", "clean_color"):
-        colors.prop(preferences(), color, text="")
-    names = column.row(align=True)
-    for text in ("Raw", "Clean"):
-        name = names.row()
-        name.alignment = "CENTER"
-        name.label(text=text)
 
 
 def _draw_actions(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

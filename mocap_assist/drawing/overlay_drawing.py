@@ -1,7 +1,7 @@
 """Draw stick figures or markers over the 3D View; the scene is not changed."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 import gpu
@@ -11,8 +11,9 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 
 from ..actions.markers import holder_of
-from . import marker_overlay, overlay, strip_drawing
+from . import marker_overlay, onion_skin, overlay, strip_drawing
 from .view_drawing import ViewDrawing, redraw, visible_active
+from .wipe import clipped, draw_wipe_line
 
 Color = tuple[float, float, float, float]
 
@@ -21,6 +22,19 @@ EDIT_PAUSE_S = 0.3
 dragged, which is an edit at each step."""
 
 _drawing: list[ViewDrawing] = []
+
+
+class Look(NamedTuple):
+    """What is drawn of the raw and the clean take, and how."""
+
+    colors: tuple[Color, Color]
+    width: float
+    has_poses: bool
+    """Whether the poses at the current frame are drawn."""
+    onion: onion_skin.Onion | None
+    """Ghosts and trails of armatures, if any."""
+    wipe: float | None
+    """Position of the line with the raw take to its left, as a fraction of the view's width."""
 
 
 def start(draw_all: Callable[[bpy.types.Context], None]) -> None:
@@ -45,45 +59,75 @@ def stop() -> None:
 def forget() -> None:
     """Clear the caches, so that the next drawing reads the actions again."""
     overlay.forget()
+    onion_skin.forget()
     marker_overlay.forget()
     strip_drawing.forget()
 
 
-def draw(context: bpy.types.Context, colors: tuple[Color, Color], width: float) -> None:
+def draw(context: bpy.types.Context, look: Look) -> None:
     """Draw the raw and clean poses of the active armature or markers at the current frame."""
     active = visible_active(context)
-    if active is None:
+    holder = holder_of(active)
+    if active is not None and active.type == "ARMATURE":
+        _draw_figures(active, context.scene.frame_current_final, look)
+    elif holder is not None and look.has_poses:
+        played = marker_overlay.raw_and_clean(holder)
+        for each, color, is_raw in zip(played, look.colors, (True, False), strict=True):
+            with clipped(look.wipe, left=is_raw):
+                lines = marker_overlay.lines_at(each, context.scene)
+                draw_lines(lines, Matrix.Identity(4), color, look.width)
+    else:
         return
-    if active.type == "ARMATURE":
-        _draw_figures(active, context.scene.frame_current_final, colors, width)
-    elif (holder := holder_of(active)) is not None:
-        for played, color in zip(marker_overlay.raw_and_clean(holder), colors, strict=True):
-            lines = marker_overlay.lines_at(played, context.scene)
-            draw_lines(lines, Matrix.Identity(4), color, width)
+    if look.wipe is not None:
+        draw_wipe_line(look.wipe, look.width)
 
 
-def _draw_figures(
-    armature: bpy.types.Object, frame: float, colors: tuple[Color, Color], width: float
-) -> None:
-    for source, color in zip(overlay.raw_and_clean(armature), colors, strict=True):
-        if source is not None:
-            lines = overlay.figures_at(armature, source, frame).segments(frame)
-            draw_lines(lines, armature.matrix_world, color, width)
+def _draw_figures(armature: bpy.types.Object, frame: float, look: Look) -> None:
+    sources = overlay.raw_and_clean(armature)
+    for source, color, is_raw in zip(sources, look.colors, (True, False), strict=True):
+        if source is None:
+            continue
+        with clipped(look.wipe, left=is_raw):
+            if look.onion is not None:
+                faded = onion_skin.onion_at(armature, source, frame, look.onion)
+                draw_faded(faded, armature.matrix_world, color, look.width)
+            if look.has_poses:
+                lines = overlay.figures_at(armature, source, frame).segments(frame)
+                draw_lines(lines, armature.matrix_world, color, look.width)
+
+
+def draw_faded(faded: onion_skin.FadedLines, matrix: Any, color: Color, width: float) -> None:
+    """Draw lines with their own opacities in one batch, in front of all objects."""
+    if not len(faded.lines):
+        return
+    colors = np.empty((*faded.alphas.shape, 4), np.float32)
+    colors[:] = color
+    colors[..., 3] *= faded.alphas
+    shader = gpu.shader.from_builtin("POLYLINE_SMOOTH_COLOR")
+    content = {"pos": faded.lines.reshape(-1, 3), "color": colors.reshape(-1, 4)}
+    _draw_in_front(shader, content, matrix, width)
 
 
 def draw_lines(
     lines: NDArray[np.floating[Any]], matrix: Any, color: Color, width: float
 ) -> None:
     """Draw lines of shape (n_lines, 2, 3) in the space of `matrix`, in front of all objects."""
-    from gpu_extras.batch import batch_for_shader
-
     shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
     points = np.ascontiguousarray(lines.reshape(-1, 3), dtype=np.float32)
-    batch = batch_for_shader(shader, "LINES", {"pos": points})
+    shader.bind()
+    shader.uniform_float("color", color)
+    _draw_in_front(shader, {"pos": points}, matrix, width)
+
+
+def _draw_in_front(
+    shader: Any, content: dict[str, NDArray[np.float32]], matrix: Any, width: float
+) -> None:
+    from gpu_extras.batch import batch_for_shader
+
+    batch = batch_for_shader(shader, "LINES", content)
     shader.bind()
     shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
     shader.uniform_float("lineWidth", width)
-    shader.uniform_float("color", color)
     gpu.state.blend_set("ALPHA")
     gpu.state.depth_test_set("NONE")
     with gpu.matrix.push_pop():

@@ -116,6 +116,18 @@ def hold_the_key(armature):
     assert armature.animation_data.action == clean
 
 
+def see_ghosts_and_wipe():
+    """Ghosts and trails of both takes, then each take on its side of a line."""
+    manager = bpy.context.window_manager
+    manager.mocap_assist_onion = True
+    yield from settle(2)
+    bgui.shot("6b-onion.png")
+    manager.mocap_assist_onion, manager.mocap_assist_wipe = False, True
+    yield from settle(2)
+    bgui.shot("6c-wipe.png")
+    manager.mocap_assist_wipe = False
+
+
 def large_action():
     """Make an armature with an action of 100 bones and 10,000 frames, and 5 % generated."""
     with bgui.override("WINDOW"):
@@ -230,6 +242,7 @@ def steps():
     yield from settle(5)
     bgui.shot("4-confidence.png")
     yield from hold_the_key(armature)
+    yield from see_ghosts_and_wipe()
     yield from measure()
     yield from the_preferences()
 
