@@ -24,7 +24,7 @@ scripts that learn, and checks of arrays that only programs and damaged librarie
 LABELED = {
     "mocap_assist/check/checking.py": {"_summary"},
     "mocap_assist/check/compare_panel.py": {"HOLD"},
-    "mocap_assist/check/panel.py": {"_draw_figures"},
+    "mocap_assist/check/panel.py": {"_draw_figures", "KINDS"},
     "mocap_assist/check/held_operator.py": {"HELD", "CLICKED"},
     "mocap_assist/clean/report.py": {"clean_report"},
     "mocap_assist/drawing/strip_ranges.py": {"Row", "Mark"},

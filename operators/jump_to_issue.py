@@ -3,6 +3,7 @@
 import bpy
 
 from ..mocap_assist.check.checking import jump_to
+from ..mocap_assist.check.issue_views import show_issue
 from ..mocap_assist.languages import translated
 
 
@@ -37,4 +38,5 @@ class MOCAP_OT_jump_to_issue(bpy.types.Operator):
         index = found.active_issue + self.step if self.index < 0 else self.index
         found.active_issue = index % len(found.issues)
         jump_to(context, found.issues[found.active_issue])
+        show_issue(context, found.issues[found.active_issue])
         return {"FINISHED"}

@@ -7,12 +7,12 @@ import bpy
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.check.button_settings import CheckBundle
 from ..mocap_assist.check.checking import read_checking, show_checked
+from ..mocap_assist.check.renewing import CheckOperator
 from ..mocap_assist.runtime.selection import why_not_read
-from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
 @settings_from(CheckBundle)
-class MOCAP_OT_measure_quality(SolverOperator, bpy.types.Operator):
+class MOCAP_OT_measure_quality(CheckOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.measure_quality"
     bl_label = "Check"
     bl_description = "List jumps, jitter, gaps and foot slides of the current action"

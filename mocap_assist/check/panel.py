@@ -15,6 +15,7 @@ from ..panels.visibility import shows_take
 from ..runtime.selection import played_result, played_source, selected_subject
 from ..scene import history
 from .issue_markers import has_issue_markers
+from .issue_views import draw_view_switches
 
 CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_issue"
 MARK = "mocap_assist.mark_issues"
@@ -25,6 +26,15 @@ ICONS = {
     "foot slide": "FORWARD",
     "limit": "CON_ROTLIMIT",
 }
+KINDS = {
+    "spike": "Spike",
+    "gap": "Gap",
+    "jitter": "Jitter",
+    "foot slide": "Foot Slide",
+    "limit": "Joint Limit",
+    "cut": "Cut",
+}
+KIND_COLUMN, BONE_COLUMN = 0.36, 0.74  # of the list's width, and of the rest of it
 STALE = 'Results are for "{action}". Run Check again.'
 MIN_ROWS, MAX_ROWS = 4, 8
 
@@ -43,13 +53,13 @@ class MOCAP_UL_issues(bpy.types.UIList):
         active_property: str,
         index: int,
     ) -> None:
-        row = layout.split(factor=0.55)
-        frames = frames_text(item.start, item.stop)
-        _jump(row, index, item.name, ICONS.get(item.kind, "ERROR"))
-        if is_wide(context):
-            row = row.split(factor=0.5)
-            _jump(row, index, item.kind, "NONE")
-        _jump(row, index, frames, "NONE")
+        wide = is_wide(context)
+        row = layout.split(factor=KIND_COLUMN)
+        icon_name = ICONS.get(item.kind, "ERROR") if wide else "NONE"
+        _jump(row, index, translated(KINDS.get(item.kind, item.kind)), icon_name)
+        row = row.split(factor=BONE_COLUMN)
+        _jump(row, index, item.name, "NONE")
+        _jump(row, index, frames_text(item.start, item.stop if wide else item.start), "NONE")
 
 
 class CheckPanel(PanelMixin):
@@ -70,6 +80,8 @@ class CheckPanel(PanelMixin):
         _draw_figures(layout, context)
         if shown.issues:
             _draw_issues(layout, context)
+        elif shown.checked and not is_stale(shown.checked, selected_subject(context)):
+            draw_sentence(layout, context, "No issues found.", icon="CHECKMARK")
         _draw_markers(layout, context.scene)
         draw_strip_switch(layout, context)
         _draw_thresholds(layout, shown.check)
@@ -101,6 +113,7 @@ def _draw_issues(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     row = layout.row(align=True)
     row.operator(JUMP, text="Previous", icon="TRIA_LEFT").step = -1
     row.operator(JUMP, text="Next", icon="TRIA_RIGHT").step = 1
+    draw_view_switches(row, context)
     if 0 <= shown.active_issue < len(shown.issues):
         draw_sentence(layout, context, shown.issues[shown.active_issue].sentence)
     subject = selected_subject(context)
@@ -121,8 +134,10 @@ def _draw_markers(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
     row.operator(MARK, text="Remove Markers", icon="X").remove = True
 
 
-def is_stale(checked: str, subject: bpy.types.Object) -> bool:
+def is_stale(checked: str, subject: bpy.types.Object | None) -> bool:
     """Whether the subject plays another action than the one that was checked."""
+    if subject is None:
+        return True
     try:
         return bool(played_source(subject)[0].name != checked)
     except InvalidMotionError:

@@ -1,6 +1,6 @@
 """Ranges of frames of the strip below the keys, as plain arrays."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from enum import Enum
 from typing import NamedTuple
 
@@ -23,7 +23,12 @@ class Row(Enum):
     """Row of the strip, from top to bottom; its value is the label in panels and drawings."""
 
     CONFIDENCE = "Confidence"
-    ISSUES = "Issues"
+    SPIKES = "Spikes"
+    GAPS = "Gaps"
+    JITTER = "Jitter"
+    FOOT_SLIDES = "Foot Slides"
+    LIMITS = "Joint Limits"
+    CUTS = "Cuts"
     FILLED = "Filled"
     CORRECTED = "Corrected"
     LEFT_FOOT = "Left Foot"
@@ -53,9 +58,18 @@ COLORS: Mapping[Mark, Color] = {
     Mark.LEFT_FOOT: (0.35, 0.80, 0.45, 1.0),
     Mark.RIGHT_FOOT: (0.20, 0.70, 0.75, 1.0),
 }
+ISSUE_ROWS: Mapping[str, Row] = {
+    "spike": Row.SPIKES,
+    "gap": Row.GAPS,
+    "jitter": Row.JITTER,
+    "foot slide": Row.FOOT_SLIDES,
+    "limit": Row.LIMITS,
+    "cut": Row.CUTS,
+}
+"""By kind of an issue."""
 MARKS: Mapping[Row, tuple[Mark, ...]] = {
     Row.CONFIDENCE: (Mark.LOW, Mark.MEDIUM, Mark.HIGH),
-    Row.ISSUES: (Mark.ISSUE,),
+    **dict.fromkeys(ISSUE_ROWS.values(), (Mark.ISSUE,)),
     Row.FILLED: (Mark.FILLED,),
     Row.CORRECTED: (Mark.CORRECTED,),
     Row.LEFT_FOOT: (Mark.LEFT_FOOT,),
@@ -121,6 +135,14 @@ def confidence_ranges(lowest: Array, frames: Array, step: float) -> tuple[Range,
     }
     found = [each for mark in levels for each in ranges_of(frames[levels[mark]], step, mark)]
     return tuple(sorted(found, key=lambda each: each.first))
+
+
+def issue_ranges(issues: Iterable[tuple[float, float, str]]) -> dict[Row, tuple[Range, ...]]:
+    """Return the ranges of each kind of issue, from first and last frames with their kinds."""
+    rows: dict[Row, tuple[Range, ...]] = dict.fromkeys(ISSUE_ROWS.values(), ())
+    for first, last, kind in issues:
+        rows[ISSUE_ROWS[kind]] += (Range(first, last, Mark.ISSUE),)
+    return rows
 
 
 def contact_ranges(keys: Array, step: float, mark: Mark) -> tuple[Range, ...]:

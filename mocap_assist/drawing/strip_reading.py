@@ -16,7 +16,16 @@ from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
 from .confidence_colors import reliability_source
-from .strip_ranges import Mark, Range, Row, Rows, confidence_ranges, contact_ranges, ranges_of
+from .strip_ranges import (
+    Mark,
+    Range,
+    Row,
+    Rows,
+    confidence_ranges,
+    contact_ranges,
+    issue_ranges,
+    ranges_of,
+)
 
 CHANNELS = ("rotation_quaternion", "rotation_euler", "rotation_axis_angle", "location")
 MAX_CACHED = 8
@@ -89,7 +98,8 @@ def strip_of(context: bpy.types.Context) -> Strip | None:
     key = _Key(block, bones, shown.report if is_checked else "", len(shown.issues) * is_checked)
     if key not in _strips:
         keys = _keys_of(block, armature, source)
-        issues = [(each.start, each.stop) for each in shown.issues] if is_checked else []
+        listed = shown.issues if is_checked else ()
+        issues = [(each.start, each.stop, each.kind) for each in listed]
         _make_room(_strips)
         _strips[key] = None if keys is None else strip_from(keys, frozenset(bones), issues)
     return _strips[key]
@@ -123,12 +133,12 @@ def _selected(armature: bpy.types.Object) -> tuple[str, ...]:
 
 
 def strip_from(
-    keys: ActionKeys, bones: frozenset[str], issues: Iterable[tuple[float, float]]
+    keys: ActionKeys, bones: frozenset[str], issues: Iterable[tuple[float, float, str]]
 ) -> Strip | None:
     """Compute the rows that have a range, for some bones, or for all if there are none."""
     rows: dict[Row, tuple[Range, ...]] = {
         Row.CONFIDENCE: _confidence(keys, bones),
-        Row.ISSUES: tuple(Range(first, last, Mark.ISSUE) for first, last in issues),
+        **issue_ranges(issues),
         Row.FILLED: ranges_of(_frames(keys.filled, bones), keys.step, Mark.FILLED),
         Row.CORRECTED: ranges_of(_frames(keys.corrected, bones), keys.step, Mark.CORRECTED),
     }

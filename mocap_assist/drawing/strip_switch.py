@@ -33,8 +33,8 @@ def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) ->
     if Row.CONFIDENCE in strip.rows:
         column.label(text=Row.CONFIDENCE.value)
         _draw_marks(column, MARKS[Row.CONFIDENCE], columns=3)
-    others = [mark for row in strip.rows if row is not Row.CONFIDENCE for mark in MARKS[row]]
-    _draw_marks(column, others, columns=2)
+    others = (mark for row in strip.rows if row is not Row.CONFIDENCE for mark in MARKS[row])
+    _draw_marks(column, dict.fromkeys(others), columns=2)
 
 
 def _draw_marks(layout: bpy.types.UILayout, marks: Iterable[Mark], *, columns: int) -> None:

@@ -3,10 +3,13 @@
 from collections.abc import Iterator
 
 import bpy
-from mathutils import Quaternion
+from mathutils import Matrix, Quaternion, Vector
 
 MIN_DISTANCE, MAX_DISTANCE = 1e-3, 1e6
 """View distance in Blender's units."""
+MAX_OFF_CENTER = 0.9
+"""Distance from the middle of a view, as a fraction of half its size, up to which a point is
+seen."""
 NO_VIEW = "This window has no 3D View."
 
 
@@ -31,6 +34,20 @@ def rotate_views(window: bpy.types.Window, angle: float) -> str:
         view.view_rotation = Quaternion((0.0, 0.0, 1.0), -angle) @ view.view_rotation
         n_views += 1
     return "Turn: right arm." if n_views else NO_VIEW
+
+
+def show_point(manager: bpy.types.WindowManager, point: Vector) -> None:
+    """Move the 3D Views that do not show a point of the scene, so that it is in the middle."""
+    for window in manager.windows:
+        for view in _free_views(window):
+            if not shows(view.perspective_matrix, point):
+                view.view_location = point
+
+
+def shows(perspective: Matrix, point: Vector) -> bool:
+    """Whether a point is well within the borders of a view."""
+    x, y, _, w = perspective @ point.to_4d()
+    return bool(w > 0.0 and max(abs(x), abs(y)) <= MAX_OFF_CENTER * w)
 
 
 def _free_views(window: bpy.types.Window | None) -> Iterator[bpy.types.RegionView3D]:

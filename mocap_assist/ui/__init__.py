@@ -1,7 +1,7 @@
 """User interface: panels in the sidebar, menus, preferences and the overlay."""
 
 from .. import languages
-from ..check import raw_key
+from ..check import issue_views, raw_key, renewing
 from ..clean import example_list
 from ..drawing import color_icons, confidence_switch, overlay_switch, strip_switch
 from ..exporting import export_menu
@@ -34,6 +34,8 @@ PARTS = (
     overlay_switch,
     confidence_switch,
     strip_switch,
+    issue_views,
+    renewing,
     raw_key,
     manual,
 )

@@ -22,6 +22,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.measure_quality*": "check",
     "bpy.ops.mocap_assist.jump_to_issue*": "check",
     "bpy.ops.mocap_assist.mark_issues*": "check",
+    "bpy.types.windowmanager.mocap_assist_issue*": "check",
     "bpy.ops.mocap_assist.revert_to_raw*": "compare",
     "bpy.ops.mocap_assist.show_raw*": "compare",
     "bpy.ops.mocap_assist.export_take*": "export",

@@ -112,6 +112,7 @@ IN_ONE_BLENDER = {
     "tracking/test_track.py": (5, 2),
     "ui/test_catalogs.py": (4, 5),
     "ui/test_show_raw.py": (4, 5),
+    "ui/test_issue_views.py": (4, 5),
     "ui/test_onion_skin.py": (5, 2),
     "ui/test_strip.py": (5, 2),
     "variation/test_slices.py": (4, 5),

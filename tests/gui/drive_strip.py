@@ -116,6 +116,23 @@ def hold_the_key(armature):
     assert armature.animation_data.action == clean
 
 
+def see_issues():
+    """List them, mark them, and look at one with the frames around it."""
+    yield from press("measure_quality")
+    bgui.shot("1b-raw-checked.png")
+    yield from press("mark_issues")
+    bgui.shot("1c-markers.png")
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.mark_issues(remove=True)
+    assert not bpy.context.scene.timeline_markers
+    bpy.context.window_manager.mocap_assist_issue_range = True
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.jump_to_issue(index=3)
+    yield from settle(2)
+    bgui.shot("1d-issue-range.png")
+    bpy.context.window_manager.mocap_assist_issue_range = False
+
+
 def see_ghosts_and_wipe():
     """Ghosts and trails of both takes, then each take on its side of a line."""
     manager = bpy.context.window_manager
@@ -227,16 +244,12 @@ def steps():
     yield from bgui.open_sidebar("Mocap")
     yield from settle(pointer=(500, 700))
     bgui.shot("1-raw.png")
-    yield from press("measure_quality")
-    bgui.shot("1b-raw-checked.png")
-    yield from press("mark_issues")
-    bgui.shot("1c-markers.png")
-    with bgui.override("WINDOW"):
-        bpy.ops.mocap_assist.mark_issues(remove=True)
-    assert not bpy.context.scene.timeline_markers
+    yield from see_issues()
     yield from press("denoise")
     bgui.shot("2-cleaned.png")
-    yield from press("measure_quality")
+    yield from until_done()
+    yield from settle(2)
+    assert bpy.context.scene.mocap_assist.checked == "walk.clean", "the list is not renewed"
     bgui.shot("3-checked.png")
     made_up_confidence(armature)
     yield from settle(5)

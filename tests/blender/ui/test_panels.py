@@ -141,7 +141,7 @@ def test_checked_take_lists_its_issues_with_buttons(blank, draw, actor):
 
     shown = draw("MOCAP_PT_check")
 
-    assert shown.count("mocap_assist.jump_to_issue") == 2 + 2
+    assert shown.count("mocap_assist.jump_to_issue") == 3 + 2  # kind, bone and frame
     assert "LeftLeg jumps at frame 12." in " ".join(shown)
 
 

@@ -1,0 +1,79 @@
+"""What a jump to an issue also shows: its bone in the views, and the frames around it."""
+
+import bpy
+from mathutils import Vector
+
+from ..actions.markers import markers_of, point_names
+from ..drawing.view_control import show_point
+from ..runtime.selection import selected_subject
+
+VIEW, RANGE = "mocap_assist_issue_view", "mocap_assist_issue_range"
+FRAMES_AROUND = 4
+"""Frames of the preview range before and after an issue, by definition of *Preview Range*."""
+
+
+def draw_view_switches(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the switches, in a row with the buttons that jump."""
+    layout.prop(context.window_manager, VIEW, text="", icon="VIEW3D", toggle=True)
+    layout.prop(context.window_manager, RANGE, text="", icon="PREVIEW_RANGE", toggle=True)
+
+
+def show_issue(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> None:
+    """Show an issue as the switches choose; the current frame is its first one already."""
+    manager = context.window_manager
+    if getattr(manager, VIEW):
+        point = _point_of(context, issue.name)
+        if point is not None:
+            show_point(manager, point)
+    if getattr(manager, RANGE):
+        preview_issue(context.scene, issue)
+
+
+def preview_issue(scene: bpy.types.Scene, issue: bpy.types.PropertyGroup) -> None:
+    """Set the preview range to an issue and the frames around it."""
+    scene.use_preview_range = True
+    scene.frame_preview_start = round(issue.start) - FRAMES_AROUND
+    scene.frame_preview_end = round(issue.stop) + FRAMES_AROUND
+
+
+def _point_of(context: bpy.types.Context, name: str) -> Vector | None:
+    """Return where the bone or marker of that name is in the scene, if it is there."""
+    subject = selected_subject(context)
+    if subject is None:
+        return None
+    if subject.type == "ARMATURE":
+        bone = subject.pose.bones.get(name)
+        return bone and subject.matrix_world @ bone.head
+    markers = markers_of(subject)
+    named = dict(zip(point_names(markers), markers, strict=True))
+    return named[name].matrix_world.translation if name in named else None
+
+
+def _range_switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+    """Set the preview range to the selected issue, or end it."""
+    shown = context.scene.mocap_assist
+    if not getattr(self, RANGE):
+        context.scene.use_preview_range = False
+    elif 0 <= shown.active_issue < len(shown.issues):
+        preview_issue(context.scene, shown.issues[shown.active_issue])
+
+
+def register() -> None:
+    """Add the switches; the view follows at first, the preview range does not."""
+    manager = bpy.types.WindowManager
+    manager.mocap_assist_issue_view = bpy.props.BoolProperty(
+        name="Follow in View",
+        description="Center 3D views on the bone of an issue that is outside of them",
+        default=True,
+    )
+    manager.mocap_assist_issue_range = bpy.props.BoolProperty(
+        name="Preview Range",
+        description="Play only an issue with 4 frames before and after it",
+        update=_range_switched,
+    )
+
+
+def unregister() -> None:
+    """Remove the switches."""
+    delattr(bpy.types.WindowManager, RANGE)
+    delattr(bpy.types.WindowManager, VIEW)

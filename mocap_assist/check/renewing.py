@@ -1,0 +1,53 @@
+"""Check again after each result, so that the list of issues is of what is played."""
+
+import bpy
+
+from ...solvers.errors import MocapAssistError
+from ..runtime import after_result
+from ..runtime.solver_operator import SolverOperator
+
+
+class CheckOperator(SolverOperator):
+    """Mix in before bpy.types.Operator: a check that may be quiet.
+
+    The message of the result that it follows stays in the status bar.
+    """
+
+    is_quiet: bpy.props.BoolProperty(options={"SKIP_SAVE", "HIDDEN"})
+
+    def _finish(self, message: str) -> set[str]:
+        return {"FINISHED"} if self.is_quiet else super()._finish(message)
+
+    def _give_up(self, error: MocapAssistError | MemoryError) -> set[str]:
+        return {"CANCELLED"} if self.is_quiet else super()._give_up(error)
+
+
+def renew_later(scene: bpy.types.Scene) -> None:
+    """Check again once Blender is idle, where Check was pressed in this scene before."""
+    if not scene.mocap_assist.checked or bpy.app.background:
+        return
+    if not bpy.app.timers.is_registered(renew):
+        bpy.app.timers.register(renew, first_interval=0.0)
+
+
+def renew() -> None:
+    """Press Check quietly in the first window; no press where another solve runs by now."""
+    check = bpy.ops.mocap_assist.measure_quality
+    for window in bpy.context.window_manager.windows[:1]:
+        area = max(window.screen.areas, key=lambda each: each.type == "VIEW_3D")
+        region = next(each for each in area.regions if each.type == "WINDOW")
+        with bpy.context.temp_override(window=window, area=area, region=region):
+            if check.poll():
+                check("INVOKE_DEFAULT", is_quiet=True)
+
+
+def register() -> None:
+    """Follow all results."""
+    after_result.listeners.append(renew_later)
+
+
+def unregister() -> None:
+    """Stop it."""
+    after_result.listeners.remove(renew_later)
+    if bpy.app.timers.is_registered(renew):
+        bpy.app.timers.unregister(renew)

@@ -1,0 +1,142 @@
+"""A jump shows the issue as the switches choose; results are checked again."""
+
+from types import SimpleNamespace
+
+import pytest
+from mathutils import Matrix, Vector
+
+
+@pytest.fixture
+def switches(blank):
+    """The window manager, with both switches as at first when the test ends."""
+    manager = blank.context.window_manager
+    yield manager
+    manager.mocap_assist_issue_view, manager.mocap_assist_issue_range = True, False
+
+
+@pytest.fixture
+def issue(blank, actor):
+    """An issue of one bone; it is the only one in the list."""
+    made = blank.context.scene.mocap_assist.issues.add()
+    made.name, made.start, made.stop, made.kind = "LeftArm", 20.0, 22.0, "gap"
+    return made
+
+
+def preview(scene):
+    return scene.use_preview_range and (scene.frame_preview_start, scene.frame_preview_end)
+
+
+def test_preview_range_has_four_frames_around_an_issue_while_its_switch_is_on(
+    blank, switches, issue
+):
+    scene = blank.context.scene
+    blank.ops.mocap_assist.jump_to_issue(index=0)
+    assert not preview(scene)
+
+    switches.mocap_assist_issue_range = True
+    assert preview(scene) == (16, 26)
+    issue.start = 30.0
+    issue.stop = 30.0
+    blank.ops.mocap_assist.jump_to_issue(index=0)
+    assert preview(scene) == (26, 34)
+
+    switches.mocap_assist_issue_range = False
+    assert not preview(scene)
+
+
+@pytest.mark.parametrize(("x", "is_moved"), [(0.5, False), (0.95, True), (3.0, True)])
+def test_view_moves_only_to_a_point_that_it_does_not_show(load, x, is_moved):
+    view = SimpleNamespace(
+        view_perspective="ORTHO", perspective_matrix=Matrix.Identity(4), view_location=None
+    )
+    area = SimpleNamespace(
+        type="VIEW_3D",
+        spaces=SimpleNamespace(active=SimpleNamespace(region_3d=view)),
+        tag_redraw=lambda: None,
+    )
+    window = SimpleNamespace(screen=SimpleNamespace(areas=[area]))
+    point = Vector((x, 0.0, 0.0))
+
+    load("mocap_assist.drawing.view_control").show_point(
+        SimpleNamespace(windows=[window]), point
+    )
+
+    assert view.view_location == (point if is_moved else None)
+
+
+def test_point_behind_a_view_is_not_shown(load):
+    behind = Matrix(((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, -1, 0)))
+
+    assert not load("mocap_assist.drawing.view_control").shows(behind, Vector((0, 0, 1)))
+
+
+def test_jump_shows_the_bone_in_the_scene(blank, switches, issue, actor, load, monkeypatch):
+    views, points = load("mocap_assist.check.issue_views"), []
+    monkeypatch.setattr(views, "show_point", lambda _, point: points.append(point))
+    actor.location = (5.0, 0.0, 0.0)
+
+    blank.ops.mocap_assist.jump_to_issue(index=0)
+
+    blank.context.view_layer.update()
+    (point,) = points
+    assert point == actor.matrix_world @ actor.pose.bones["LeftArm"].head
+    switches.mocap_assist_issue_view = False
+    blank.ops.mocap_assist.jump_to_issue(index=0)
+    assert len(points) == 1
+
+
+def test_results_are_checked_again_where_check_was_pressed_before(
+    blank, actor, load, monkeypatch
+):
+    renewing, timers = load("mocap_assist.check.renewing"), []
+    app = SimpleNamespace(background=False, timers=Timers(timers))
+    monkeypatch.setattr(renewing, "bpy", SimpleNamespace(app=app))
+    blank.ops.mocap_assist.denoise()
+    assert not timers
+
+    blank.ops.mocap_assist.measure_quality()
+    assert not timers  # a check makes no result
+    blank.ops.mocap_assist.denoise(strength=0.5)
+
+    assert timers == [renewing.renew]
+
+
+class Timers:
+    def __init__(self, registered):
+        self.registered = registered
+
+    def is_registered(self, function):
+        return function in self.registered
+
+    def register(self, function, first_interval):
+        self.registered.append(function)
+
+
+def test_quiet_check_leaves_the_status_bar(blank, actor, capsys):
+    assert blank.ops.mocap_assist.measure_quality(is_quiet=True) == {"FINISHED"}
+    assert "ound" not in capsys.readouterr().out
+    assert blank.context.scene.mocap_assist.checked
+
+    blank.ops.mocap_assist.measure_quality()
+    assert "ound" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("all_panels")
+def test_list_and_strip_name_the_kind_of_an_issue(blank, draw, actor, issue, load):
+    blank.context.scene.mocap_assist.checked = actor.animation_data.action.name
+
+    assert {"mocap_assist_issue_view", "mocap_assist_issue_range"} <= set(
+        draw("MOCAP_PT_check")
+    )
+    strip = load("mocap_assist.drawing.strip_reading").strip_of(blank.context)
+    assert [row.value for row in strip.rows] == ["Gaps"]
+
+
+def test_panel_says_that_a_checked_take_has_no_issues(blank, draw, actor):
+    assert "No issues found." not in draw("MOCAP_PT_check")
+    blank.context.scene.mocap_assist.checked = actor.animation_data.action.name
+
+    assert "No issues found." in draw("MOCAP_PT_check")
+
+    blank.context.scene.mocap_assist.checked = "another action"
+    assert "No issues found." not in draw("MOCAP_PT_check")
