@@ -33,6 +33,8 @@ class _Shown(NamedTuple):
     """Action that was assigned; None where only NLA tracks play."""
     pose: dict[str, dict[str, Any]]
     """By bone, the values before; those of the object have an empty name."""
+    frame: float
+    """Of the scene, to which this pose belongs."""
 
 
 _shown: list[_Shown] = []
@@ -86,7 +88,8 @@ def _remember(player: bpy.types.Object, raw: compat.Source) -> _Shown:
         name: {each: _copied(getattr(holder, each)) for each in POSE}
         for name, holder in posed.items()
     }
-    return _Shown(BlockReference.of(player), SourceReference.of(raw), before or None, pose)
+    references = BlockReference.of(player), SourceReference.of(raw), before or None
+    return _Shown(*references, pose, bpy.context.scene.frame_current_final)
 
 
 def _copied(value: Any) -> Any:
@@ -103,6 +106,8 @@ def _restore(shown: _Shown) -> None:
         animation.action = None
     else:
         compat.assign(player, *shown.before.find())
+    if bpy.context.scene.frame_current_final == shown.frame:
+        bpy.context.view_layer.update()  # a pose without keys is set after the action's
     for name, values in shown.pose.items():
         holder = player if not name else player.pose.bones.get(name)
         if holder is not None:

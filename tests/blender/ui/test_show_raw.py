@@ -151,6 +151,27 @@ def test_channel_that_only_the_recording_has_returns(blank, cleaned, button):
     assert cleaned.pose.bones["Head"].scale.x == 1.0
 
 
+def test_pose_without_keys_returns_unless_the_frame_changed(blank, cleaned, button):
+    bone, posed = cleaned.pose.bones["LeftArm"], (0.0, 1.0, 0.0, 0.0)
+    bone.rotation_quaternion = posed
+    hold(button)
+    blank.context.view_layer.update()
+    assert tuple(bone.rotation_quaternion) != posed
+
+    button.modal(button.context, event("Y", "RELEASE"))
+    blank.context.view_layer.update()
+    assert tuple(bone.rotation_quaternion) == posed
+
+    hold(button)
+    blank.context.scene.frame_set(17)
+    button.modal(button.context, event("Y", "RELEASE"))
+    blank.context.view_layer.update()
+    released = tuple(bone.rotation_quaternion)
+    blank.context.scene.frame_set(17)
+    assert tuple(bone.rotation_quaternion) == pytest.approx(released)
+    assert released != posed
+
+
 def test_saved_file_has_the_result(blank, cleaned, button, tmp_path):
     before = playing(cleaned)
     hold(button)
