@@ -20,6 +20,7 @@ from ..runtime.subject import Subject, check_unchanged
 from ..scene.units import unit_of
 from . import searches
 from .chosen_parts import parts_of_bones
+from .match_grid import count_good
 from .solve_finding import Finding, FindProblem, find_clips
 
 
@@ -81,6 +82,11 @@ def list_found(
     if not n_found:
         return f"No clip of the library ({finding.n_clips} clips) is similar to {name}."
     best = finding.found[0]
+    if not count_good([best.match.score]):
+        return (
+            f"No good match for {name} in {finding.n_clips} clips. Best: {best.entry.name}"
+            f" ({best.match.score:.0%})."
+        )
     return (
         f"Found {n_found} of {finding.n_clips} clips. Most similar to {name}: {best.entry.name}"
         f" ({best.match.score:.0%})."

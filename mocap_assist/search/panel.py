@@ -14,6 +14,7 @@ from ..panels.visibility import shows_take
 from ..runtime.selection import Bones
 from . import searches
 from .finding import why_not_find
+from .match_grid import draw_match_grid
 from .previews import icon_of
 from .source_list import draw_sources
 
@@ -128,11 +129,16 @@ def _draw_matches(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
         draw_sentence(column, context, "Outdated. Press Find Similar again.", icon="INFO")
         return
     draw_sentence(column, context, f'Similar to "{listed.query}"')
-    rows = min(max(len(listed.rows), MIN_ROWS), MAX_ROWS)
-    column.template_list(
-        "MOCAP_UL_matches", "", listed, "rows", listed, "active", rows=rows, maxrows=rows
-    )
-    if 0 <= listed.active < len(search.finding.found):
+    n_good = draw_match_grid(column, context, search)
+    header, body = column.panel("mocap_assist_all_matches", default_closed=True)
+    header.label(text="All Matches")
+    if body is not None:
+        rows = min(max(len(listed.rows), MIN_ROWS), MAX_ROWS)
+        body.template_list(
+            "MOCAP_UL_matches", "", listed, "rows", listed, "active", rows=rows, maxrows=rows
+        )
+    is_visible = listed.active < n_good or body is not None
+    if is_visible and 0 <= listed.active < len(search.finding.found):
         _draw_chosen(column, context, search, listed.active)
 
 

@@ -9,8 +9,8 @@ from ..importing import import_menu
 from ..panels import presets
 from ..retarget import bone_highlight, bone_list
 from ..retarget import panel as retarget_panel
+from ..search import match_grid, source_list
 from ..search import panel as library_panel
-from ..search import source_list
 from ..variants import panel as vary_panel
 from . import diagnostics, manual, menus, preferences, sidebar
 
@@ -24,6 +24,7 @@ PARTS = (
     bone_list,
     retarget_panel,
     source_list,
+    match_grid,
     library_panel,
     vary_panel,
     presets,

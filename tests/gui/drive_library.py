@@ -101,6 +101,9 @@ def find():
     bpy.context.window_manager.mocap_assist_ghost = True
     yield from settle()
     bgui.shot("4-found.png")
+    yield from press("choose_match(index=1)", column=0.75)
+    assert matches().active == 1
+    matches().active = 0
 
 
 def use(armature):

@@ -49,11 +49,34 @@ def test_panel_shows_every_search_setting_once(draw, blank, actor, show_research
 def test_panel_shows_matches_with_previews_and_buttons(draw, matched, blank):
     shown = draw("MOCAP_PT_library")
 
-    assert shown.count("icon") == 3
+    assert shown.count("icon") == 2 + 2 + 1  # grid, list and the selected clip
     assert {"folder/walk", "folder/run", "90%", "mocap_assist_ghost"} <= set(shown)
     for button in ("load_match", "link_match", "learn_from_matches", "mark_asset"):
         assert f"mocap_assist.{button}" in shown
     assert "frames 0–9 of 20" in " ".join(shown) and "calm" in " ".join(shown)
+
+
+def test_click_in_the_grid_selects_a_clip(draw, matched, blank):
+    assert draw("MOCAP_PT_library").count("mocap_assist.choose_match") == 2
+
+    blank.ops.mocap_assist.choose_match(index=1)
+
+    assert blank.context.window_manager.mocap_assist_matches.active == 1
+    assert "folder/run: frames 0" in " ".join(draw("MOCAP_PT_library"))
+
+
+def test_weak_matches_are_not_in_the_grid(draw, matched, blank):
+    rows = blank.context.window_manager.mocap_assist_matches.rows
+    rows[1].score = 0.1
+    shown = draw("MOCAP_PT_library")
+    assert shown.count("mocap_assist.choose_match") == 1
+    assert "No good match" not in " ".join(shown)
+
+    rows[0].score = 0.15
+
+    shown = " ".join(draw("MOCAP_PT_library"))
+    assert "No good match. The best is folder/walk, with a score of 15%." in shown
+    assert "mocap_assist.choose_match" not in shown and "folder/run" in shown
 
 
 def test_discarded_search_requests_a_new_one(draw, matched, blank):
