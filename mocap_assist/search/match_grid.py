@@ -14,7 +14,7 @@ GOOD_SCORE = 0.2
 """Score, as a fraction, from which a match is good. Chosen by hand between 0.17 and 0.26 on 30
 development clips of five kinds: no clip of another kind had more than the first, and the best
 clip of the same kind never less than the second."""
-MAX_CELLS = 12
+MAX_CELLS = 6
 """Number of cells that are drawn. It bounds the height of the panel."""
 NARROW_COLUMNS, WIDE_COLUMNS = 2, 3
 PICTURE = 4.5
