@@ -28,7 +28,7 @@ BUTTONS = re.compile(r"(<!-- buttons -->\n).*?(<!-- end -->)", re.DOTALL)
 NOT_BUTTONS = {"import_job"}
 """Operators that another operator starts: no user sees them."""
 PAGES = {
-    "importing": "import_recording load_sample change_axes show_depth",
+    "importing": "import_recording load_sample add_workspace change_axes show_depth",
     "fixing": "fix_take fix_takes fix_folder accept_fix",
     "tracking": "track_depth retrack",
     "reconstruction": "reconstruct",

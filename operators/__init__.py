@@ -3,6 +3,7 @@
 import bpy
 
 from .accept_fix import MOCAP_OT_accept_fix
+from .add_workspace import MOCAP_OT_add_workspace
 from .assign_variants import MOCAP_OT_assign_variants
 from .cancel_solve import MOCAP_OT_cancel_solve
 from .change_axes import MOCAP_OT_change_axes
@@ -50,6 +51,7 @@ OPERATORS = (
     MOCAP_OT_import_job,
     MOCAP_OT_cancel_solve,
     MOCAP_OT_load_sample,
+    MOCAP_OT_add_workspace,
     MOCAP_OT_fix_take,
     MOCAP_OT_fix_takes,
     MOCAP_OT_fix_folder,

@@ -18,6 +18,7 @@ from .import_menu import IMPORT
 CHANGE = "mocap_assist.change_axes"
 SHOW = "mocap_assist.show_depth"
 SAMPLE = "mocap_assist.load_sample"
+WORKSPACE = "mocap_assist.add_workspace"
 
 
 class ImportPanel(PanelMixin):
@@ -64,6 +65,8 @@ def _draw_first_steps(layout: bpy.types.UILayout) -> None:
     if exists(SAMPLE):
         layout.operator(SAMPLE, icon="ARMATURE_DATA")
     layout.operator("wm.url_open", text="Open Manual", icon="HELP").url = start_page().as_uri()
+    if exists(WORKSPACE):
+        layout.operator(WORKSPACE, icon="WORKSPACE")
 
 
 def _figures(origin: dict[str, object]) -> str:

@@ -7,6 +7,7 @@ from ..panels.manual_page import MANUAL
 CHAPTERS = {
     "bpy.ops.mocap_assist.import_*": "import",
     "bpy.ops.mocap_assist.load_sample*": "import",
+    "bpy.ops.mocap_assist.add_workspace*": "import",
     "bpy.types.windowmanager.mocap_assist_all_panels*": "import",
     "bpy.ops.mocap_assist.*fix*": "fix",
     "bpy.types.mocap_pg_fix*": "fix",

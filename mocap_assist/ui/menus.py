@@ -31,6 +31,7 @@ BUTTONS = (
     "mocap_assist.listen",
     "mocap_assist.copy_diagnostics",
     "mocap_assist.record_live",
+    "mocap_assist.add_workspace",
 )
 MENUS = (
     "VIEW3D_MT_object",

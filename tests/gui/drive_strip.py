@@ -232,6 +232,20 @@ def the_preferences():
     bgui.shot("8-preferences.png")
 
 
+def add_the_workspace():
+    """One press adds it, and a second one shows it again."""
+    for _ in range(2):
+        with bgui.override("WINDOW"):
+            assert bpy.ops.mocap_assist.add_workspace() == {"FINISHED"}
+        yield 8.0  # each step has a turn, and redraws are slow here
+        kinds = sorted(each.ui_type for each in bgui.window().screen.areas)
+        assert bgui.window().workspace.name == "Mocap"
+        assert kinds == ["ASSETS", "DOPESHEET", "FCURVES", "VIEW_3D"], kinds
+    assert [each.name for each in bpy.data.workspaces].count("Mocap") == 1
+    yield from settle(2)
+    bgui.shot("7b-workspace.png")
+
+
 def steps():
     empty_scene()
     unfold_alone("check")
@@ -257,6 +271,7 @@ def steps():
     yield from hold_the_key(armature)
     yield from see_ghosts_and_wipe()
     yield from measure()
+    yield from add_the_workspace()
     yield from the_preferences()
 
 

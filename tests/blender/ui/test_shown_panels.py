@@ -33,10 +33,11 @@ def _is_within(panel, visible):
     return not parent or parent in visible
 
 
-def test_empty_scene_has_only_import_with_the_sample_and_the_manual(shown, draw):
+def test_empty_scene_has_only_import_with_the_first_steps(shown, draw):
     assert shown() == ["import"]
     assert draw("MOCAP_PT_import") == [
         "mocap_assist.import_recording", "mocap_assist.load_sample", "wm.url_open",
+        "mocap_assist.add_workspace",
     ]  # fmt: skip
 
 
