@@ -16,6 +16,7 @@ from ...solvers.files import open_regular
 from ...solvers.json_text import parse_json
 from ...solvers.motion.skeletons import MAX_FRAME_RATE_HZ
 from ...solvers.recordings import SCENE_SUFFIXES, refuse_stand_ins, suffix_by_content
+from .fbx_curves import loses_curves
 from .gltf_skins import (
     GLB_JSON,
     GLB_MAGIC,
@@ -24,6 +25,7 @@ from .gltf_skins import (
     list_of,
     write_with_skins,
 )
+from .stated_conventions import read_stage
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
 MIN_RATE_HZ = 12.0
@@ -60,7 +62,7 @@ def open_scene_file(path: str, *, meshes: bool = False) -> None:
     if suffix == ".dae":
         return _open_collada(path)
     if suffix in {".usd", ".usda", ".usdc", ".usdz"}:
-        return _run(path, bpy.ops.wm.usd_import, **USD_OPTIONS, import_meshes=meshes)
+        return _open_usd(path, meshes)
     return _open_gltf(path)
 
 
@@ -74,8 +76,13 @@ def _run(path: str, operator: Any, **options: Any) -> None:
 
 
 def _open_fbx(path: str) -> None:
+    """Import FBX; by the older importer, which is slower, where the other one loses keys."""
+    importer = bpy.ops.wm.fbx_import
+    if loses_curves(path):
+        addon_utils.enable("io_scene_fbx")
+        importer = bpy.ops.import_scene.fbx
     try:
-        _run(path, bpy.ops.wm.fbx_import)
+        _run(path, importer)
     except InvalidFileError as error:
         if any(reason in str(error) for reason in DAMAGED_FBX):
             raise _damaged(path) from None
@@ -84,6 +91,15 @@ def _open_fbx(path: str) -> None:
 
 def _damaged(path: str) -> InvalidFileError:
     return InvalidFileError(f"{path} is damaged or incomplete. Export it again.")
+
+
+def _open_usd(path: str, meshes: bool) -> None:
+    """Import USD; its times are frames, at a rate that the importer does not take over."""
+    _run(path, bpy.ops.wm.usd_import, **USD_OPTIONS, import_meshes=meshes)
+    if 0.0 < (rate := read_stage(path).frame_rate) < MAX_RATE_HZ:
+        render = bpy.context.scene.render
+        render.fps = max(1, round(rate))
+        render.fps_base = render.fps / rate
 
 
 def _open_collada(path: str) -> None:

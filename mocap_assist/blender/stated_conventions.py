@@ -2,7 +2,11 @@
 
 import re
 import struct
+from typing import NamedTuple
 
+import bpy
+
+from ...solvers.errors import InvalidFileError
 from ...solvers.files import open_regular
 from ...solvers.motion import AxisName, FileConventions
 from ...solvers.recordings import suffix_by_content
@@ -18,11 +22,38 @@ Y_UP: tuple[AxisName, AxisName] = ("Y", "Z")
 Z_UP: tuple[AxisName, AxisName] = ("Z", "-Y")
 
 
-def stated_conventions(path: str) -> FileConventions:
-    """Return up, forward and unit as a file states them, or as its format defines them.
+class UsdStage(NamedTuple):
+    """What a USD file states about all that is in it."""
 
-    Binary USD files state them where only USD itself can read; Y and meters are taken then.
+    up: str
+    unit: float
+    """Meters."""
+    frame_rate: float
+    """Times of its keys per second, hertz."""
+
+
+def read_stage(path: str) -> UsdStage:
+    """Return what a USD file states, text or binary, by the USD library that Blender has.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is damaged.
     """
+    bpy.utils.expose_bundled_modules()
+    from pxr import Usd, UsdGeom
+
+    try:
+        stage = Usd.Stage.Open(path, Usd.Stage.LoadNone)
+    except RuntimeError:
+        raise InvalidFileError(f"{path} is damaged or incomplete. Export it again.") from None
+    rate = float(stage.GetTimeCodesPerSecond())
+    unit = float(UsdGeom.GetStageMetersPerUnit(stage))
+    return UsdStage(str(UsdGeom.GetStageUpAxis(stage)), unit, rate)
+
+
+def stated_conventions(path: str) -> FileConventions:
+    """Return up, forward and unit as a file states them, or as its format defines them."""
     with open_regular(path) as file:
         head = file.read(HEAD_BYTES)
     suffix = suffix_by_content(path)
@@ -35,8 +66,7 @@ def stated_conventions(path: str) -> FileConventions:
         up = "Z" if re.search(rb"<up_axis>\s*Z_UP", head) else "Y"
         unit = _number(rb"<unit[^>]*meter\s*=\s*\"([^\"]*)\"", head)
     elif suffix.startswith(".usd"):
-        up = "Z" if re.search(rb"upAxis\s*=\s*\"Z\"", head) else "Y"
-        unit = _number(rb"metersPerUnit\s*=\s*([-+.\deE]+)", head)
+        up, unit, _ = read_stage(path)
     return FileConventions(*(Z_UP if up == "Z" else Y_UP), unit if unit > 0.0 else 1.0)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...solvers.faults import Failure, attempt
 from ...solvers.files import path_fault
-from ...solvers.motion import Motion
+from ...solvers.motion import FileConventions, Motion
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import is_scene_file
 from ...solvers.recordings.conventions import correct_stated_unit
@@ -26,6 +26,7 @@ from ..rigs.rigify import is_rigify
 from ..rigs.target_read import find_roles
 from ..scene import history
 from ..scene.rig import END
+from .carriers import with_carriers
 from .catalogs import NONE, catalog_file, read_catalogs
 
 ROUNDING = 1e-3
@@ -98,17 +99,27 @@ def sources_of(action: bpy.types.Action) -> dict[str, tuple[bpy.types.Object, So
 
 
 def read_source(
-    scene: bpy.types.Scene, armature: bpy.types.Object, source: Source, root: str = ""
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    source: Source,
+    root: str = "",
+    *,
+    is_imported: bool = False,
 ) -> Motion:
     """Return how the body moves; that of a control rig as its constraints show it.
 
-    `root` is the bone that the body begins with, if it is known.
+    `root` is the bone that the body begins with, if it is known. A body of another program
+    moves along with the objects above its armature.
     """
     take = read_take(armature, scene, source=source, root=root)
     bones = armature.data.bones
     if is_rigify(bones) and armature.name in scene.objects:
         body = body_bones(find_roles(armature), bones)
         take = with_body_shown(scene, armature, take, body, source)
+    elif is_imported:
+        motion = take.parts[0].motion
+        unit = _unit_ratio(armature, motion)
+        return with_carriers(scene, armature, source, take.frames, motion, unit)
     return take.parts[0].motion
 
 
@@ -116,10 +127,12 @@ def _read_file(
     path: str, assets_only: bool, items: Sequence[str], rig: str, meshes: bool
 ) -> BlendRead:
     open_scene_file(path, meshes=meshes)
+    stated = None
     if is_scene_file(path):
         if sentence := _without_motion(path):
             return BlendRead((), (sentence,), is_empty=True)
         _mark_invented_tails()
+        stated = stated_conventions(path)
     actions = actions_of(assets_only)
     lack_rig = rig and any(map(_lacks_rig, actions))
     refused = _bring_armatures(rig) if lack_rig else []
@@ -132,17 +145,17 @@ def _read_file(
                 f" {NAME_ONE}"
             )
             continue
-        found = _read_action(path, action, items)
+        found = _read_action(path, action, items, stated)
         clips += found.clips
         refused += found.refused
     is_empty = not (clips or refused)
-    if is_scene_file(path):
-        clips = _with_one_root(path, clips)
+    if stated is not None:
+        clips = _with_one_root(clips, stated)
     kept = pack_skinned_meshes() if meshes else None
     return BlendRead(tuple(clips), tuple(refused), is_empty=is_empty, meshes=kept)
 
 
-def _with_one_root(path: str, clips: list[BlendClip]) -> list[BlendClip]:
+def _with_one_root(clips: list[BlendClip], stated: FileConventions) -> list[BlendClip]:
     """Read takes again whose body begins higher up than in another take of its armature.
 
     Where the body begins is judged by how bones travel, which differs from take to take. What
@@ -161,8 +174,8 @@ def _with_one_root(path: str, clips: list[BlendClip]) -> list[BlendClip]:
         root = smallest[clip.armature].skeleton.names[0]
         if clip.motion.skeleton.names[0] != root:
             armature, source = sources[clip.item]
-            motion = read_source(bpy.context.scene, armature, source, root)
-            clip = replace(clip, motion=_with_conventions(path, armature, motion))
+            motion = read_source(bpy.context.scene, armature, source, root, is_imported=True)
+            clip = replace(clip, motion=_with_conventions(armature, motion, stated))
         same.append(clip)
     return same
 
@@ -184,26 +197,31 @@ def _mark_invented_tails() -> None:
                 bone[END] = True
 
 
-def _read_action(path: str, action: bpy.types.Action, items: Sequence[str]) -> BlendRead:
+def _read_action(
+    path: str, action: bpy.types.Action, items: Sequence[str], stated: FileConventions | None
+) -> BlendRead:
+    """Read what an action does with armatures; `stated` is what another program's file says."""
     clips, refused = [], []
-    tags = _tags(action, path)
+    tags, scene, is_imported = _tags(action, path), bpy.context.scene, stated is not None
     for item, (armature, source) in sources_of(action).items():
         if items and item not in items:
             continue
-        motion = attempt(f"{path}, {item}", read_source, bpy.context.scene, armature, source)
+        motion = attempt(
+            f"{path}, {item}", read_source, scene, armature, source, is_imported=is_imported
+        )
         if isinstance(motion, Failure):
             refused.append(motion.sentence)
         else:
-            motion = _with_conventions(path, armature, motion)
+            motion = motion if stated is None else _with_conventions(armature, motion, stated)
             clips.append(BlendClip(item, motion, tags, armature.name))
     return BlendRead(tuple(clips), tuple(refused))
 
 
-def _with_conventions(path: str, armature: bpy.types.Object, motion: Motion) -> Motion:
+def _with_conventions(
+    armature: bpy.types.Object, motion: Motion, stated: FileConventions
+) -> Motion:
     """Note the axes and unit of a file of another program, as they were interpreted."""
-    if not is_scene_file(path):
-        return motion
-    motion = replace(motion, conventions=stated_conventions(path))
+    motion = replace(motion, conventions=stated)
     return correct_stated_unit(motion, _unit_ratio(armature, motion))
 
 

@@ -54,8 +54,13 @@ def key(armature, bone, index, values):
 def export(blank, path):
     operators = blank.ops.export_scene
     if path.suffix == ".fbx":
-        operators.fbx(filepath=str(path), add_leaf_bones=False, bake_anim_use_nla_strips=False)
-    elif path.suffix == ".usda":
+        operators.fbx(
+            filepath=str(path),
+            add_leaf_bones=False,
+            bake_anim_use_nla_strips=False,
+            bake_anim_use_all_actions=False,
+        )
+    elif path.suffix.startswith(".usd"):
         blank.ops.wm.usd_export(filepath=str(path), export_animation=True)
     else:
         operators.gltf(filepath=str(path))
@@ -82,23 +87,33 @@ def without_skin(path):
     path.write_bytes(head + text + rest)
 
 
-@pytest.mark.parametrize("suffix", ["glb", "fbx", "skinless.glb"])
+@pytest.fixture
+def brought(blank, load):
+    """Import a file; return the motion, and the path of each joint."""
+
+    def bring(path):
+        blank.ops.mocap_assist.import_recording(filepath=str(path))
+        read = load("mocap_assist.actions.armature_read").read_take
+        motion = read(blank.context.object, blank.context.scene).parts[0].motion
+        joints = load("solvers.motion").world_poses(
+            motion.skeleton, motion.rotations, motion.root_positions
+        )
+        paths = joints.positions.swapaxes(0, 1)
+        return motion, dict(zip(motion.skeleton.names, paths, strict=True))
+
+    return bring
+
+
+@pytest.mark.parametrize("suffix", ["glb", "fbx", "skinless.glb", "usda", "usdc"])
 def test_a_turned_and_scaled_body_stands_and_walks_its_path(
-    walker, blank, tmp_path, load, suffix
+    walker, blank, tmp_path, brought, suffix
 ):
     export(blank, tmp_path / f"take.{suffix}")
     if suffix.startswith("skinless"):
         without_skin(tmp_path / f"take.{suffix}")
 
-    blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / f"take.{suffix}"))
+    motion, where = brought(tmp_path / f"take.{suffix}")
 
-    armature = blank.context.object
-    take = load("mocap_assist.actions.armature_read").read_take(armature, blank.context.scene)
-    motion = take.parts[0].motion
-    joints = load("solvers.motion").world_poses(
-        motion.skeleton, motion.rotations, motion.root_positions
-    )
-    where = dict(zip(motion.skeleton.names, joints.positions.swapaxes(0, 1), strict=True))
     assert motion.skeleton.names[0] == "Hips"
     assert motion.frame_rate == pytest.approx(30.0)
     assert motion.n_frames == 60
@@ -107,6 +122,22 @@ def test_a_turned_and_scaled_body_stands_and_walks_its_path(
     assert where["LeftFoot"][:, 2] == pytest.approx(0.1, abs=0.01)
     assert (where["LeftUpLeg"] - where["RightUpLeg"])[:, 0] == pytest.approx(0.2, abs=0.01)
     assert np.ptp(where["Hips"], axis=0) == pytest.approx([3.0, 0.0, 0.0], abs=0.02)
+
+
+@pytest.mark.parametrize("suffix", ["glb", "fbx", "usda"])
+def test_a_body_moves_with_what_carries_it(walker, blank, tmp_path, brought, suffix):
+    """Programs put the travel of a body on a null above its skeleton."""
+    carrier = blank.data.objects.new("Carrier", None)
+    blank.context.scene.collection.objects.link(carrier)
+    walker.parent = carrier
+    for frame, along in ((1, 0.0), (60, 2.0)):
+        carrier.location.y = along
+        carrier.keyframe_insert("location", frame=frame)
+    export(blank, tmp_path / f"take.{suffix}")
+
+    _, where = brought(tmp_path / f"take.{suffix}")
+
+    assert where["Hips"][-1] - where["Hips"][0] == pytest.approx([3.0, 2.0, 0.0], abs=0.02)
 
 
 def test_keys_at_tenths_of_a_frame_make_no_finer_take(make_armature, animate, blank, load):
