@@ -12,7 +12,7 @@ from ...solvers.files import path_fault
 from ...solvers.motion import FileConventions, Motion
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import is_scene_file
-from ...solvers.recordings.conventions import correct_stated_unit
+from ...solvers.recordings.conventions import correct_stated_unit, stand_scene_upright
 from ..actions.armature_read import read_take
 from ..actions.fitting import fitting_slots, plays, plays_slot
 from ..blender import compat
@@ -150,9 +150,15 @@ def _read_file(
         refused += found.refused
     is_empty = not (clips or refused)
     if stated is not None:
-        clips = _with_one_root(clips, stated)
+        clips = _upright(_with_one_root(clips, stated))
     kept = pack_skinned_meshes() if meshes else None
     return BlendRead(tuple(clips), tuple(refused), is_empty=is_empty, meshes=kept)
+
+
+def _upright(clips: list[BlendClip]) -> list[BlendClip]:
+    """Turn all takes of a file whose bodies refute its up axis."""
+    motions = stand_scene_upright([clip.motion for clip in clips])
+    return [replace(clip, motion=motion) for clip, motion in zip(clips, motions, strict=True)]
 
 
 def _with_one_root(clips: list[BlendClip], stated: FileConventions) -> list[BlendClip]:

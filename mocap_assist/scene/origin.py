@@ -16,7 +16,7 @@ NOTED: dict[str, Any] = {
     "file": str, "kind": str, "frame_rate": int | float, "n_frames": int, "sensor": str,
     "body": str, "up": str, "forward": str, "unit": int | float, "rest_up": str,
     "offset_added": bool, "confidence": int | float, "has_floor": bool, "scale": int | float,
-    "is_unit_guessed": bool,
+    "is_unit_guessed": bool, "stated_up": str,
 }  # fmt: skip
 """Keys of a note, and the types of valid values."""
 
@@ -57,7 +57,8 @@ def noted_conventions(origin: dict[str, Any]) -> FileConventions | None:
     """Return the axes and unit of a note; None if it has none, or they make no sense."""
     names = [item.name for item in fields(FileConventions)]
     noted = FileConventions(**{name: origin[name] for name in names if name in origin})
-    known = {noted.up, noted.forward, noted.rest_up or noted.up} <= {*get_args(AxisName)}
+    axes = {noted.up, noted.forward, noted.rest_up or noted.up, noted.stated_up or noted.up}
+    known = axes <= {*get_args(AxisName)}
     is_valid = known and noted.up[-1] != noted.forward[-1] and noted.unit > 0.0
     return noted if is_valid and {"up", "forward", "unit"} <= origin.keys() else None
 

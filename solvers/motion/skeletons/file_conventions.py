@@ -30,6 +30,8 @@ class FileConventions:
     """In the up axis, 0 to 1; 1 where the file states it."""
     is_unit_guessed: bool = False
     """Whether the size of the body overruled the unit that the file states."""
+    stated_up: AxisName | None = None
+    """Axis that the file states to be up, where the body refuted it."""
     has_floor: bool = True
     """Whether height 0 is a measured floor: not with depth cameras and video models."""
 

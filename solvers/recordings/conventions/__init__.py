@@ -55,6 +55,7 @@ from .points import (
     points_z_up,
     stand_markers,
 )
+from .scene_axes import stand_scene_upright
 from .scene_bodies import (
     STATED_REACH_M,
     correct_stated_unit,
@@ -132,6 +133,7 @@ __all__ = [
     "stack_body_frames",
     "stand_along",
     "stand_markers",
+    "stand_scene_upright",
     "stand_upright",
     "stature",
     "turn_between",

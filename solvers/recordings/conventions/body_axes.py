@@ -13,29 +13,26 @@ from ...motion import (
     Motion,
     Skeleton,
     find_humanoid_map,
-    world_poses,
 )
 from ...progress import Progress, Remark, unwatched
 from .axes import longest_bone_path, rotation_to_z_up
 from .file_axes import FORWARD, turn_motion
+from .standing_joints import (
+    AXES,
+    N_SAMPLED_FRAMES,
+    StandingJoints,
+    is_unfolded,
+    measure_floor,
+    measure_standing,
+    measure_travel,
+    sampled_positions,
+)
 
 UpAxisName = AxisName
-
-N_SAMPLED_FRAMES = 60
-"""Number of frames, evenly spaced, that are judged. It bounds the run time."""
-AXES: dict[UpAxisName, Array] = {
-    "Y": np.array([0.0, 0.0, 1.0]), "-Y": np.array([0.0, 0.0, -1.0]),
-    "Z": np.array([0.0, -1.0, 0.0]), "-Z": np.array([0.0, 1.0, 0.0]),
-    "X": np.array([1.0, 0.0, 0.0]), "-X": np.array([-1.0, 0.0, 0.0]),
-}  # fmt: skip
-"""Axes of a file as directions of a motion that was read with Y up."""
 
 STANDING_WEIGHT = 1.0
 """Weight of the evidence of the motion: head above hips above feet in most frames, -1 to 1. By
 definition 1: the others are relative to it."""
-MIN_STANDING = -0.5
-"""Evidence, a ratio, of a body that is upside down. It is meant for handstands, which are rarer
-than bodies that lie. Chosen by hand: x0.5 and x2 fail no test of this module."""
 REST_WEIGHT = 0.8
 """Weight of the same in the rest pose: files are exported with it standing, but not always
 turned as the motion is. Chosen by hand: x0.5 fails
@@ -49,14 +46,6 @@ x2 fails `test_any_axis_may_be_up`."""
 EXPECTED: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05, "-X": -0.2, "-Y": -0.2, "-Z": -0.2}
 """Evidence of the format: BVH has Y up, some programs write Z up, and a body that is upside
 down stands on its hands rather."""
-MIN_TRAVEL_FRACTION = 1.0
-"""Travel, relative to the height of the body, from which it is evidence. It is meant for takes
-in place, whose small steps have any direction. Chosen by hand: x0.5 and x2 fail no test of this
-module."""
-MAX_FLOOR_FRACTION = 0.4
-"""Distance of the lowest joint from zero, relative to the height, that is no evidence. Chosen
-by hand: x0.5 fails `test_a_lying_actor_is_left_lying_and_reported`, x2
-`test_any_axis_may_be_up`."""
 CLEAR_LEAD = 0.5
 """Lead, in the weights above, over the next axis below which the report says that the evidence
 disagrees. Chosen by hand: half of the evidence of the motion, 1; x0.5 and x2 fail no test of
@@ -71,9 +60,6 @@ origin: near zero on both axes. Chosen by hand: x0.5 and x2 fail no test of this
 MIN_REST_STANDING = 0.7
 """Evidence, a ratio, from which the rest pose has an axis of its own. Chosen by hand: x2 fails
 `test_any_axis_may_be_up`."""
-MIN_SPREAD_FRACTION = 0.03
-"""Distance between the feet, relative to the height, below which a rest pose is folded. Chosen
-by hand: 5 cm of an adult; x0.5 and x2 fail no test of this module."""
 
 
 class UpAxis(NamedTuple):
@@ -105,19 +91,15 @@ def judge_up_axis(motion: Motion, expected: Mapping[UpAxisName, float] | None = 
         Evidence of a format whose rest pose is known to have Y up: only these axes are
         possible, and the rest pose has no vote. None: any axis, Y and Z rather.
     """
-    step = max(1, motion.n_frames // N_SAMPLED_FRAMES)
-    positions = world_poses(
-        motion.skeleton, motion.rotations[::step], motion.root_positions[::step]
-    ).positions
-    positions = positions[np.isfinite(positions).all(axis=(1, 2))]
+    positions = sampled_positions(motion)
     roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    body = _StandingJoints.from_roles(roles)
+    body = StandingJoints.from_roles(roles)
     if body is None or not len(positions):
         return _judge_by_extent(motion.skeleton, positions)
     rest = motion.skeleton.rest_positions[None]
     in_rest = dict.fromkeys(AXES, 0.0)
-    if expected is None and _is_unfolded(rest[0], body):
-        in_rest = _standing(rest, body)
+    if expected is None and is_unfolded(rest[0], body):
+        in_rest = measure_standing(rest, body)
     judged = _weigh(positions, body, in_rest, expected)
     rest_best = max(AXES, key=lambda axis: in_rest[axis])
     if expected:
@@ -139,7 +121,7 @@ def judge_up_of_joints(
     """
     observed = positions[np.isfinite(positions).all(axis=(1, 2))]
     step = max(1, len(observed) // N_SAMPLED_FRAMES)
-    body = _StandingJoints.from_roles(roles)
+    body = StandingJoints.from_roles(roles)
     if body is None or not len(observed):
         best = max(expected, key=lambda axis: expected[axis])
         return UpAxis(best, best, is_clear=True)
@@ -148,13 +130,13 @@ def judge_up_of_joints(
 
 def _weigh(
     positions: Array,
-    body: "_StandingJoints",
+    body: "StandingJoints",
     in_rest: Mapping[UpAxisName, float],
     expected: Mapping[UpAxisName, float] | None,
 ) -> UpAxis:
     """Weigh the evidence; the rest pose gets the axis of the motion."""
-    standing = _standing(positions, body)
-    floor, travel = _floor(positions, body), _travel(positions, body)
+    standing = measure_standing(positions, body)
+    floor, travel = measure_floor(positions, body), measure_travel(positions, body)
     totals = {
         axis: STANDING_WEIGHT * standing[axis]
         + REST_WEIGHT * in_rest[axis]
@@ -218,24 +200,6 @@ def rotate_to_z_up(motion: Motion, axis: UpAxisName, rest_axis: UpAxisName) -> M
     return turn_motion(motion, rotation_to_z_up(axis), rotation_to_z_up(rest_axis))
 
 
-class _StandingJoints(NamedTuple):
-    """The joints that show where a body stands."""
-
-    hips: int
-    head: int
-    feet: list[int]
-    joints: list[int]
-    """All with a role."""
-
-    @classmethod
-    def from_roles(cls, roles: Mapping[str, int]) -> "_StandingJoints | None":
-        feet = [roles[role] for role in ("leftFoot", "rightFoot") if role in roles]
-        top = next((roles[role] for role in ("head", "neck", "chest") if role in roles), None)
-        if top is None or "hips" not in roles or not feet:
-            return None
-        return cls(roles["hips"], top, feet, sorted(roles.values()))
-
-
 def _judge_by_extent(skeleton: Skeleton, positions: Array) -> UpAxis:
     """Return Z where something is flat with Y up, in the rest pose and in most frames."""
     flat = skeleton.rest_positions[None] if not len(positions) else positions
@@ -249,52 +213,3 @@ def _judge_by_extent(skeleton: Skeleton, positions: Array) -> UpAxis:
     )
     axis: UpAxisName = "Z" if is_flat else "Y"
     return UpAxis(axis, axis, is_clear=True)
-
-
-def _is_unfolded(rest: Array, body: _StandingJoints) -> bool:
-    """Whether the rest pose shows a body with separate legs, not all joints at one point."""
-    spread = np.linalg.norm(rest[body.feet[0]] - rest[body.feet[-1]])
-    return len(body.feet) < 2 or bool(
-        spread > 2 * MIN_SPREAD_FRACTION * np.ptp(rest[body.joints], axis=0).max()
-    )
-
-
-def _standing(positions: Array, body: _StandingJoints) -> dict[UpAxisName, float]:
-    """Return how far each axis points from feet to hips to head in most frames, -1 to 1."""
-    trunk = positions[:, body.head] - positions[:, body.hips]
-    legs = positions[:, body.hips] - positions[:, body.feet].mean(axis=1)
-    directions = [
-        part / np.maximum(np.linalg.norm(part, axis=1, keepdims=True), 1e-9)
-        for part in (trunk, legs)
-    ]
-    along = np.median(np.mean(directions, axis=0), axis=0)
-    return {
-        axis: max(MIN_STANDING, float(along @ direction)) for axis, direction in AXES.items()
-    }
-
-
-def _floor(positions: Array, body: _StandingJoints) -> dict[UpAxisName, float]:
-    """Return how near the lowest joint is to zero along each axis, 0 to 1."""
-    return {
-        axis: max(
-            0.0,
-            1.0
-            - abs(float(np.percentile((positions[:, body.joints] @ direction).min(axis=1), 5)))
-            / (MAX_FLOOR_FRACTION * _height(positions, body)),
-        )
-        for axis, direction in AXES.items()
-    }
-
-
-def _travel(positions: Array, body: _StandingJoints) -> dict[UpAxisName, float]:
-    """Return how far the actor travels at right angles to each axis, 0 to 1."""
-    travel = np.ptp(positions[:, body.hips], axis=0)
-    length = float(np.linalg.norm(travel))
-    if length < MIN_TRAVEL_FRACTION * _height(positions, body):
-        return dict.fromkeys(AXES, 0.0)
-    return {axis: 1.0 - float(travel @ np.abs(AXES[axis])) / length for axis in AXES}
-
-
-def _height(positions: Array, body: _StandingJoints) -> float:
-    extents = np.ptp(positions[:, body.joints], axis=1).max(axis=1)
-    return max(float(np.median(extents)), 1e-9)

@@ -60,6 +60,7 @@ def with_axes(
         forward=new_forward,
         rest_up=conventions.rest_up if keeps_rest else None,
         confidence=1.0 if up is not None else conventions.confidence,
+        stated_up=None if up is not None else conventions.stated_up,
     )
 
 

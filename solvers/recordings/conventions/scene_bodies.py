@@ -25,6 +25,11 @@ def describe_guesses(motion: Motion) -> list[str]:
     found = []
     if not conventions.is_certain:
         found.append(describe_guessed_axis(conventions.up))
+    if conventions.stated_up is not None:
+        found.append(
+            f"The file states that {conventions.stated_up} is up, but the actor stands along"
+            f" {conventions.up}; set Up to {conventions.stated_up} if the actor lies"
+        )
     if conventions.is_unit_guessed:
         found.append(describe_guessed_unit(conventions.unit))
     return found

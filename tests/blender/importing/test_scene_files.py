@@ -63,17 +63,25 @@ def below_node(path, target, **transform):
     target.write_bytes(head + text + rest)
 
 
-@pytest.mark.parametrize(("degrees", "asks"), [(0.0, False), (90.0, True), (180.0, True)])
-def test_a_take_that_never_stands_is_asked_about(load, recordings, tmp_path, degrees, asks):
+@pytest.mark.parametrize("degrees", [0.0, 90.0, 180.0])
+def test_a_body_overrules_the_up_axis_of_its_file(bring, recordings, tmp_path, blank, degrees):
     path, half = tmp_path / "take.glb", np.radians(degrees) / 2.0
     figure = recordings / "corpus/glb/mixamo_blender/walking.glb"
     below_node(figure, path, rotation=[np.sin(half), 0.0, 0.0, np.cos(half)])
-    reading = load("mocap_assist.importing.solve_reading")
-    blender = load("mocap_assist.library.sources").background_blender("")
 
-    (content,) = reading.read_takes(path, reading.Conversion(blender=blender))
+    (armature,), _ = bring(path)
 
-    assert any("lies or is upside down" in each for each in content.warnings) == asks
+    assert head_height(armature) == pytest.approx(1.5, abs=0.1)
+    noted = json.loads(armature["mocap_assist_recording"])
+    assert noted["stated_up"] == ("Y" if degrees else None)
+    blank.ops.mocap_assist.change_axes(up="Y")
+    blank.context.view_layer.update()
+    assert head_height(armature) == pytest.approx(1.5 * np.cos(2 * half), abs=0.2)
+
+
+def head_height(armature):
+    (head,) = (bone for bone in armature.pose.bones if bone.name.endswith("Head"))
+    return (armature.matrix_world @ head.head).z
 
 
 @pytest.mark.parametrize("size", [0.01, 10.0])

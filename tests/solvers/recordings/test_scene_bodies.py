@@ -10,6 +10,7 @@ from solvers.recordings.conventions import (
     correct_stated_unit,
     describe_guesses,
     describe_lying,
+    stand_scene_upright,
     stature,
 )
 from solvers.recordings.conventions.file_axes import reinterpreted, turn_motion
@@ -94,6 +95,77 @@ def test_a_take_that_stands_confirms_the_axis_of_the_file():
 
     assert not describe_lying([walk()])
     assert not describe_lying([turn_motion(walk(), turn, turn), walk()])
+
+
+@pytest.mark.parametrize(
+    ("conventions", "degrees", "up"), [(Y_UP, 90, "Z"), (Z_UP, -90, "Y"), (Y_UP, 180, "-Y")]
+)
+def test_a_walk_up_the_wall_is_turned_and_reported(conventions, degrees, up):
+    turn = about("X", degrees)
+
+    (turned,) = stand_scene_upright([turn_motion(walk(conventions), turn, turn)])
+
+    assert trunk_of(turned)[2] > 0.9
+    assert np.ptp(turned.root_positions[:, 2]) == pytest.approx(0.0, abs=1e-9)
+    assert turned.conventions.up == up
+    (message,) = describe_guesses(turned)
+    assert f"states that {conventions.up} is up, but the actor stands along {up}" in message
+    back = reinterpreted(turned, conventions.up, None)
+    assert np.abs(trunk_of(back)[2]) < 0.1 or degrees == 180
+    assert not describe_guesses(back)
+
+
+def lying(rest: str) -> Motion:
+    """Return a body that lies on the floor, with its feet at the origin along its length."""
+    turn = about("X", 90)
+    still = turn_motion(in_place(walk()), turn, turn)
+    if rest == "stands":
+        return turn_motion(in_place(walk()), turn, STILL)
+    if rest == "is a frame":
+        offsets = still.skeleton.offsets.copy()
+        offsets[NAMES.index("left_elbow")] += [0.0, 0.1, 0.2]
+        return replace(still, skeleton=replace(still.skeleton, offsets=offsets))
+    away = still.root_positions + np.array([0.0, 1.0, 0.1])
+    return replace(still, root_positions=away)
+
+
+def in_place(motion: Motion) -> Motion:
+    return replace(motion, root_positions=motion.root_positions * [0.0, 0.0, 1.0])
+
+
+@pytest.mark.parametrize("rest", ["stands", "is a frame", "lies far from the origin"])
+def test_an_actor_who_really_lies_is_left_lying(rest):
+    take = lying(rest)
+
+    (kept,) = stand_scene_upright([take])
+
+    assert kept is take
+
+
+def test_a_body_in_place_is_turned_by_its_rest_pose_and_the_floor():
+    turn = about("X", 90)
+
+    (turned,) = stand_scene_upright([turn_motion(in_place(walk()), turn, turn)])
+
+    assert trunk_of(turned)[2] > 0.9
+
+
+def test_one_take_that_stands_confirms_the_axis_for_all():
+    turn = about("X", 90)
+    takes = [turn_motion(walk(), turn, turn), walk()]
+
+    assert stand_scene_upright(takes) == takes
+
+
+def test_an_actor_who_crawls_head_first_is_left_lying():
+    """Its feet are at the origin of the file's other axis in most frames."""
+    turn = about("X", 90)
+    still = turn_motion(in_place(walk()), turn, turn)
+    ahead = np.maximum(np.linspace(-2.0, 1.0, 60), 0.0)[::-1, None] * [0.0, -3.0, 0.0]
+
+    take = replace(still, root_positions=still.root_positions + ahead)
+
+    assert stand_scene_upright([take]) == [take]
 
 
 @pytest.mark.parametrize("size", [0.4, 1.0, 3.0])
