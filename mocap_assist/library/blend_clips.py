@@ -227,8 +227,7 @@ def _with_conventions(
     armature: bpy.types.Object, motion: Motion, stated: FileConventions
 ) -> Motion:
     """Note the axes and unit of a file of another program, as they were interpreted."""
-    motion = replace(motion, conventions=stated)
-    return correct_stated_unit(motion, _unit_ratio(armature, motion))
+    return correct_stated_unit(motion, stated, _unit_ratio(armature, motion))
 
 
 def _unit_ratio(armature: bpy.types.Object, motion: Motion) -> float:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...motion import Motion, find_humanoid_map
+from ...motion import FileConventions, Motion, find_humanoid_map
 from .axes import ADULT_REACH_M, MIN_BODY_JOINTS, longest_bone_path, rotation_to_z_up
 from .body_axes import describe_guessed_axis, judge_up_axis
 from .body_unit import describe_guessed_unit
@@ -56,7 +56,7 @@ def _has_body(motion: Motion) -> bool:
     return find_humanoid_map(motion.skeleton).has("hips", "head", "leftFoot", "rightFoot")
 
 
-def correct_stated_unit(motion: Motion, factor: float) -> Motion:
+def correct_stated_unit(motion: Motion, stated: FileConventions, factor: float) -> Motion:
     """Return a take of plausible size, with its unit noted, whatever unit its file states.
 
     Programs that exchange scenes err by powers of ten and by inches; Acclaim units, which
@@ -64,15 +64,18 @@ def correct_stated_unit(motion: Motion, factor: float) -> Motion:
 
     Parameters
     ----------
-    motion : its conventions note the unit that the file states
+    motion : Motion
+    stated : what the file states
     factor : by which the reader multiplied the lengths of the file, in meters, already
     """
-    skeleton, conventions = motion.skeleton, conventions_of(motion)
+    skeleton, conventions = motion.skeleton, stated
     reach = longest_bone_path(skeleton.parents, skeleton.offsets) / factor
     guessed = _plausible_factor(reach) if skeleton.n_joints >= MIN_BODY_JOINTS else factor
     if guessed != 1.0:
         unit = float(f"{guessed * conventions.unit:.6g}")  # as unit_name has it
         conventions = replace(conventions, unit=unit, is_unit_guessed=True)
+    if guessed == factor:
+        return replace(motion, conventions=conventions)
     return replace(
         motion,
         skeleton=replace(skeleton, offsets=guessed / factor * skeleton.offsets),

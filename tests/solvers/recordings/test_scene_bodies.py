@@ -59,7 +59,7 @@ def enlarged(factor: float, motion: Motion) -> Motion:
     ],
 )
 def test_a_wrong_unit_of_a_file_is_corrected_and_reported(factor, name):
-    corrected = correct_stated_unit(enlarged(factor, walk()), 1.0)
+    corrected = correct_stated_unit(enlarged(factor, walk()), Y_UP, 1.0)
 
     assert stature(corrected) == pytest.approx(stature(walk()))
     assert corrected.root_positions == pytest.approx(walk().root_positions)
@@ -70,7 +70,7 @@ def test_a_wrong_unit_of_a_file_is_corrected_and_reported(factor, name):
 def test_the_factor_of_the_reader_is_undone():
     """A scene's reader may take ten times a body for Acclaim units."""
     acclaim = 0.0254 / 0.45
-    corrected = correct_stated_unit(enlarged(10.0 * acclaim, walk()), acclaim)
+    corrected = correct_stated_unit(enlarged(10.0 * acclaim, walk()), Y_UP, acclaim)
 
     assert stature(corrected) == pytest.approx(stature(walk()))
 
@@ -170,7 +170,7 @@ def test_an_actor_who_crawls_head_first_is_left_lying():
 
 @pytest.mark.parametrize("size", [0.4, 1.0, 3.0])
 def test_children_and_giants_keep_the_unit_of_their_file(size):
-    corrected = correct_stated_unit(enlarged(size, walk()), 1.0)
+    corrected = correct_stated_unit(enlarged(size, walk()), Y_UP, 1.0)
 
     assert stature(corrected) == pytest.approx(size * stature(walk()))
     assert not describe_guesses(corrected)
