@@ -20,6 +20,8 @@ class SkeletonAction:
     motion: Motion
     armature: str = ""
     """Name of the armature in the file."""
+    remarks: tuple[str, ...] = ()
+    """A message for each kind of motion that is left out."""
 
 
 def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[SkeletonAction, ...]]:
@@ -35,7 +37,10 @@ def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[SkeletonAction,
     longest = max(clip.motion.n_frames for group in groups for clip in group)
     listed = tuple(_body(name, group, longest) for name, group in _named(groups))
     takes = [
-        tuple(SkeletonAction(clip.item, clip.motion, clip.armature) for clip in group)
+        tuple(
+            SkeletonAction(clip.item, clip.motion, clip.armature, clip.remarks)
+            for clip in group
+        )
         for group in groups
     ]
     return Bodies(path, listed, lambda index, progress: takes[index])

@@ -39,8 +39,9 @@ from ...solvers.recordings.conventions import (
     with_conventions,
 )
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
-from ..jobs.in_blender import BackgroundBlender, SkinnedMeshes, read_blends
+from ..jobs.in_blender import BackgroundBlender, BlendRead, SkinnedMeshes
 from .solve_bodies import SkeletonAction, bodies_of_scene, choice_in_scene
+from .solve_scenes import read_scenes
 
 TrackedRecording = Motion | Tracks | JointRecording
 """Joints or markers over time."""
@@ -104,6 +105,8 @@ def read_files(
 ) -> list[list[Read] | MocapAssistError]:
     """Return the bodies of each file, or the error that prevents its import."""
     found: list[list[Read] | MocapAssistError] = []
+    scenes = [path for path in paths if is_scene_file(path)]
+    opened = dict(zip(scenes, _read_scenes(scenes, conversion, progress), strict=True))
     for path in paths:
 
         def file_progress(fraction: float, message: str = "", path: Path = path) -> None:
@@ -111,7 +114,7 @@ def read_files(
 
         file_progress(0.0)
         try:
-            takes = read_takes(path, conversion, file_progress)
+            takes = read_takes(path, conversion, file_progress, opened.get(path))
             found.append([_convert(path, take, conversion) for take in takes])
         except SolveCancelled:
             raise
@@ -137,20 +140,22 @@ def convert_takes(
 
 
 def read_takes(
-    path: Path, conversion: Conversion, progress: Progress = unwatched
+    path: Path,
+    conversion: Conversion,
+    progress: Progress = unwatched,
+    found: BlendRead | MocapAssistError | None = None,
 ) -> list[ReadRecording]:
     """Return the chosen bodies of a file; of FBX, glTF and USD each with all its takes.
 
-    Every failure becomes a MocapAssistError, so that other files are still read.
+    Every failure becomes a MocapAssistError, so that other files are still read. `found` is
+    the content of an FBX, glTF or USD file, if it was read already.
     """
     if not is_scene_file(path):
         return _read_bodies(path, conversion, progress)
-    (found,) = _attempt_read(
-        path,
-        lambda: read_blends(
-            conversion.blender, [str(path)], meshes=conversion.meshes, progress=progress
-        ),
-    )
+    if found is None:
+        (found,) = _read_scenes([path], conversion, progress)
+    if isinstance(found, MocapAssistError):
+        raise found
     bodies = bodies_of_scene(str(path), found)
     offered = tuple(bodies.listed[each] for each in bodies.offered)
     chosen = choice_in_scene(conversion.body, bodies)
@@ -168,20 +173,18 @@ def read_takes(
             *describe_guesses(first.motion),
             *_questions_of_axis([first, *others], conversion),
             *questions_of(first.motion, conversion.floor),
+            *dict.fromkeys(text for take in (first, *others) for text in take.remarks),
         )
-        contents.append(
-            ReadRecording(
-                first.motion,
-                warnings,
-                take,
-                name,
-                tuple(others),
-                offered,
-                found.meshes,
-                first.armature,
-            )
-        )
+        more = tuple(others), offered, found.meshes, first.armature
+        contents.append(ReadRecording(first.motion, warnings, take, name, *more))
     return contents
+
+
+def _read_scenes(
+    paths: Sequence[Path], conversion: Conversion, progress: Progress
+) -> list[BlendRead | MocapAssistError]:
+    blender, meshes = conversion.blender, conversion.meshes
+    return read_scenes(paths, blender, meshes=meshes, progress=progress)
 
 
 def _questions_of_axis(takes: Sequence[SkeletonAction], conversion: Conversion) -> list[str]:

@@ -60,6 +60,8 @@ class BlendClip:
     tags: tuple[str, ...] = ()
     armature: str = ""
     """Name of the armature."""
+    remarks: tuple[str, ...] = ()
+    """A message for each kind of motion that is left out."""
 
 
 class SkinnedMeshes(NamedTuple):

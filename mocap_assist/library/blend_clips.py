@@ -28,6 +28,7 @@ from ..scene import history
 from ..scene.rig import END
 from .carriers import with_carriers
 from .catalogs import NONE, catalog_file, read_catalogs
+from .left_out import describe_left_out
 
 ROUNDING = 1e-3
 """Relative error of lengths that were stored in 32 bits."""
@@ -99,28 +100,38 @@ def sources_of(action: bpy.types.Action) -> dict[str, tuple[bpy.types.Object, So
 
 
 def read_source(
-    scene: bpy.types.Scene,
-    armature: bpy.types.Object,
-    source: Source,
-    root: str = "",
-    *,
-    is_imported: bool = False,
+    scene: bpy.types.Scene, armature: bpy.types.Object, source: Source, root: str = ""
 ) -> Motion:
     """Return how the body moves; that of a control rig as its constraints show it.
 
-    `root` is the bone that the body begins with, if it is known. A body of another program
-    moves along with the objects above its armature.
+    `root` is the bone that the body begins with, if it is known.
     """
     take = read_take(armature, scene, source=source, root=root)
     bones = armature.data.bones
     if is_rigify(bones) and armature.name in scene.objects:
         body = body_bones(find_roles(armature), bones)
         take = with_body_shown(scene, armature, take, body, source)
-    elif is_imported:
-        motion = take.parts[0].motion
-        unit = _unit_ratio(armature, motion)
-        return with_carriers(scene, armature, source, take.frames, motion, unit)
     return take.parts[0].motion
+
+
+def _read_clip(
+    armature: bpy.types.Object, source: Source, stated: FileConventions | None, root: str = ""
+) -> tuple[Motion, tuple[str, ...]]:
+    """Return how a body moves, and what is left out of it.
+
+    If another program made the file, the body moves along with the objects above its armature.
+    """
+    scene = bpy.context.scene
+    if stated is None:
+        return read_source(scene, armature, source, root), ()
+    if is_rigify(armature.data.bones):
+        motion = read_source(scene, armature, source, root)
+        return _with_conventions(armature, motion, stated), ()
+    take = read_take(armature, scene, source=source, root=root)
+    motion = take.parts[0].motion
+    unit = _unit_ratio(armature, motion)
+    motion = with_carriers(scene, armature, source, take.frames, motion, unit)
+    return _with_conventions(armature, motion, stated), describe_left_out(source, take)
 
 
 def _read_file(
@@ -180,8 +191,8 @@ def _with_one_root(clips: list[BlendClip], stated: FileConventions) -> list[Blen
         root = smallest[clip.armature].skeleton.names[0]
         if clip.motion.skeleton.names[0] != root:
             armature, source = sources[clip.item]
-            motion = read_source(bpy.context.scene, armature, source, root, is_imported=True)
-            clip = replace(clip, motion=_with_conventions(armature, motion, stated))
+            motion, _ = _read_clip(armature, source, stated, root)
+            clip = replace(clip, motion=motion)
         same.append(clip)
     return same
 
@@ -208,18 +219,16 @@ def _read_action(
 ) -> BlendRead:
     """Read what an action does with armatures; `stated` is what another program's file says."""
     clips, refused = [], []
-    tags, scene, is_imported = _tags(action, path), bpy.context.scene, stated is not None
+    tags = _tags(action, path)
     for item, (armature, source) in sources_of(action).items():
         if items and item not in items:
             continue
-        motion = attempt(
-            f"{path}, {item}", read_source, scene, armature, source, is_imported=is_imported
-        )
-        if isinstance(motion, Failure):
-            refused.append(motion.sentence)
-        else:
-            motion = motion if stated is None else _with_conventions(armature, motion, stated)
-            clips.append(BlendClip(item, motion, tags, armature.name))
+        read = attempt(f"{path}, {item}", _read_clip, armature, source, stated)
+        if isinstance(read, Failure):
+            refused.append(read.sentence)
+            continue
+        motion, remarks = read
+        clips.append(BlendClip(item, motion, tags, armature.name, remarks))
     return BlendRead(tuple(clips), tuple(refused))
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ...motion import AxisName, Motion, find_humanoid_map
 from .axes import rotation_to_z_up
+from .body_unit import MIN_MAP_SCORE
 from .file_axes import conventions_of, rotated_conventions, turn_motion
 from .standing_joints import (
     AXES,
@@ -87,8 +88,11 @@ def _turned(take: Motion, turn: Array) -> Motion:
 
 
 def _verdict(take: Motion) -> _Verdict | None:
-    """Return what a take shows; None where no body is recognized."""
-    roles = find_humanoid_map(take.skeleton).indices(take.skeleton)
+    """Return what a take shows; None where no person is recognized."""
+    humanoid = find_humanoid_map(take.skeleton)
+    if humanoid.score < MIN_MAP_SCORE:  # the trunk of an animal lies
+        return None
+    roles = humanoid.indices(take.skeleton)
     body, positions = StandingJoints.from_roles(roles), sampled_positions(take)
     if (
         body is None

@@ -172,3 +172,19 @@ def test_a_file_without_a_skeleton_is_refused(blank, tmp_path, suffix):
     else:
         assert "has no skeleton, so there is no body to import" in str(error.value)
     assert not [each for each in blank.data.objects if each.type == "ARMATURE"]
+
+
+def test_what_bones_do_beyond_rotations_is_reported(walker, blank, tmp_path, brought, capfd):
+    """A recording has rotations, and bones of constant length and size."""
+    for frame, along, size in ((1, 0.0, 1.0), (60, 10.0, 1.5)):
+        walker.pose.bones["LeftUpLeg"].location = 0.0, along, 0.0
+        walker.pose.bones["LeftUpLeg"].keyframe_insert("location", frame=frame)
+        walker.pose.bones["Head"].scale = (size,) * 3
+        walker.pose.bones["Head"].keyframe_insert("scale", frame=frame)
+    export(blank, tmp_path / "take.glb")
+
+    brought(tmp_path / "take.glb")
+
+    said = capfd.readouterr().out
+    assert "distance to their parents, which is left out: LeftUpLeg, by up to 10 cm." in said
+    assert "Bones change their size, which is left out: Head." in said

@@ -110,6 +110,27 @@ def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, f
         assert "in fail" in refusal.__notes__[0]
 
 
+def test_one_blender_reads_all_scene_files_but_one_that_kills_it(load, tmp_path, monkeypatch):
+    scenes = load("mocap_assist.importing.solve_scenes")
+    starts = []
+
+    def read(blender, paths, **_):
+        starts.append(len(paths))
+        if any("deadly" in path for path in paths):
+            raise load("mocap_assist.jobs.job").ProcessDied("signal SIGSEGV", "")
+        return [Path(path).stem for path in paths]
+
+    monkeypatch.setattr(scenes, "read_blends", read)
+    paths = [tmp_path / f"{name}.fbx" for name in ("a", "b", "c", "deadly")]
+
+    assert scenes.read_scenes(paths[:3], None) == ["a", "b", "c"]
+    *others, refusal = scenes.read_scenes(paths, None)
+
+    assert others == ["a", "b", "c"]
+    assert "SIGSEGV" in str(refusal)
+    assert starts == [3, 4, 2, 2, 1, 1]
+
+
 def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank, monkeypatch):
     transaction = load("mocap_assist.importing.import_transaction")
     real = transaction.make_objects

@@ -1,0 +1,73 @@
+"""Say what bones of other programs do that a recording of rotations cannot hold."""
+
+from collections.abc import Sequence
+
+import bpy
+import numpy as np
+
+from ...solvers.arrays import Array
+from ..actions.bone_channels import animated_curves, bone_path
+from ..actions.take import ArmatureTake
+from ..blender.compat import Source
+
+MIN_SHIFT_M = 0.02
+"""Change of a bone's distance to its parent, meters, from which it is reported. Chosen by hand:
+half of the width of a wrist."""
+MIN_GROWTH = 0.02
+"""Difference of a bone's scale from 1, a ratio, from which it is reported. Chosen by hand: 1 cm
+of a thigh."""
+N_SAMPLED_KEYS = 5
+"""Number of keys of a scale, evenly spaced, that are looked at. It bounds the run time."""
+MAX_LISTED = 3
+
+
+def describe_left_out(source: Source, take: ArmatureTake) -> tuple[str, ...]:
+    """Return a message for each kind of change of the body's bones that is left out.
+
+    Parameters
+    ----------
+    source : Source
+        Action and slot of the take.
+    take : ArmatureTake
+    """
+    body = take.parts[0].motion.skeleton.names
+    found = []
+    shifts = {} if take.offsets is None else _shifts(take.offsets.names, take.offsets.positions)
+    if shifting := [name for name in body if shifts.get(name, 0.0) >= MIN_SHIFT_M]:
+        largest = 100.0 * max(shifts[name] for name in shifting)
+        found.append(
+            "Bones change their distance to their parents, which is left out:"
+            f" {_listed(shifting)}, by up to {largest:.0f} cm"
+        )
+    curves = animated_curves(*source)
+    growing = [
+        name
+        for name in body
+        if any(
+            (channel := curves.get((bone_path(name, "scale"), axis))) is not None
+            and _grows(channel.curve)
+            for axis in range(3)
+        )
+    ]
+    if growing:
+        found.append(f"Bones change their size, which is left out: {_listed(growing)}")
+    return tuple(found)
+
+
+def _shifts(names: Sequence[str], positions: Array) -> dict[str, float]:
+    """Return how far each bone moves within its parent, meters."""
+    ranges = np.nanmax(positions, axis=0) - np.nanmin(positions, axis=0)
+    return dict(zip(names, np.linalg.norm(ranges, axis=-1).tolist(), strict=True))
+
+
+def _grows(curve: bpy.types.FCurve) -> bool:
+    points = curve.keyframe_points
+    step = max(1, len(points) // N_SAMPLED_KEYS)
+    return any(
+        abs(points[index].co.y - 1.0) >= MIN_GROWTH for index in range(0, len(points), step)
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = len(names) - MAX_LISTED
+    return ", ".join(names[:MAX_LISTED]) + (f" and {more} more" if more > 0 else "")
