@@ -1,6 +1,7 @@
 """A take: an armature's action as motions for solvers, and back."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -26,7 +27,7 @@ class BoneChannels:
     rotation_keyed: bool
     location_keyed: bool
 
-    @property
+    @cached_property
     def travels(self) -> bool:
         """Whether its location is keyed and does change."""
         known = self.locations[np.isfinite(self.locations).all(axis=1)]

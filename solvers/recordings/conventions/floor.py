@@ -114,8 +114,9 @@ def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
     is_upright = head - hips > MIN_UPRIGHT_FRACTION * tall
     is_origin = abs(hips) < MAX_HIPS_FRACTION * tall
     is_sunk = np.median(observed.min(axis=1)) < -MIN_BELOW_FRACTION * tall
-    is_below = floor_level(recording) < -MIN_BELOW_FRACTION * tall
-    return bool(is_upright and is_below and (is_origin or is_sunk))
+    if not (is_upright and (is_origin or is_sunk)):
+        return False
+    return floor_level(recording) < -MIN_BELOW_FRACTION * tall
 
 
 def question_of_floor(recording: Motion | Tracks | JointRecording) -> str:
