@@ -42,7 +42,7 @@ BLENDER = {
     "addon_utils",
     "rna_keymap_ui",
 }
-BUNDLED = BLENDER | {"bl_operators", "bl_ui", "numpy"}
+BUNDLED = BLENDER | {"bl_operators", "bl_ui", "numpy", "pxr"}
 IMPORT_NAMES = {"pillow": "PIL"}
 OPTIONAL = {"cluster.py": {"dask", "distributed"}}
 """What a module imports where it is installed, and reports as missing elsewhere."""

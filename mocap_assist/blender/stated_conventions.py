@@ -38,11 +38,16 @@ def read_stage(path: str) -> UsdStage:
     Raises
     ------
     InvalidFileError
-        The file is damaged.
+        The file is damaged, or this Blender was built without the library's Python part.
     """
     bpy.utils.expose_bundled_modules()
-    from pxr import Usd, UsdGeom
-
+    try:
+        from pxr import Usd, UsdGeom
+    except ImportError:
+        raise InvalidFileError(
+            f"{path} is a USD file, whose frame rate this Blender cannot read. Convert it to FBX"
+            " or glTF, or use Blender from blender.org."
+        ) from None
     try:
         stage = Usd.Stage.Open(path, Usd.Stage.LoadNone)
     except RuntimeError:
