@@ -45,8 +45,8 @@ def read_stage(path: str) -> UsdStage:
         from pxr import Usd, UsdGeom
     except ImportError:
         raise InvalidFileError(
-            f"{path} is a USD file, whose frame rate this Blender cannot read. Convert it to FBX"
-            " or glTF, or use Blender from blender.org."
+            f"{path} is a USD file, whose frame rate this Blender cannot read. Convert it to"
+            " FBX or glTF, or use Blender from blender.org."
         ) from None
     try:
         stage = Usd.Stage.Open(path, Usd.Stage.LoadNone)
