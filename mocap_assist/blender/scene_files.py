@@ -96,7 +96,7 @@ def _damaged(path: str) -> InvalidFileError:
 def _open_usd(path: str, meshes: bool) -> None:
     """Import USD; its times are frames, at a rate that the importer does not take over."""
     _run(path, bpy.ops.wm.usd_import, **USD_OPTIONS, import_meshes=meshes)
-    if 0.0 < (rate := read_stage(path).frame_rate) < MAX_RATE_HZ:
+    if 0.0 < (rate := read_stage(path).frame_rate) < MAX_FRAME_RATE_HZ:
         render = bpy.context.scene.render
         render.fps = max(1, round(rate))
         render.fps_base = render.fps / rate

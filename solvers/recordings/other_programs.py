@@ -31,8 +31,8 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
     (
         "MikuMikuDance motion",
         _starts(b"Vocaloid Motion Data"),
-        "{path} is a motion of MikuMikuDance. Import it with MMD Tools, select its armature, and use"
-        " Clean there.",
+        "{path} is a motion of MikuMikuDance. Import it with MMD Tools, select its armature, and"
+        " use Clean there.",
     ),
     (
         "Blender file",
@@ -50,7 +50,8 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
     (
         "Unity asset",
         lambda head: head.startswith(b"%YAML") and b"tag:unity3d.com" in head[:200],
-        "{path} is an asset of Unity. Export the animated character as FBX, with the FBX Exporter.",
+        "{path} is an asset of Unity. Export the animated character as FBX, with the FBX"
+        " Exporter.",
     ),
     (
         "HTR",
@@ -65,8 +66,8 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
     (
         "HDF5",
         _starts(HDF5),
-        "{path} is an HDF5 file. Save its 3D points as a NumPy array of the shape (frames, joints, 3),"
-        " with numpy.save.",
+        "{path} is an HDF5 file. Save its 3D points as a NumPy array of the shape (frames,"
+        " joints, 3), with numpy.save.",
     ),
     (
         "tensors",
@@ -77,14 +78,14 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
     (
         "workbook",
         _member(b"[Content_Types].xml", b"xl/"),
-        "{path} is a workbook. Save its table of positions as CSV, or export BVH or MVNX from the"
-        " program that wrote it.",
+        "{path} is a workbook. Save its table of positions as CSV, or export BVH or MVNX from"
+        " the program that wrote it.",
     ),
     (
         "USD archive",
         _member(b".usdc", b".usda"),
-        "{path} is read by Blender's own importers. Import it in Blender, or run blender --background"
-        " --command mocap_assist import.",
+        "{path} is read by Blender's own importers. Import it in Blender, or run blender"
+        " --background --command mocap_assist import.",
     ),
 )
 """Name, detection from the first bytes, and the sentence, with `{path}` for the file."""
