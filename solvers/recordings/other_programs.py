@@ -31,8 +31,8 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
     (
         "MikuMikuDance motion",
         _starts(b"Vocaloid Motion Data"),
-        "{path} is a motion of MikuMikuDance. Import it with MMD Tools, select its armature, and"
-        " use Clean there.",
+        "{path} is a motion of MikuMikuDance. Import it with MMD Tools, select its armature,"
+        " and use Clean there.",
     ),
     (
         "Blender file",
