@@ -7,6 +7,7 @@ from ..errors import InvalidMotionError
 from ..motion import JointRecording, Sensor
 from ..motion.humanoid import estimate_bone_lengths, posture_positions
 from ..progress import Progress, unwatched, within
+from .complete_take import complete_take
 from .joint_rotations import JointOffsets, measure_joint_offsets
 from .pose_completion import FittedLibrary
 from .pose_library import PostureLibrary
@@ -14,8 +15,8 @@ from .reconstruct import (
     DEFAULT_SETTINGS,
     ReconstructMethod,
     ReconstructSettings,
-    complete_take,
     correction_settings,
+    posture_settings,
     shipped_residual_prior,
 )
 from .reliability import (
@@ -116,7 +117,7 @@ def measure_actor(
     lengths = expected_lengths(recording, signs)
     reliability = measure_reliability(recording, settings=signs, reference=lengths).combined
     completed = complete_take(
-        recording, postures, reliability, settings, within(progress, 0.1, 0.8)
+        recording, postures, reliability, posture_settings(settings), within(progress, 0.1, 0.8)
     )
     rebuilt, blended = completed.rebuilt, completed.recording
     weights = posture_reliability(blended, completed.reliability)

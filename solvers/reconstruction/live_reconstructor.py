@@ -16,6 +16,7 @@ from ..motion.humanoid import (
 )
 from ..progress import unwatched
 from ..signals import CausalSmoother
+from .complete_take import SMOOTHING_S, CompletedTake, blend_rebuilt, replacement_weights
 from .joint_rotations import LimbTwists, find_anchors, positions_from_postures
 from .live_actor import LiveActor, reliability_settings
 from .pose_completion import (
@@ -24,14 +25,7 @@ from .pose_completion import (
     ResidualFilter,
     complete_from_fitted,
 )
-from .reconstruct import (
-    SMOOTHING_S,
-    CompletedTake,
-    blend_rebuilt,
-    correction_settings,
-    posture_settings,
-    replacement_weights,
-)
+from .reconstruct import correction_settings, posture_settings
 from .reliability import Reliability, measure_reliability, memory_frames, posture_reliability
 from .residual_correction import (
     SmoothedPostures,

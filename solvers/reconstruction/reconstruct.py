@@ -3,21 +3,16 @@
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Array, Flags
-from ..motion import JointRecording, Sensor, Tracks
+from ..motion import JointRecording, Sensor
 from ..progress import Progress, unwatched, within
 from ..settings import Choice, Settings, setting
-from ..signals import fill_gaps, smooth_gaussian
+from .complete_take import complete_take
 from .joint_rotations import Reconstruction
 from .pose_completion import (
-    CompletedJoints,
     PostureSettings,
-    blend_gaps,
-    complete_joints,
     reconstruct_postures,
 )
 from .pose_library import PostureLibrary
@@ -40,23 +35,6 @@ from .residual_correction import (
 )
 
 SHIPPED_PRIOR = Path(__file__).parent / "residual_correction" / "residuals.npz"
-
-OBSERVED_RELIABILITY, REPLACED_RELIABILITY = 0.5, 0.2
-"""Joints more reliable than the first keep their observed positions. Joints less reliable than
-the second take the positions of the library poses; in between, both are blended. Chosen by
-hand: first, x0.5 costs 8.2 %, x2 gains 2.9 %; second, x0.5 costs 2.2 %, x2 gains 3.2 %."""
-HALF_WEIGHT_M = 0.15
-"""Distance (m) from the smoothed path at which the weight of the library pose is halved.
-Sensors that err by more have a reliability near 0. Chosen by hand: x0.5 costs 5.0 %, x2 gains
-2.4 %."""
-WRONG_RELIABILITY, UNCERTAIN_RELIABILITY = 0.02, 0.07
-"""Reliabilities between which `HALF_WEIGHT_M` fades in: below the first it has no effect, above
-the second it applies in full. On intact takes of UI-PRMD, joints of reliability 0.1 to 0.5 are
-10 cm off, joints below 0.05 are 40 cm off. Chosen by hand: x10 of the first costs 4.4 %, x0.1
-of the second 4.2 %."""
-SMOOTHING_S = 0.1
-"""Standard deviation (s) of the Gaussian that smooths observed positions. Chosen by hand: x0.5
-costs 2.9 %, x2 gains 2.3 %."""
 
 
 class ReconstructMethod(Choice):
@@ -198,7 +176,11 @@ def reconstruct(
             progress=within(progress, 0.1, 1.0),
         )
     completed = complete_take(
-        recording, postures, reliability.combined, settings, within(progress, 0.1, 0.7)
+        recording,
+        postures,
+        reliability.combined,
+        posture_settings(settings),
+        within(progress, 0.1, 0.7),
     )
     corrected = correct_postures(
         completed.recording,
@@ -214,89 +196,6 @@ def reconstruct(
         f"{completed.rebuilt.method}; {corrected.method}", completed.rebuilt.twists,
         corrected.shift,
     )  # fmt: skip
-
-
-class CompletedTake(NamedTuple):
-    """A recording whose unreliable and missing joints are from library poses."""
-
-    recording: JointRecording
-    rebuilt: CompletedJoints
-    reliability: Array
-    """Of the completed joints, shape (n_frames, n_joints)."""
-    confidence: Array
-    """Upper limit of the confidence of each joint, shape (n_frames, n_joints)."""
-
-
-def complete_take(
-    recording: JointRecording,
-    postures: PostureLibrary | None,
-    reliability: Array,
-    settings: ReconstructSettings,
-    progress: Progress,
-) -> CompletedTake:
-    """Replace unreliable and missing joints by those of library poses."""
-    rebuilt = complete_joints(
-        recording, postures, reliability, posture_settings(settings), progress
-    )
-    tracks, ahead = recording.tracks, not settings.causal
-    observed = tracks.visible.any(axis=0)
-    smooth = fill_gaps(tracks.positions[:, observed], ahead=ahead)
-    smooth = smooth_gaussian(smooth, SMOOTHING_S * tracks.frame_rate, ahead=ahead)
-    distance = np.zeros(reliability.shape)
-    distance[:, observed] = np.linalg.norm(
-        rebuilt.tracks.positions[:, observed] - smooth, axis=-1
-    )
-    replacement = replacement_weights(tracks.visible, reliability, distance)
-    if not settings.causal:
-        used = tracks.visible & (replacement <= 0.0)
-        bridged = blend_gaps(
-            tracks.positions, used, rebuilt.tracks.positions, rebuilt.deviation,
-            recording.frame_rate,
-        )  # fmt: skip
-        rebuilt = rebuilt._replace(tracks=rebuilt.tracks.with_positions(bridged))
-    return blend_rebuilt(recording, rebuilt, reliability, replacement)
-
-
-def blend_rebuilt(
-    recording: JointRecording, rebuilt: CompletedJoints, reliability: Array, replacement: Array
-) -> CompletedTake:
-    """Blend observed joints and library poses by the weights of `replacement_weights`."""
-    return CompletedTake(
-        replace(recording, tracks=_blend_tracks(recording.tracks, rebuilt.tracks, replacement)),
-        rebuilt,
-        np.maximum(reliability, replacement * rebuilt.confidence),
-        np.maximum(1.0 - replacement, rebuilt.confidence),
-    )
-
-
-def replacement_weights(visible: Flags, reliability: Array, distance: Array) -> Array:
-    """Return the weight of library poses, shape (n_frames, n_joints), 0 to 1.
-
-    An observed joint of low reliability still indicates roughly where the joint is. A library
-    pose far from that position gets a low weight; `distance`, in meters, is that from the
-    smoothed path of the joint.
-    """
-    replacement = np.clip(
-        (OBSERVED_RELIABILITY - reliability) / (OBSERVED_RELIABILITY - REPLACED_RELIABILITY),
-        0.0,
-        1.0,
-    )
-    closeness = 1.0 / (1.0 + (distance / HALF_WEIGHT_M) ** 4)
-    certainty = np.clip(
-        (reliability - WRONG_RELIABILITY) / (UNCERTAIN_RELIABILITY - WRONG_RELIABILITY),
-        0.0,
-        1.0,
-    )
-    return np.where(
-        visible, replacement * (1.0 - certainty + certainty * closeness), replacement
-    )
-
-
-def _blend_tracks(tracks: Tracks, rebuilt: Tracks, replacement: Array) -> Tracks:
-    """Blend observed and library positions; missing joints are taken from the library."""
-    weight = np.where(tracks.visible, replacement, 1.0)[..., None]
-    completed = np.where(tracks.visible[..., None], tracks.positions, 0.0)
-    return tracks.with_positions(weight * rebuilt.positions + (1.0 - weight) * completed)
 
 
 def posture_settings(settings: ReconstructSettings) -> PostureSettings:

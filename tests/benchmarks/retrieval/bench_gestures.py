@@ -20,7 +20,7 @@ from solvers.gestures.events import Gesture, GestureEvent
 from solvers.gestures.settings import GestureSettings
 from solvers.recordings.live.frames import decode_frame, encode_frame, frames_from_recording
 from solvers.samples import PerformanceSettings, perform_gestures
-from solvers.workflows.live_session import LiveSession
+from solvers.workflows.live.live_session import LiveSession
 
 from ..shared.report import DOCS, Report
 from ..shared.tables import table

@@ -11,7 +11,7 @@ from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import posture_positions
 from solvers.recordings import read_joints
 from solvers.recordings.live.frames import frames_from_recording
-from solvers.workflows.live_session import pose_from_frame
+from solvers.workflows.live.live_session import pose_from_frame
 
 CLAP, WAVE = "a10", "a02"
 DEFAULT_SETTINGS = GestureSettings()

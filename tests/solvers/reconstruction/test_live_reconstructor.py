@@ -92,8 +92,8 @@ def test_frame_without_an_actor_keeps_a_pose(walk):
 
 def test_joints_that_are_no_body_are_refused():
     names = ("a", "b", "c")
-    nobody = motion.JointRecording(
+    points = motion.JointRecording(
         Tracks(names, np.zeros((30, 3, 3)), 30.0), None, Sensor.OTHER
     )
     with pytest.raises(InvalidMotionError):
-        measure_actor(nobody)
+        measure_actor(points)

@@ -13,7 +13,7 @@ from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.recordings.live.frames import LiveFrame, encode_frame, frames_from_recording
 from solvers.samples import PerformanceSettings, perform_gestures
-from solvers.workflows.live_session import NO_END, TOO_SHORT, LiveSession, pose_from_frame
+from solvers.workflows.live.live_session import NO_END, TOO_SHORT, LiveSession, pose_from_frame
 
 
 def lines_of(made, body=0, since=0.0, **settings):

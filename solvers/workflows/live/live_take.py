@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import InvalidFileError
-from ..motion import JointRecording, Motion, Tracks, joint_parents
-from ..reconstruction import (
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ...motion import JointRecording, Motion, Tracks, joint_parents
+from ...reconstruction import (
     LivePose,
     LiveReconstructor,
     ObservedFrame,
@@ -17,9 +17,9 @@ from ..reconstruction import (
     measure_actor,
     reconstruct,
 )
-from ..reconstruction.joint_rotations import motion_from_positions
-from ..recordings.live import LiveFrame, recording_from_frames
-from ..settings import Settings, setting
+from ...reconstruction.joint_rotations import motion_from_positions
+from ...recordings.live import LiveFrame, recording_from_frames
+from ...settings import Settings, setting
 
 MAX_WAITING = 2
 """Number of frames that may wait to be reconstructed; older ones are skipped. It bounds the

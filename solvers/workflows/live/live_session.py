@@ -6,12 +6,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import InvalidFileError
-from ..gestures import Gesture, GestureEvent, GestureRecognizer, GestureSettings, Mode
-from ..motion import JointRecording
-from ..motion.humanoid import POSTURE_JOINTS, posture_joint_indices
-from ..recordings.live import LiveFrame, StreamCounts, StreamReader, recording_from_frames
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ...gestures import Gesture, GestureEvent, GestureRecognizer, GestureSettings, Mode
+from ...motion import JointRecording
+from ...motion.humanoid import POSTURE_JOINTS, posture_joint_indices
+from ...recordings.live import LiveFrame, StreamCounts, StreamReader, recording_from_frames
 
 GESTURE_SETTINGS = GestureSettings()
 MIN_PERFORMANCE_S = 0.5
