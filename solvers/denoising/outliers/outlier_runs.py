@@ -16,13 +16,25 @@ from ...arrays import Array
 from ...signals import fill_channel_gaps, find_runs
 from ..motion_model import MotionMixture, estimate_channel_noise
 from ..window_priors import Windows
-from .predictive_density import PredictiveDensity, RunDensity
+from .predictive_density import PredictiveDensity, RunDensity, with_rare_movement
 from .single_outliers import OUTLIER_DENSITY
 
-SPIKE_PRIOR_PSEUDOCOUNT = 1e6
-"""The number of samples, one of them a spike, in addition to the take's own: a clean take has
-hardly one in ten minutes (60 channels, 30 Hz). Chosen by hand on the development takes of the
-first press: with 1e3 a kick is taken for an error."""
+SPIKE_PRIOR_PSEUDOCOUNT = 1e4
+"""Number of samples of the prior of the rate of spikes, errors of a single frame. Chosen by
+hand on the development takes of the first press: with 1e5, and as rare a first spike, the error
+with examples rises by 4 % where a walk has 15 % of spikes."""
+PRIOR_SPIKES = 0.01
+"""Number of spikes among these samples: a clean take has hardly one in ten minutes (60
+channels, 30 Hz). Chosen by hand on the development takes of the first press: with 1e-5 a
+fifth more lone spikes of 40 degrees are kept."""
+RUN_PRIOR_PSEUDOCOUNT = 1e5
+"""Number of samples of the prior of the rate of longer errors. Chosen by hand on development
+takes of the first press at up to twice their speed: with 1e4, and as rare a first error, those
+with bursts lose 4 %."""
+PRIOR_RUNS = 1e-4
+"""Number of longer errors among these samples. Fast movement looks like one, so the first one
+of a take has to be likely beyond doubt. Chosen by hand on the same takes: with 0.1 a throw
+and a punch of clean ones are taken for errors."""
 BURST_PRIOR_PSEUDOCOUNT = 1e9
 """The number of samples, one of them the start of a burst, which only its shape makes
 suspicious. Chosen by hand on the development takes of the first press: with 1e6 nine runs of
@@ -33,10 +45,6 @@ smoothers. Chosen by hand: x0.5 gains 0.1 %, x2 costs 6.7 %."""
 MAX_BURST_S = 0.3
 """Seconds: longest error that is looked for between two steps. Chosen by hand: x0.5 costs
 0.3 %, x2 costs nothing."""
-MAX_RUNS_PER_FRAME = 0.1
-"""Number of runs that are tested in a joint, per frame. A joint with more is wrong so often
-that the frames around a run say little about it: what was suspected stays. Chosen by hand:
-x0.5 costs nothing, x2 costs 6.1 %."""
 MIN_NOISE = 2.0
 """Degrees or centimeters: smaller noise would let the mixture reject any movement that its
 recordings lack. Chosen by hand: x0.5 gains 0.5 %, x2 costs 10.8 %."""
@@ -47,6 +55,39 @@ class _Run(NamedTuple):
 
     frames: slice
     channels: NDArray[np.bool_]
+
+    @property
+    def is_spike(self) -> bool:
+        """Whether it is a single frame."""
+        return bool(self.frames.stop - self.frames.start == 1)
+
+
+class _RatePrior(NamedTuple):
+    """Gamma prior of the rate of one kind of errors: so many of them among so many samples.
+
+    Much less than one error says that most takes have none and some have many: the first error
+    that is found has to be far likelier than movement, the second one less so.
+    """
+
+    n_errors: float
+    n_samples: float
+
+    def log_rate(self, gains: Array, n_own: int) -> float:
+        """Return the logarithm of the rate, the mean of its posterior.
+
+        It starts at that of a take without errors, and rises with those found. `n_own` is the
+        number of samples of the take.
+        """
+        n_found, n_before, log_rate = 0, -1, 0.0
+        while n_found > n_before:
+            log_rate = float(np.log((n_found + self.n_errors) / (self.n_samples + n_own)))
+            n_before, n_found = n_found, np.count_nonzero(gains + log_rate > 0.0)
+        return log_rate
+
+
+SPIKE_RATE = _RatePrior(PRIOR_SPIKES, SPIKE_PRIOR_PSEUDOCOUNT)
+RUN_RATE = _RatePrior(PRIOR_RUNS, RUN_PRIOR_PSEUDOCOUNT)
+BURST_RATE = _RatePrior(1.0, BURST_PRIOR_PSEUDOCOUNT)
 
 
 class _Test(NamedTuple):
@@ -135,49 +176,40 @@ def _select(
     candidates: Callable[[slice], list[_Run]],
 ) -> NDArray[np.bool_]:
     """Return the samples of the candidates that are likelier to be errors than movement."""
-    frame_ratio = frame_rate / mixture.frame_rate
-    length, observed = round(mixture.window * frame_ratio), np.isfinite(noisy)
-    if len(noisy) < length:
-        return suspected
-    mixture = mixture.truncated(length)
-    windows = Windows(len(noisy), length, frame_ratio)
+    frame_ratio, n_frames = frame_rate / mixture.frame_rate, len(noisy)
+    length = round(mixture.window * frame_ratio)
     noise = estimate_channel_noise(complete, MIN_NOISE)
-    kept, max_runs = np.zeros_like(observed), MAX_RUNS_PER_FRAME * len(noisy)
+    if n_frames < length:  # the rest of the window is not observed
+        added = ((0, length - n_frames), (0, 0))
+        noisy = np.pad(noisy, added, constant_values=np.nan)
+        suspected = np.pad(suspected, added)
+        complete = np.pad(complete, added, mode="mean")
+    mixture = mixture.truncated(length)
+    windows, observed = Windows(len(noisy), length, frame_ratio), np.isfinite(noisy)
     tests = list[_Test]()
     for first in range(0, noisy.shape[1], 3):
         joint = slice(first, first + 3)
-        found_runs = candidates(joint)
-        if _n_events(found_runs, len(noisy)) > max_runs:
-            kept[:, joint] = suspected[:, joint]
-            continue
         is_observed = observed[:, joint]
         is_valid = is_observed & ~suspected[:, joint]
         samples = np.where(is_observed, noisy[:, joint], complete[:, joint])
-        predictive = PredictiveDensity(
-            samples - complete[:, joint].mean(axis=0), noise[joint], windows, mixture
+        centered = samples - complete[:, joint].mean(axis=0)
+        predictive, predictive_of_runs = (
+            PredictiveDensity(centered, noise[joint], windows, each)
+            for each in (mixture, with_rare_movement(mixture))
         )
-        for run in found_runs:
+        for run in candidates(joint):
             is_tested = np.zeros_like(is_observed)
             is_tested[run.frames, run.channels] = is_observed[run.frames, run.channels]
             n_tested = np.count_nonzero(is_tested) if are_suspected else None
-            density = predictive.of_run(*run, is_valid | is_tested)
+            of_kind = predictive if run.is_spike else predictive_of_runs
+            density = of_kind.of_run(*run, is_valid | is_tested)
             tests.append(_Test(run, first, density, n_tested))
-    n_samples = observed.sum() + (
-        SPIKE_PRIOR_PSEUDOCOUNT if are_suspected else BURST_PRIOR_PSEUDOCOUNT
-    )
-    return kept | _likeliest(tests, observed, n_samples)
-
-
-def _n_events(runs: Sequence[_Run], n_frames: int) -> int:
-    """Return how often a joint is suspected: runs of its channels that touch are one event."""
-    is_in_run = np.zeros(n_frames, dtype=np.bool_)
-    for run in runs:
-        is_in_run[run.frames] = True
-    return len(find_runs(is_in_run))
+    run_rate = RUN_RATE if are_suspected else BURST_RATE
+    return _likeliest(tests, observed, run_rate)[:n_frames]
 
 
 def _likeliest(
-    tests: Sequence[_Test], observed: NDArray[np.bool_], n_samples: float
+    tests: Sequence[_Test], observed: NDArray[np.bool_], run_rate: _RatePrior
 ) -> NDArray[np.bool_]:
     """Return the samples of the likeliest runs that do not overlap.
 
@@ -185,32 +217,31 @@ def _likeliest(
     ----------
     tests : sequence of _Test
     observed : shape (n_frames, n_channels)
-    n_samples : float
-        The take's own and the prior's.
+    run_rate : _RatePrior
+        Of errors of several frames.
     """
-    gains = np.array([test.max_gain for test in tests])
+    is_spike = np.array([test.run.is_spike for test in tests], dtype=np.bool_)
+    gains, found = np.array([test.max_gain for test in tests]), np.zeros_like(observed)
     # Most runs cannot be likely enough, whatever the exact gains of the others are.
-    for index in np.flatnonzero(gains + _log_rate(gains, n_samples) > 0.0):
+    for index in np.flatnonzero(_log_odds(gains, is_spike, observed, run_rate) > 0.0):
         gains[index] = tests[index].gain
-    log_rate, found = _log_rate(gains, n_samples), np.zeros_like(observed)
-    for index in np.argsort(-gains):
+    log_odds = _log_odds(gains, is_spike, observed, run_rate)
+    for index in np.argsort(-log_odds):
         frames, tested = tests[index].run
         channels = tests[index].first_channel + np.flatnonzero(tested)
-        if gains[index] + log_rate > 0.0 and not found[frames, channels].any():
+        if log_odds[index] > 0.0 and not found[frames, channels].any():
             found[frames, channels] = observed[frames, channels]
     return found
 
 
-def _log_rate(gains: Array, n_samples: float) -> float:
-    """Return the logarithm of the rate of errors.
-
-    It starts at that of a take without any, and rises with those found.
-    """
-    n_found, n_before, log_rate = 0, -1, 0.0
-    while n_found > n_before:
-        log_rate = float(np.log((n_found + 1.0) / n_samples))
-        n_before, n_found = n_found, np.count_nonzero(gains + log_rate > 0.0)
-    return log_rate
+def _log_odds(
+    gains: Array, is_spike: NDArray[np.bool_], observed: NDArray[np.bool_], run_rate: _RatePrior
+) -> Array:
+    """Return the logarithm of the odds of each test: spikes and runs have their own rates."""
+    log_odds, n_samples = gains.copy(), int(np.count_nonzero(observed))
+    for rate, of_kind in ((SPIKE_RATE, is_spike), (run_rate, ~is_spike)):
+        log_odds[of_kind] += rate.log_rate(gains[of_kind], n_samples)
+    return log_odds
 
 
 def _suspected_runs(suspected: NDArray[np.bool_]) -> list[_Run]:

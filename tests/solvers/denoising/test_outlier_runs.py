@@ -92,9 +92,40 @@ def test_suspected_kick_is_cleared_and_a_spike_is_not(rng):
     assert np.argwhere(confirmed).tolist() == [[30, 4]]
 
 
-def test_take_shorter_than_a_window_keeps_what_is_suspected():
-    samples = np.zeros((5, 3))
-    suspected = samples > -1.0
+@pytest.mark.parametrize(("pulse", "is_error"), [(KICK, False), (abs(TIME) < 0.07, True)])
+def test_take_shorter_than_a_window_is_tested_all_the_same(pulse, is_error, rng):
+    samples = out_of_stillness(pulse, rng)[11:26]
+    suspected = np.tile(abs(TIME[11:26, None]) < 0.1, 3)
+    complete = np.where(suspected, samples[:1], samples)
 
-    assert confirm_outliers(samples, suspected, samples, 30.0, MIXTURE).all()
-    assert not find_bursts(samples, 30.0, MIXTURE).any()
+    assert confirm_outliers(samples, suspected, complete, 30.0, MIXTURE).any() == is_error
+    assert not find_bursts(samples[:5], 30.0, MIXTURE).any()
+
+
+def test_kick_of_a_joint_that_is_often_wrong_is_cleared(rng):
+    samples = walk_like(30.0, rng)
+    complete, suspected = samples.copy(), np.zeros(samples.shape, dtype=bool)
+    spikes = np.arange(3, 110, 4)
+    samples[spikes, 1] += 40.0
+    suspected[spikes, 1] = True
+    expected = suspected.copy()
+    suspected[58:63, 0] = True
+    complete[58:63, 0] = np.linspace(samples[57, 0], samples[63, 0], 7)[1:-1]
+
+    confirmed = confirm_outliers(samples, suspected, complete, 30.0, MIXTURE)
+
+    assert (confirmed == expected).all()
+
+
+def test_second_error_of_a_take_need_not_be_as_likely_as_the_first(rng):
+    fast_kick = out_of_stillness(1.33 * KICK, rng)
+    samples = np.hstack([fast_kick, 0.1 * rng.normal(size=fast_kick.shape)])
+    suspected = np.tile(abs(TIME)[:, None] < 0.1, 6)
+    suspected[:, 3:] = False
+    complete = np.where(suspected, samples[:1], samples)
+    assert not confirm_outliers(samples, suspected, complete, 30.0, MIXTURE).any()
+
+    samples[5:10, 3:] += 60.0
+    suspected[5:10, 3:] = True
+
+    assert (confirm_outliers(samples, suspected, complete, 30.0, MIXTURE) == suspected).all()
