@@ -90,11 +90,13 @@ class PredictiveDensity:
         channels: tuple[int, ...],
         observed: NDArray[np.bool_],
         offset: NDArray[np.bool_] | None = None,
+        deviation: float = OFFSET_DEVIATION,
     ) -> tuple[Array, Array]:
         """Return each component's log-density of the observed samples of a window's channels.
 
         The second one is that with an unknown constant added to each channel in the frames of
         `offset`. The constants follow the coefficients, so that one factorization yields both.
+        If their deviation is infinite, it is the density of the frames outside `offset`.
         """
         inverses, log_weights = _inverse_covariances(self._mixture, channels)
         columns, variance = list(channels), self._noise[list(channels)] ** 2
@@ -115,7 +117,7 @@ class PredictiveDensity:
             for index, row in enumerate((weighted @ is_off[:, :, None])[..., 0]):
                 added[size + index, index * n : (index + 1) * n] = row
             own = np.arange(size, end)
-            added[own, own] = OFFSET_DEVIATION**-2 + (is_off * precision).sum(axis=1)
+            added[own, own] = deviation**-2 + (is_off * precision).sum(axis=1)
             added[end, own] = (is_off * precision * values).sum(axis=1)
         factored = np.empty((len(inverses), end + 1, end + 1))
         factored[:] = added
@@ -125,7 +127,9 @@ class PredictiveDensity:
         exponents -= np.log(np.einsum("kss->ks", factors)[:, :end])
         log_scale = float(observed[:, columns].sum(axis=0) @ np.log(2.0 * np.pi * variance))
         without = log_weights + exponents[:, :size].sum(axis=1) - 0.5 * (log_scale + square)
-        of_offsets = exponents[:, size:] - np.log(OFFSET_DEVIATION)
+        # An infinite deviation is a density of 1 everywhere, without the factors of a Gaussian.
+        scale = np.log(deviation) if np.isfinite(deviation) else -0.5 * np.log(2.0 * np.pi)
+        of_offsets = exponents[:, size:] - scale
         return without, without + of_offsets.sum(axis=1)
 
 
@@ -175,16 +179,24 @@ class RunDensity:
         It is the difference if the movement around the run can only go on.
         """
         both, with_offset = self._both
-        return _log_sum(with_offset) - _log_sum(both)
+        return _log_sum(with_offset) - _log_sum(both) if self.may_be_off else -np.inf
 
     @cached_property
     def _both(self) -> tuple[Array, Array]:
-        """Of the tested and the other samples, for each component; and with an offset."""
-        offset = self.tested if self.may_be_off else None
-        return self.predictive.log_marginals(self.frames, self.channels, self.valid, offset)
+        """Of the tested and the other samples, for each component; and with an offset.
+
+        A single frame that may be off by anything says nothing: its second density is that of
+        the others.
+        """
+        deviation = OFFSET_DEVIATION if self.may_be_off else np.inf
+        return self.predictive.log_marginals(
+            self.frames, self.channels, self.valid, self.tested, deviation
+        )
 
     @cached_property
     def _others(self) -> Array:
+        if not self.may_be_off:
+            return self._both[1]
         others = self.valid & ~self.tested
         return self.predictive.log_marginals(self.frames, self.channels, others)[0]
 

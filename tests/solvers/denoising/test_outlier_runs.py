@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from solvers.denoising.motion_model import load_motion_mixture
-from solvers.denoising.outliers import confirm_outliers, find_bursts
+from solvers.denoising.outliers import PredictiveDensity, confirm_outliers, find_bursts
+from solvers.denoising.outliers.predictive_density import NEW_MOVEMENT_RATE
+from solvers.denoising.window_priors import Windows
 
 MIXTURE = load_motion_mixture()
 
@@ -129,3 +131,25 @@ def test_second_error_of_a_take_need_not_be_as_likely_as_the_first(rng):
     suspected[5:10, 3:] = True
 
     assert (confirm_outliers(samples, suspected, complete, 30.0, MIXTURE) == suspected).all()
+
+
+@pytest.mark.parametrize("tested", [[True, False, False], [True, True, True]])
+def test_density_of_the_others_needs_no_factorization_of_its_own(tested, rng):
+    samples, valid = (
+        np.cumsum(5.0 * rng.normal(size=(16, 3)), axis=0),
+        rng.random((16, 3)) > 0.2,
+    )
+    valid[8] = True
+    windows = Windows(16, MIXTURE.window, 1.0)
+    predictive = PredictiveDensity(samples, np.array([2.0, 2.5, 3.0]), windows, MIXTURE)
+
+    density = predictive.of_run(slice(8, 9), np.array(tested), valid)
+    others = density.valid & ~density.tested
+    both, _ = predictive.log_marginals(density.frames, density.channels, density.valid)
+    alone, _ = predictive.log_marginals(density.frames, density.channels, others)
+
+    continued = np.logaddexp.reduce(both) - np.logaddexp.reduce(alone)
+    begun = np.log(NEW_MOVEMENT_RATE) + np.logaddexp.reduce(
+        np.log(MIXTURE.weights) + both - alone
+    )
+    assert density.as_movement == pytest.approx(np.logaddexp(continued, begun), abs=1e-9)
