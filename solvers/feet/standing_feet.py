@@ -7,14 +7,12 @@ from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import (
-    GROUND_PERCENTILE,
-    ContactSettings,
     HumanoidMap,
     detect_contacts,
     foot_points,
-    without_short_runs,
 )
 from ..motion.skeletons import still_joints
+from ..signals import find_runs
 from .legs import SIDES, LegJoints
 
 MIN_HIP_HEIGHT = 0.2
@@ -24,6 +22,12 @@ comes to rest at 0.05, that of the deepest squat at 0.28."""
 MAX_PELVIS_SIZE = 0.3
 """Distance of the hips from the hip joints, as a ratio to the length of a leg, up to which they
 are a joint of the pelvis. It guards rigs whose hips are at the floor."""
+GROUND_PERCENTILE = 5.0
+"""Percentile of the height of the lower foot that is the ground; lower ones are noise. Chosen
+by hand, as for the detection of contacts."""
+MIN_CONTACT_S = 0.1
+"""Seconds: shorter contacts before and after the body rests on its hips do not count. It guards
+bodies whose hips leave the floor for some frames."""
 
 
 def detect_standing_feet(
@@ -38,9 +42,7 @@ def detect_standing_feet(
     contacts = detect_contacts(motion, humanoid_map)
     rests = _rests_on_hips(motion, humanoid_map, legs)
     if rests.any():
-        min_frames = ContactSettings().minimum_duration * motion.frame_rate
-        bearing = (contacts & ~rests).T
-        contacts = np.stack([without_short_runs(foot, min_frames) for foot in bearing], axis=1)
+        contacts = _without_short_contacts(contacts & ~rests, MIN_CONTACT_S * motion.frame_rate)
     hips = humanoid_map.indices(motion.skeleton).get("hips", 0)
     is_still = still_joints(motion)
     if is_still[hips]:
@@ -69,3 +71,13 @@ def _rests_on_hips(
         pelvis.append(hips)
     lowest = heights[:, pelvis].min(axis=1)
     return np.asarray(lowest - ground < MIN_HIP_HEIGHT * length)[:, None]
+
+
+def _without_short_contacts(contacts: NDArray[np.bool_], min_frames: float) -> NDArray[np.bool_]:
+    """Return the contacts without shorter ones, except at the ends, where they may continue."""
+    kept = contacts.copy()
+    for foot in kept.T:
+        for start, stop in find_runs(foot):
+            if stop - start < min_frames and start > 0 and stop < len(foot):
+                foot[start:stop] = False
+    return kept

@@ -14,6 +14,7 @@ from .noise import (
 from .second_differences import second_difference_bands
 from .smoothstep import smoothstep
 from .spikes import find_runs, fit_lowess
+from .two_states import two_state_probabilities
 
 __all__ = [
     "DIFFERENCE_GAIN",
@@ -32,4 +33,5 @@ __all__ = [
     "smooth_gaussian",
     "smooth_to_the_ends",
     "smoothstep",
+    "two_state_probabilities",
 ]

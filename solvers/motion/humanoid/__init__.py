@@ -29,14 +29,12 @@ from .canonical import (
     t_pose_alignment,
 )
 from .foot_contacts import (
-    GROUND_PERCENTILE,
     HUMAN_LEG_LENGTH_M,
-    ContactSettings,
+    contact_probabilities,
     contacts_of_points,
     detect_contacts,
     foot_points,
     leg_length,
-    without_short_runs,
 )
 from .missing_hips import UPPER_LEG_ROLES, fill_missing_hips
 from .names import naming_scheme, roles_by_name
@@ -83,7 +81,6 @@ __all__ = [
     "CHEST",
     "ESSENTIAL_ROLES",
     "FORWARD",
-    "GROUND_PERCENTILE",
     "HALF_LATERAL_JOINTS",
     "HIPS",
     "HUMANOID_ROLES",
@@ -103,7 +100,6 @@ __all__ = [
     "SPINE",
     "UP",
     "UPPER_LEG_ROLES",
-    "ContactSettings",
     "HumanoidMap",
     "NormalizedPostures",
     "PostureNormalizer",
@@ -111,6 +107,7 @@ __all__ = [
     "RoleEvidence",
     "bone_directions",
     "canonical_rotations",
+    "contact_probabilities",
     "contacts_of_points",
     "describe_low_confidence",
     "detect_contacts",
@@ -144,6 +141,5 @@ __all__ = [
     "t_pose_alignment",
     "transfer_motion",
     "with_standing_rest",
-    "without_short_runs",
     "write_humanoid_map",
 ]

@@ -5,78 +5,73 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, Flags
 from ...errors import InvalidMotionError
-from ...settings import Settings, setting
-from ...signals import smooth_gaussian
-from ..skeletons import Motion, Skeleton, forward_kinematics, linear_velocities
+from ...signals import (
+    estimate_noise,
+    fill_channel_gaps,
+    smooth_gaussian,
+    two_state_probabilities,
+)
+from ..skeletons import Motion, Skeleton, forward_kinematics
 from .roles import HumanoidMap, find_humanoid_map
 
 HUMAN_LEG_LENGTH_M = 0.9
-"""Leg length, hip to ankle, for which the settings are defined; they scale with the leg. By
+"""Leg length, hip to ankle, for which the model is defined; it scales with the leg. By
 definition."""
 
-GROUND_PERCENTILE = 5.0
-"""Percentile of the heights of slow frames that is the ground; lower ones are noise. It guards
-feet that a sensor places below the ground for some frames."""
+SPEED_NOISE = 0.15
+"""Meters per second: feet are smoothed until noise moves them at this speed along each axis.
+Chosen by hand: PLACEHOLDER."""
 
-GROUND_WINDOW_S = 1.0
-"""Seconds before and after a frame from which the height of its ground is estimated. It guards
-sloping floors, and sensors whose floor drifts."""
+GROUND_WINDOW_S = 0.5
+"""Seconds before and after a frame in which the lower foot stands on a level that counts as
+ground. It guards feet that swing in the air: they are nowhere as long."""
 
-MAX_GROUND_DRIFT_M = 0.1
-"""Maximum difference between the ground of a frame and that of the complete clip. It guards
-feet that hang or rest in the air for longer than the window."""
-
-MIN_SLOW_FRACTION = 0.02
-"""Fraction of slow frames from which the ground is estimated from these alone. It guards feet
-that slide, and are slow only where they hang in the air."""
+MAX_CLIMB_M = 0.5
+"""Maximum height of ground above the lowest of the take. It guards feet that hang or rest in
+the air; people climb boxes and steps of up to half a meter."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class ContactSettings(Settings):
-    """Thresholds of foot contact. Lengths and speeds are for a leg of 0.9 m."""
+@dataclass(frozen=True)
+class ContactModel:
+    """Hidden Markov model of a foot; lengths and speeds are for a leg of 0.9 m.
 
-    height: float = setting(
-        0.05, "Height below which a foot may be planted; higher finds more contacts",
-        unit="m", minimum=1e-3, maximum=1.0,
-    )  # fmt: skip
-    speed: float = setting(
-        0.3, "Speed below which a foot may be planted; higher finds more and longer contacts",
-        unit="m/s", minimum=1e-3, maximum=10.0,
-    )  # fmt: skip
-    release: float = setting(
-        1.5, "Release a planted foot above height and speed times this; higher holds longer",
-        minimum=1.0, maximum=10.0, advanced=True,
-    )  # fmt: skip
-    minimum_duration: float = setting(
-        0.1, "Ignore shorter contacts and close gaps of half this length",
-        unit="s", minimum=0.0, maximum=10.0, advanced=True,
-    )  # fmt: skip
-    smoothing: float = setting(
-        0.03,
-        "Smooth foot motion before detection; higher ignores more jitter but blurs contact"
-        " starts", unit="s", minimum=0.0, maximum=1.0, advanced=True,
-    )  # fmt: skip
+    The log odds of contact are `bias` while the slower and lower of ankle and toes rests on the
+    ground. They decrease with the logarithm of its speed and height.
+    """
+
+    bias: float
+    speed_weight: float
+    speed: float
+    """Meters per second, above which speed counts."""
+    height_weight: float
+    height: float
+    """Meters, above which height counts."""
+    noise_weight: float
+    """How much more height counts for nothing where heights are noisy."""
+    memory: float
+    """Seconds of motion that are one independent observation."""
+    landing_rate: float
+    """Per second in the air."""
+    lift_rate: float
+    """Per second on the ground."""
 
 
-def detect_contacts(
-    motion: Motion,
-    humanoid_map: HumanoidMap | None = None,
-    settings: ContactSettings = ContactSettings(),
-) -> NDArray[np.bool_]:
-    """Return when the left and the right foot are in contact with level ground.
+LEARNED = ContactModel(19.5,5.13,.0674,3.52,.00612,.0288,.427,9.61,1.68)
+"""Learned by `tests/training/train_contacts.py`."""
 
-    A foot is in contact while its ankle or its toes are low and slow. The feet are smoothed
-    first. The height of the ground is that of the lowest slow frames of both feet within a
-    second. A contact begins where height and speed are within the settings and lasts while
-    they are within `release` times the settings (hysteresis). Stairs are not level ground.
+
+def detect_contacts(motion: Motion, humanoid_map: HumanoidMap | None = None) -> Flags:
+    """Return when the left and the right foot are in contact with the ground.
+
+    A foot is in contact if `contact_probabilities` says so with more than one half.
 
     Parameters
     ----------
     motion : Motion
     humanoid_map : HumanoidMap, optional
         By default from `find_humanoid_map`.
-    settings : ContactSettings
 
     Returns
     -------
@@ -88,20 +83,48 @@ def detect_contacts(
     InvalidMotionError
         The skeleton does not have two feet.
     """
+    return contact_probabilities(motion, humanoid_map) > 0.5
+
+
+def contact_probabilities(motion: Motion, humanoid_map: HumanoidMap | None = None) -> Array:
+    """Return the probability that the left and the right foot are in contact with the ground.
+
+    A hidden Markov model sees how fast ankle and toes are, and how high above the ground. The
+    ground is the highest level on which the lower foot stands within a second, so that it may
+    slope or have steps.
+
+    Parameters
+    ----------
+    motion : Motion
+    humanoid_map : HumanoidMap, optional
+        By default from `find_humanoid_map`.
+
+    Returns
+    -------
+    Array, shape (n_frames, 2)
+        Left foot, right foot. 0 where the foot is missing.
+
+    Raises
+    ------
+    InvalidMotionError
+        The skeleton does not have two feet.
+    """
     humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
     feet = foot_points(motion.skeleton, humanoid)
     positions = forward_kinematics(motion).positions[:, feet]
     size = leg_length(motion.skeleton, humanoid) / HUMAN_LEG_LENGTH_M
-    return contacts_of_points(positions, motion.frame_rate, size, settings)
+    return probabilities_of_points(positions, motion.frame_rate, size)
 
 
-def contacts_of_points(
-    positions: NDArray[np.float64],
-    frame_rate: float,
-    size: float = 1.0,
-    settings: ContactSettings = ContactSettings(),
-) -> NDArray[np.bool_]:
-    """Return foot contacts from positions alone; see `detect_contacts`.
+def contacts_of_points(positions: Array, frame_rate: float, size: float = 1.0) -> Flags:
+    """Return foot contacts from positions alone; see `probabilities_of_points`."""
+    return probabilities_of_points(positions, frame_rate, size) > 0.5
+
+
+def probabilities_of_points(
+    positions: Array, frame_rate: float, size: float = 1.0, model: ContactModel = LEARNED
+) -> Array:
+    """Return the probability of foot contact from positions alone; see `contact_probabilities`.
 
     Parameters
     ----------
@@ -110,32 +133,18 @@ def contacts_of_points(
     frame_rate : float, hertz
     size : float
         Length of a leg over 0.9 m.
-    settings : ContactSettings
+    model : ContactModel
 
     Returns
     -------
-    NDArray of bool, shape (n_frames, 2)
-        Left foot, right foot. False where the foot is missing.
+    Array, shape (n_frames, 2)
+        Left foot, right foot. 0 where the foot is missing.
     """
-    positions = _smoothed(positions, settings.smoothing * frame_rate)
-    speeds = np.linalg.norm(linear_velocities(positions, frame_rate), axis=-1)
-    slow = speeds <= settings.speed * size
-    ground = [
-        _ground(positions[:, :, point, 2], slow[:, :, point], frame_rate, size)
-        for point in range(2)
-    ]
-    heights = positions[..., 2] - np.stack(ground, axis=-1)[:, None]
-    # 1 is the edge of what the settings call low and slow.
-    exceedance = np.maximum(heights / settings.height, speeds / settings.speed) / size
-    exceedance = np.where(np.isfinite(exceedance), exceedance, np.inf).min(axis=2)
-    min_frames = settings.minimum_duration * frame_rate
-    return np.stack(
-        [
-            _sustained(foot <= 1.0, foot <= settings.release, min_frames)
-            for foot in exceedance.T
-        ],
-        axis=-1,
+    feet = measure_feet(positions / size, frame_rate)
+    probability = two_state_probabilities(
+        feet.evidence(model), frame_rate, model.landing_rate, model.lift_rate
     )
+    return np.where(feet.observed.any(axis=-1), probability, 0.0)
 
 
 def foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.intp]:
@@ -176,68 +185,103 @@ def leg_length(skeleton: Skeleton, humanoid: HumanoidMap) -> float:
     return float(np.mean(lengths)) if lengths and min(lengths) > 0.0 else HUMAN_LEG_LENGTH_M
 
 
-def _smoothed(positions: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:
-    """Smooth observed frames over time; gaps stay gaps."""
-    if sigma <= 0.0:
-        return positions
-    observed = np.isfinite(positions)
-    total = smooth_gaussian(np.where(observed, positions, 0.0), sigma)
-    weight = smooth_gaussian(observed.astype(float), sigma)
-    return np.asarray(np.where(observed, total / np.maximum(weight, 1e-12), np.nan))
+@dataclass(frozen=True, eq=False)
+class FeetInMotion:
+    """How fast and how high ankles and toes are, shapes (n_frames, 2 feet, 2 points).
 
-
-def _ground(
-    heights: NDArray[np.float64], slow: NDArray[np.bool_], frame_rate: float, size: float
-) -> NDArray[np.float64]:
-    """Return the height of ankles (or toes) in contact in each frame, shape (n_frames,).
-
-    It is estimated from slow frames of both feet within a second, since captured floors are
-    seldom level, and interpolated where there are none. It stays near the ground of the clip,
-    so that a foot in the air is not classified as standing.
+    Attributes
+    ----------
+    observed : bool
+    speeds : meters per second
+    heights : meters above the ground
+    height_noise : float, meters
+        Standard deviation of what is left of the noise.
+    independence : float, seconds
+        Duration in which smoothing leaves one independent sample.
+    dt : float, seconds
     """
-    observed = np.isfinite(heights)
-    selected = (
-        observed & slow
-        if (observed & slow).sum() >= MIN_SLOW_FRACTION * slow.size
-        else observed
+
+    observed: Flags
+    speeds: Array
+    heights: Array
+    height_noise: float
+    independence: float
+    dt: float
+
+    def evidence(self, model: ContactModel) -> Array:
+        """Return the log odds that the frame by itself adds for contact, (n_frames, 2)."""
+        speed = (self.speeds / model.speed) ** 2
+        scale = model.height**2 + model.noise_weight * self.height_noise**2
+        height = np.maximum(self.heights, 0.0) ** 2 / scale
+        log_odds = (
+            model.bias
+            - model.speed_weight * np.log1p(speed)
+            - model.height_weight * np.log1p(height)
+        )
+        best = np.where(self.observed, log_odds, -np.inf).max(axis=-1)
+        best = np.where(self.observed.any(axis=-1), best, 0.0)
+        return np.asarray(best * self.dt / (model.memory + self.independence))
+
+
+def measure_feet(positions: Array, frame_rate: float) -> FeetInMotion:
+    """Smooth feet as much as their noise demands, and measure speeds and heights.
+
+    White noise of deviation s moves what a Gaussian of deviation t smooths, per axis, at
+    s sqrt(dt / (4 sqrt(pi) t^3)), and leaves s sqrt(dt / (2 sqrt(pi) t)) of the noise.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, 2, 2, 3), meters, for a leg of 0.9 m
+    frame_rate : float, hertz
+    """
+    dt = 1.0 / frame_rate
+    observed = np.isfinite(positions).all(axis=-1)
+    columns = positions.reshape(len(positions), -1)
+    noise = float(np.median(estimate_noise(columns)))
+    width = float(np.cbrt(noise**2 * dt / (4.0 * np.sqrt(np.pi)) / SPEED_NOISE**2))
+    path = smooth_gaussian(fill_channel_gaps(columns), width * frame_rate)
+    path = path.reshape(positions.shape)
+    independence = 2.0 * np.sqrt(np.pi) * width
+    speed_noise = min(SPEED_NOISE, np.sqrt(2.0) * noise * frame_rate)
+    heights = [
+        _above_ground(path[:, :, point, 2], observed[:, :, point].any(axis=0), frame_rate)
+        for point in range(2)
+    ]
+    return FeetInMotion(
+        observed,
+        np.sqrt(np.maximum(_speeds(path, frame_rate) ** 2 - 3.0 * speed_noise**2, 0.0)),
+        np.stack(heights, axis=-1),
+        noise * min(1.0, np.sqrt(dt / independence)) if width > 0.0 else noise,
+        independence,
+        dt,
     )
-    if not selected.any():
-        return np.full(len(heights), np.nan)
-    overall = np.percentile(heights[selected], GROUND_PERCENTILE)
-    half_window = int(np.ceil(GROUND_WINDOW_S * frame_rate))
-    knots, levels = [], []
-    for knot in range(0, len(heights), max(half_window // 4, 1)):
-        window = slice(max(knot - half_window, 0), knot + half_window + 1)
-        if selected[window].any():
-            knots.append(knot)
-            levels.append(np.percentile(heights[window][selected[window]], GROUND_PERCENTILE))
-    level = np.interp(np.arange(len(heights)), knots, levels)
-    drift = MAX_GROUND_DRIFT_M * size
-    return np.clip(level, overall - drift, overall + drift)
 
 
-def _sustained(
-    certain: NDArray[np.bool_], sustained: NDArray[np.bool_], min_frames: float
-) -> NDArray[np.bool_]:
-    """Return the runs of `sustained` with a `certain` frame, without short gaps and runs."""
-    from scipy.ndimage import label  # slow to import: only when needed
+def _speeds(path: Array, frame_rate: float) -> Array:
+    """Return the lower of the speeds before and after each frame, shape of `path` without axes.
 
-    labels, _ = label(sustained)
-    contact = np.isin(labels, np.unique(labels[certain])) & sustained
-    contact = ~without_short_runs(~contact, min_frames / 2.0)
-    return without_short_runs(contact, min_frames)
-
-
-def without_short_runs(flags: NDArray[np.bool_], min_frames: float) -> NDArray[np.bool_]:
-    """Clear shorter runs of True, except at the ends of the clip, where they may continue.
-
-    `flags` have shape (n_frames,).
+    So the first and the last frame of a contact are as slow as those between them.
     """
-    from scipy.ndimage import label  # slow to import: only when needed
+    if len(path) == 1:
+        return np.zeros(path.shape[:-1])
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=-1) * frame_rate
+    return np.minimum(
+        np.concatenate([steps[:1], steps]), np.concatenate([steps, steps[-1:]])
+    )
 
-    labels, n_runs = label(flags)
-    lengths = np.bincount(labels, minlength=n_runs + 1)
-    is_short = lengths < min_frames
-    is_short[0] = False
-    is_short[labels[[0, -1]]] = False
-    return np.asarray(flags & ~is_short[labels])
+
+def _above_ground(heights: Array, seen: Flags, frame_rate: float) -> Array:
+    """Return the heights of both ankles (or toes) above the ground, shape (n_frames, 2).
+
+    The ground of a frame is the highest level within a second above which the lower foot stays
+    for a second: a foot on a box is on the ground if the other one follows.
+    """
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d  # slow to import
+
+    if not seen.any():
+        return heights
+    lower = heights[:, seen].min(axis=1)
+    window = round(GROUND_WINDOW_S * frame_rate)
+    level = minimum_filter1d(lower, 2 * window + 1, mode="nearest")
+    level = maximum_filter1d(level, 4 * window + 1, mode="nearest")
+    return heights - np.minimum(level, level.min() + MAX_CLIMB_M)[:, None]

@@ -6,7 +6,6 @@ from numpy.testing import assert_array_equal
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import (
-    ContactSettings,
     HumanoidMap,
     Motion,
     Skeleton,
@@ -180,12 +179,6 @@ def test_missing_bodies_and_single_frames_are_accepted(walk):
 
     assert not detect_contacts(hidden).any()
     assert detect_contacts(walk.slice(0, 1)).shape == (1, 2)
-
-
-def test_lower_thresholds_find_less(walk):
-    strict = detect_contacts(walk, settings=ContactSettings(height=0.02, speed=0.1))
-
-    assert strict.sum() < detect_contacts(walk).sum()
 
 
 def test_detect_contacts_raises_without_feet(leg, swinging_leg):

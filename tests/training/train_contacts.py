@@ -1,0 +1,125 @@
+"""Learn how a foot in contact moves, and print the numbers of foot_contacts.py.
+
+    make contacts
+
+From made feet with random parameters, walks of CMU's development subjects and takes of HDM05's
+development actor, with noise and slow errors. No force plate and no scored take is among them.
+The model's log loss over all frames is minimized, so that its probabilities are calibrated.
+"""
+
+from collections.abc import Iterator
+from dataclasses import fields
+
+import numpy as np
+from scipy.optimize import minimize
+
+from solvers.arrays import Array, Flags
+from solvers.motion.humanoid.foot_contacts import (
+    LEARNED,
+    ContactModel,
+    FeetInMotion,
+    measure_feet,
+)
+from solvers.signals import smooth_gaussian, two_state_probabilities
+
+from .contact_captures import LabeledFeet, labeled_others, labeled_walks
+from .contact_takes import KINDS, made_feet
+
+RATE = 60.0
+"""Hertz; the model does not depend on it."""
+TAKES_OF_A_KIND = 16
+NOISE_M = (0.0, 0.0, 0.0, 0.003, 0.01, 0.03, 0.06)
+"""Standard deviations of the noise of each frame; a knee of 1 degree makes 0.01."""
+COMMON_NOISE = 0.9
+"""Part of it that ankle and toes share."""
+SLOW_ERROR_M, SLOW_S, SLOW_TAKES = (0.003, 0.015), 0.12, 0.25
+"""Meters of errors that change slowly, as cleaning leaves them, and the part of takes with them."""
+UNEVEN_M, SLOPE = (0.001, 0.006), 0.012
+"""Meters by which made feet move on the floor, and how steep the floor is: no capture is exact."""
+WEIGHT_OF_WALKS = 8.0
+"""Weight of a second of captured walks: there are few, and only they leave as people do."""
+PRIOR = 1e-4
+"""Weight of the squared distance of the logarithms from where the search starts."""
+
+
+def main() -> None:
+    """Learn and print."""
+    rng = np.random.default_rng(0)
+    takes = list(_takes(rng))
+    truth, weight = (_padded([take[number] for take in takes]) for number in (1, 2))
+    feet = [take[0] for take in takes]
+    start = np.log([getattr(LEARNED, field.name) for field in fields(ContactModel)])
+
+    def loss(logs: Array) -> float:
+        probability = np.clip(_probabilities(feet, _model(logs)), 1e-6, 1.0 - 1e-6)
+        surprise = -np.log(np.where(truth > 0.5, probability, 1.0 - probability))
+        mean = np.average(surprise, weights=weight)
+        return float(mean + PRIOR * ((logs - start) ** 2).sum())
+
+    found = minimize(loss, start, method="L-BFGS-B", options={"eps": 1e-3, "maxiter": 60})
+    for field, value in zip(fields(ContactModel), np.exp(found.x), strict=True):
+        print(f"    {field.name}={value:.3g},")
+    print(f"log loss {loss(found.x):.4f} of {weight.astype(bool).sum()} frames of a foot")
+
+
+def _model(logs: Array) -> ContactModel:
+    return ContactModel(*map(float, np.exp(logs)))
+
+
+def _probabilities(feet: list[FeetInMotion], model: ContactModel) -> Array:
+    """Return probabilities, (n_frames, n_takes, 2); evidence after a take's end is 0."""
+    evidence = _padded([one.evidence(model) for one in feet])
+    return two_state_probabilities(evidence, RATE, model.landing_rate, model.lift_rate)
+
+
+def _padded(arrays: list[Array]) -> Array:
+    result = np.zeros((max(map(len, arrays)), len(arrays), 2))
+    for number, array in enumerate(arrays):
+        result[: len(array), number] = array
+    return result
+
+
+def _takes(rng: np.random.Generator) -> Iterator[tuple[FeetInMotion, Array, Array]]:
+    """Return feet, contacts and the weight of each frame."""
+    for kind in KINDS:
+        for _ in range(TAKES_OF_A_KIND):
+            positions, contacts = made_feet(kind, RATE, rng)
+            positions = _on_a_real_floor(positions, rng)
+            yield _feet(positions, rng), contacts.astype(float), np.ones(contacts.shape)
+    for captures, weight in ((labeled_walks(), WEIGHT_OF_WALKS), (labeled_others(), 1.0)):
+        for take in captures:
+            positions, contacts, known = _at_rate(take)
+            yield _feet(positions, rng), contacts.astype(float), weight * known
+
+
+def _at_rate(take: LabeledFeet) -> tuple[Array, Flags, Flags]:
+    step = round(take.rate / RATE)
+    return take.positions[::step], take.contacts[::step], take.known[::step]
+
+
+def _on_a_real_floor(positions: Array, rng: np.random.Generator) -> Array:
+    """Return feet that are not exactly still, on a floor that is not exactly level."""
+    moved = positions + _slow(positions.shape, rng.uniform(*UNEVEN_M), rng)
+    moved[..., 2] += moved[..., :2] @ rng.normal(scale=SLOPE, size=2)
+    return moved
+
+
+def _feet(positions: Array, rng: np.random.Generator) -> FeetInMotion:
+    """Return the feet with noise or a slow error."""
+    common = (*positions.shape[:2], 1, 3)
+    if rng.random() < SLOW_TAKES:
+        error = _slow(common, rng.uniform(*SLOW_ERROR_M), rng)
+    else:
+        noise = rng.choice(NOISE_M)
+        own = np.sqrt(1.0 - COMMON_NOISE**2) * rng.normal(size=positions.shape)
+        error = noise * (COMMON_NOISE * rng.normal(size=common) + own)
+    return measure_feet(positions + error, RATE)
+
+
+def _slow(shape: tuple[int, ...], deviation: float, rng: np.random.Generator) -> Array:
+    error = smooth_gaussian(rng.normal(size=shape), SLOW_S * RATE)
+    return deviation * error / error.std()
+
+
+if __name__ == "__main__":
+    main()
