@@ -105,7 +105,7 @@ pictures-origins: .venv-4.5/ready  ## takes of many makers, imported, cleaned, o
 
 # Each writes what is shipped from recordings of ../shared/data; ARGUMENTS="--out FILE" writes
 # elsewhere, and tests/training/README.md says from which recordings, and how long it takes.
-.PHONY: forest postures residuals motion-prior motion-mixture body-relation failures
+.PHONY: forest postures residuals motion-prior motion-mixture body-relation failures contacts
 forest: .venv-4.5/ready  ## train the shipped forest that classifies body parts in depth images
 	$(PYTHON_4.5) -m tests.training.train_forest $(ARGUMENTS)
 
@@ -126,6 +126,9 @@ body-relation: .venv-4.5/ready  ## learn how joints move together, for limbs tha
 
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
 	$(PYTHON_4.5) -m tests.training.learn_failures
+
+contacts: .venv-4.5/ready  ## learn how a foot in contact moves, and print the weights
+	$(PYTHON_4.5) -m tests.training.learn_contacts
 
 BENCHMARKS := denoise first-press contacts markers bvh press live scene import import-corpus roles video \
   reliability reconstruct postures retrieval retarget variation depth physics gestures retarget-rig farm

@@ -73,7 +73,9 @@ def _rests_on_hips(
     return np.asarray(lowest - ground < MIN_HIP_HEIGHT * length)[:, None]
 
 
-def _without_short_contacts(contacts: NDArray[np.bool_], min_frames: float) -> NDArray[np.bool_]:
+def _without_short_contacts(
+    contacts: NDArray[np.bool_], min_frames: float
+) -> NDArray[np.bool_]:
     """Return the contacts without shorter ones, except at the ends, where they may continue."""
     kept = contacts.copy()
     for foot in kept.T:

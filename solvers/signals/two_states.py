@@ -5,13 +5,13 @@ import numpy as np
 from ..arrays import Array
 
 MAX_LOG_ODDS = 30.0
-"""Logarithm of the largest odds of a frame. It guards against overflow; such odds are certain."""
+"""Logarithm of the largest odds of a frame. It guards against overflow; these are certain."""
 
 
 def two_state_probabilities(
     evidence: Array, frame_rate: float, begin_rate: float, end_rate: float
 ) -> Array:
-    """Return the probability of the second state in each frame, from all frames before and after.
+    """Return the probability of the second state in each frame, given all frames.
 
     A hidden Markov model in continuous time: the states alternate at given rates, so that the
     result does not depend on the frame rate. The forward-backward algorithm [1]_ on odds.
@@ -30,8 +30,8 @@ def two_state_probabilities(
 
     References
     ----------
-    .. [1] Rabiner (1989). A tutorial on hidden Markov models and selected applications in speech
-       recognition. Proceedings of the IEEE 77(2). doi:10.1109/5.18626
+    .. [1] Rabiner (1989). A tutorial on hidden Markov models and selected applications in
+       speech recognition. Proceedings of the IEEE 77(2). doi:10.1109/5.18626
     """
     total = begin_rate + end_rate
     changed = -np.expm1(-total / frame_rate)

@@ -1,4 +1,4 @@
-"""Captures of development takes with labels of foot contact, where they are certain.
+"""Captured walks with labels of foot contact.
 
 References
 ----------
@@ -8,31 +8,22 @@ References
 """
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import binary_dilation
 from scipy.signal import find_peaks
 
 from solvers.arrays import Array, Flags
 from solvers.motion import Motion, find_humanoid_map, forward_kinematics
 from solvers.motion.humanoid import foot_points, leg_length
 from solvers.motion.humanoid.foot_contacts import HUMAN_LEG_LENGTH_M
-from solvers.recordings import read_acclaim
 from solvers.signals import smooth_gaussian
 
-from ..benchmarks.contacts.labeled_clips import RATE, label_contacts
 from ..benchmarks.shared import clips
 
+RATE = 120.0
 MAX_FRAMES = 600
-TAKES_OF_A_CLASS = 4
-OTHERS = (
-    "depositFloorR", "elbowToKnee1RepsLelbowStart", "grabHighR", "kickLFront1Reps",
-    "rotateArmsBothBackward1Reps", "sneak2StepsLStart", "squat1Reps", "throwBasketball",
-)  # fmt: skip
-"""Classes of HDM05 with contacts that last."""
-UNSURE_S = 0.1
-"""Seconds on either side of a change of the rule's label that are not used."""
 UNSURE_LANDING_S = 0.06
 """Seconds around a landing of [1]_ that are not used: the ankle swings back before it lands."""
 MIN_WALKING_SPEED = 0.5
@@ -40,12 +31,11 @@ MIN_SWING_M, MIN_STRIDE_S = 0.2, 0.4
 
 
 class LabeledFeet(NamedTuple):
-    """Ankles and toes (n_frames, 2, 2, 3) for legs of 0.9 m, contacts, and where these count."""
+    """Ankles and toes (n_frames, 2, 2, 3) for legs of 0.9 m, contacts, where these count."""
 
     positions: Array
     contacts: Flags
     known: Flags
-    rate: float
 
 
 def labeled_walks() -> Iterator[LabeledFeet]:
@@ -53,22 +43,7 @@ def labeled_walks() -> Iterator[LabeledFeet]:
     for name in clips.development(True):
         motion = _cut(clips.read_cmu(clips.WALKS / f"{name}.bvh", 1))
         positions, size = _feet(motion)
-        yield LabeledFeet(positions / size, *_gait_events(motion, positions), RATE)
-
-
-def labeled_others() -> Iterator[LabeledFeet]:
-    """Return takes of HDM05's development actor, labeled by the rule of the benchmark."""
-    for name in OTHERS:
-        for actor in sorted(clips.DEV_ACTORS):
-            paths = sorted(clips.HDM05.glob(f"HDM_{actor}_{name}_*_120.amc"))
-            for path in paths[:TAKES_OF_A_CLASS]:
-                motion = _cut(read_acclaim(path))
-                label = label_contacts(motion)
-                changes = np.diff(label, axis=0, prepend=label[:1])
-                width = 2 * round(UNSURE_S * RATE) + 1
-                known = ~binary_dilation(changes, np.ones((width, 1)))
-                positions, size = _feet(motion)
-                yield LabeledFeet(positions / size, label, known, RATE)
+        yield LabeledFeet(positions / size, *_gait_events(motion, positions))
 
 
 def _feet(motion: Motion) -> tuple[Array, float]:
@@ -97,8 +72,10 @@ def _gait_events(motion: Motion, positions: Array) -> tuple[Flags, Flags]:
         options = {"prominence": MIN_SWING_M, "distance": MIN_STRIDE_S * RATE}
         landings, _ = find_peaks(relative[:, 0], **options)
         lifts, _ = find_peaks(-relative[:, 1], **options)
-        events = sorted([(frame, True) for frame in landings] + [(frame, False) for frame in lifts])
-        for (start, lands), (stop, lands_next) in zip(events, events[1:], strict=False):
+        events = sorted(
+            [(frame, True) for frame in landings] + [(frame, False) for frame in lifts]
+        )
+        for (start, lands), (stop, lands_next) in pairwise(events):
             if lands != lands_next:
                 contacts[start:stop, foot] = lands
                 known[start:stop, foot] = True

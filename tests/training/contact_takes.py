@@ -103,13 +103,11 @@ def _run(time: Array, rng: np.random.Generator) -> Feet:
 
 
 def _steps(time: Array, rng: np.random.Generator) -> Feet:
-    """Step in any direction on the floor, or up or down stairs."""
+    """Step in any direction."""
     period = rng.uniform(0.8, 1.6)
     swing_s, start = rng.uniform(0.25, 0.45) * period, rng.uniform() * period
     length, direction = rng.uniform(0.1, 0.6), rng.uniform(0.0, 2.0 * np.pi)
-    climb, lift = 0.0, rng.uniform(0.03, 0.15)
-    if rng.random() < 1.0 / 3.0:
-        length, climb, lift = rng.uniform(0.5, 0.6), rng.uniform(-0.4, 0.4), lift + 0.12
+    lift = rng.uniform(0.03, 0.15)
     ankles, pitch, contacts = _stand(time, rng)
     for foot in range(2):
         cycle, phase = np.divmod(time + start - 0.5 * foot * period, period)
@@ -117,14 +115,14 @@ def _steps(time: Array, rng: np.random.Generator) -> Feet:
         gone = cycle + _smooth_step(swing)
         ankles[:, foot, 0] += length * np.cos(direction) * gone
         ankles[:, foot, 1] += length * np.sin(direction) * gone
-        ankles[:, foot, 2] += climb * (gone + 0.5 * foot) + lift * np.sin(np.pi * swing) ** 2
+        ankles[:, foot, 2] += lift * np.sin(np.pi * swing) ** 2
         contacts[:, foot] = phase >= swing_s
     return Feet(ankles, pitch, contacts)
 
 
 def _box(time: Array, rng: np.random.Generator) -> Feet:
     """Step onto a box with both feet."""
-    height, swing_s = rng.uniform(0.1, 0.45), rng.uniform(0.4, 0.9)
+    height, swing_s = rng.uniform(0.1, 0.3), rng.uniform(0.4, 0.9)
     first, pause = rng.uniform(0.5, 1.5), rng.uniform(0.6, 1.5)
     ankles, pitch, contacts = _stand(time, rng)
     for foot, start in zip(rng.permutation(2), (first, first + pause), strict=True):
@@ -192,7 +190,8 @@ KINDS = ("walk", *PLANS)
 def _wander(time: Array, rng: np.random.Generator, distance: float) -> Array:
     """Return a slow path of about a distance in meters, (n_frames, 3)."""
     waves = [
-        np.sin(2.0 * np.pi * hertz * time[:, None] + rng.uniform(0.0, 6.3, 3)) * rng.normal(size=3)
+        np.sin(2.0 * np.pi * hertz * time[:, None] + rng.uniform(0.0, 6.3, 3))
+        * rng.normal(size=3)
         for hertz in (0.3, 0.7, 1.1)
     ]
     return np.asarray(distance * np.sum(waves, axis=0) / np.sqrt(len(waves)))

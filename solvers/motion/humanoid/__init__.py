@@ -35,6 +35,7 @@ from .foot_contacts import (
     detect_contacts,
     foot_points,
     leg_length,
+    probabilities_of_points,
 )
 from .missing_hips import UPPER_LEG_ROLES, fill_missing_hips
 from .names import naming_scheme, roles_by_name
@@ -131,6 +132,7 @@ __all__ = [
     "posture_joint_indices",
     "posture_positions",
     "postures_from_motion",
+    "probabilities_of_points",
     "rates_from_directions",
     "read_humanoid_map",
     "resize_postures",

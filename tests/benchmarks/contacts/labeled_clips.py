@@ -41,7 +41,7 @@ HOPS = (("49_02", 960),)
 @cache
 def labeled_clips() -> dict[str, tuple[Motion, Flags]]:
     """Return motions at 120 Hz and their labels, (n_frames, 2)."""
-    return {name: (motion, label_contacts(motion)) for name, motion in _clips()}
+    return {name: (motion, _label(motion)) for name, motion in _clips()}
 
 
 def at_rate(motion: Motion, label: Flags, rate: float, degrees: float) -> tuple[Motion, Flags]:
@@ -66,7 +66,7 @@ def _cut(motion: Motion, first: int) -> Motion:
     return motion.slice(first, min(first + MAX_FRAMES, motion.n_frames))
 
 
-def label_contacts(motion: Motion) -> Flags:
+def _label(motion: Motion) -> Flags:
     """Return when heel or ball of each foot is low and slow."""
     poses = forward_kinematics(motion)
     labels = np.zeros((motion.n_frames, len(SIDES)), np.bool_)

@@ -10,6 +10,7 @@ from solvers.denoising import denoise
 from solvers.motion import Motion, detect_contacts
 
 from ..shared.tables import table
+from .calibration import calibration_table
 from .detection_scores import COLUMNS, DetectionScores
 from .detectors import MOTION_DETECTORS, OURS, POINT_DETECTORS, MotionDetector
 from .force_plates import weighed_walks
@@ -35,6 +36,7 @@ def detection_tables() -> list[str]:
         _table("Made takes, whose contacts are known", _made_scores()),
         _take_table(),
         *(_noise_table(degrees) for degrees in NOISE_DEG),
+        calibration_table(RATES),
         _weightless_table(),
     ]
 

@@ -9,6 +9,8 @@ from solvers.motion import (
     HumanoidMap,
     Motion,
     Skeleton,
+    contact_probabilities,
+    contacts_of_points,
     detect_contacts,
     forward_kinematics,
     reach,
@@ -33,9 +35,8 @@ def walk(body) -> Motion:
 
 
 def test_finds_the_stance_phases_of_a_known_gait(walk):
-    found = detect_contacts(walk)
+    found, truth = detect_contacts(walk)[:-10], standing(walk)[:-10]  # it ends as a foot lands
 
-    truth = standing(walk)
     assert (found == truth).mean() > 0.95
     assert count_of_runs(found) == count_of_runs(truth)
 
@@ -112,6 +113,56 @@ def test_contacts_hardly_depend_on_the_frame_rate(body):
 
     n_changes = np.abs(np.diff(every_fourth.astype(int), axis=0)).sum()
     assert (detect_contacts(slow) != every_fourth).sum() <= n_changes
+
+
+def test_stances_of_a_fifth_of_a_second_keep_their_length():
+    """Both feet hop in place, 0.2 s on the floor and 0.3 s in the air."""
+    phase = np.arange(360) / 60.0 % 0.5
+    flight = np.maximum(phase - 0.2, 0.0)
+    feet = np.zeros((360, 2, 2, 3))
+    feet[..., 2] = (0.5 * 9.81 * flight * (0.3 - flight))[:, None, None]
+    standing = np.tile(phase[:, None] < 0.2, (1, 2))
+
+    found = contacts_of_points(feet, 60.0)
+
+    assert found[standing].all()
+    assert (found == standing).mean() > 0.95
+
+
+def test_feet_on_a_box_are_in_contact():
+    """From 1 s on the left foot, and from 2 s the right one, step up by 20 cm in 0.6 s."""
+    time = np.arange(360) / 60.0
+    feet = np.zeros((360, 2, 2, 3))
+    for foot, start in enumerate((1.0, 2.0)):
+        ratio = np.clip((time - start) / 0.6, 0.0, 1.0)
+        feet[:, foot, :, 1] = 0.35 * ratio[:, None]
+        feet[:, foot, :, 2] = (0.2 * ratio + 0.12 * np.sin(np.pi * ratio) ** 2)[:, None]
+
+    found = contacts_of_points(feet, 60.0)
+
+    assert found[105:, 0].all() and found[165:, 1].all()
+    assert not found[70:90, 0].any() and not found[130:150, 1].any()
+
+
+def test_noise_of_each_frame_does_not_end_a_contact(rng):
+    """Noise of 2 cm moves a foot at 1 m/s from frame to frame at 30 Hz."""
+    feet = np.zeros((300, 2, 2, 3)) + rng.normal(scale=0.02, size=(300, 2, 1, 3))
+
+    assert contacts_of_points(feet, 30.0).mean() > 0.99
+
+
+def test_probability_is_lower_where_a_foot_lands_and_lifts(walk):
+    probability, contacts = contact_probabilities(walk), detect_contacts(walk)
+
+    changes = np.diff(contacts, axis=0)
+    at_changes = probability[1:][changes]
+    middle = probability[
+        60 + np.arange(5) * 100 - 30, 0
+    ]  # the left foot, half through a stance
+
+    assert ((probability > 0.5) == contacts).all()
+    assert at_changes.min() > 0.2 and at_changes.max() < 0.8
+    assert middle.min() > 0.9
 
 
 def test_lifted_still_foot_has_no_contact(walk):
