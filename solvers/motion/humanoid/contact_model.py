@@ -8,8 +8,8 @@ from ...arrays import Array, Flags
 from ...signals import estimate_noise, fill_channel_gaps, smooth_gaussian
 
 SPEED_NOISE = 0.15
-"""Meters per second: feet are smoothed until noise moves them no faster along each axis. Chosen by
-hand: x0.7 and x1.7 change F1 of noisy captures by less than 0.02, and of others by nothing."""
+"""Meters per second: feet are smoothed until noise moves them no faster along each axis. Chosen
+by hand: x0.7 and x1.7 change F1 of noisy captures by less than 0.02, of others by nothing."""
 
 GROUND_WINDOW_S = 0.5
 """Seconds before and after a frame in which the lower foot stands on a level that counts as
