@@ -24,7 +24,7 @@ from ..benchmarks.shared import clips
 
 RATE = 120.0
 MAX_FRAMES = 600
-UNSURE_LANDING_S = 0.06
+UNLABELED_LANDING_S = 0.06
 """Seconds around a landing of [1]_ that are not used: the ankle swings back before it lands."""
 MIN_WALKING_SPEED = 0.5
 MIN_SWING_M, MIN_STRIDE_S = 0.2, 0.4
@@ -80,7 +80,7 @@ def _gait_events(motion: Motion, positions: Array) -> tuple[Flags, Flags]:
                 contacts[start:stop, foot] = lands
                 known[start:stop, foot] = True
         for landing in landings:
-            width = round(UNSURE_LANDING_S * RATE)
+            width = round(UNLABELED_LANDING_S * RATE)
             known[max(landing - width, 0) : landing + width, foot] = False
     return contacts, known & (speed > MIN_WALKING_SPEED)
 

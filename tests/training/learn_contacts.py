@@ -1,4 +1,4 @@
-"""Learn how a foot in contact moves, and print the numbers of contact_model.py.
+"""Learn how a foot in contact moves, and print the numbers of foot_contacts.py.
 
     make contacts
 
@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from solvers.arrays import Array
-from solvers.motion.humanoid.contact_model import (
+from solvers.motion.humanoid.foot_contacts import (
     LEARNED,
     ContactModel,
     FeetInMotion,
