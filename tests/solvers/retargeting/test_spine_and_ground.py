@@ -84,7 +84,7 @@ def test_chest_head_and_hands_rotate_as_in_the_source(family, missing):
         change = [rotations_since_start(m, roles, role) for m, roles in
                   ((walk, source_map), (result, target_map))]  # fmt: skip
         # A foot turns a little so that its ankle and sole are where they should be.
-        assert angle_between(*change).max() < (0.04 if role == "leftFoot" else 1e-6), role
+        assert angle_between(*change).max() < (0.06 if role == "leftFoot" else 1e-6), role
 
 
 @pytest.mark.parametrize("family", RIGS)
