@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from ...arrays import Array, Flags
 from ...errors import InvalidMotionError
 from ...signals import (
-    estimate_noise,
+    DIFFERENCE_GAIN,
+    DIFFERENCE_ORDER,
     fill_channel_gaps,
     smooth_gaussian,
     two_state_probabilities,
@@ -20,6 +21,8 @@ HUMAN_LEG_LENGTH_M = 0.9
 """Leg length, hip to ankle, for which the model is defined; it scales with the leg. By
 definition."""
 
+MEDIAN_LENGTH = 1.538
+"""Median length of a vector of three standard normal numbers. By definition."""
 
 SPEED_NOISE = 0.15
 """Meters per second: feet are smoothed until noise moves them no faster along each axis. Chosen
@@ -45,7 +48,7 @@ class ContactModel:
     bias: float
     speed_weight: float
     speed: float
-    """Meters per second, above which speed counts."""
+    """Meters per second above which speed counts."""
     height_weight: float
     height: float
     """Meters, above which height counts."""
@@ -58,14 +61,14 @@ class ContactModel:
 
 
 LEARNED = ContactModel(
-    bias=30.5,
-    speed_weight=10.7,
-    speed=0.152,
-    height_weight=7.98,
+    bias=34.2,
+    speed_weight=12.3,
+    speed=0.157,
+    height_weight=9.11,
     height=0.0116,
-    memory=0.616,
-    landing_rate=4.09,
-    lift_rate=2.59,
+    memory=0.703,
+    landing_rate=4.43,
+    lift_rate=2.43,
 )
 """Learned by `tests/training/learn_contacts.py`."""
 
@@ -73,7 +76,7 @@ LEARNED = ContactModel(
 def detect_contacts(motion: Motion, humanoid_map: HumanoidMap | None = None) -> Flags:
     """Return when the left and the right foot are in contact with the ground.
 
-    A foot is in contact if `contact_probabilities` says so with more than one half.
+    A foot is in contact if its `contact_probabilities` exceed one half.
 
     Parameters
     ----------
@@ -240,11 +243,10 @@ def measure_feet(positions: Array, frame_rate: float) -> FeetInMotion:
     """
     dt = 1.0 / frame_rate
     observed = np.isfinite(positions).all(axis=-1)
-    columns = positions.reshape(len(positions), -1)
-    noise = float(np.median(estimate_noise(columns)))
+    noise = _noise(positions)
     width = float(np.cbrt(noise**2 * dt / (4.0 * np.sqrt(np.pi)) / SPEED_NOISE**2))
-    path = smooth_gaussian(fill_channel_gaps(columns), width * frame_rate)
-    path = path.reshape(positions.shape)
+    path = fill_channel_gaps(positions.reshape(len(positions), -1))
+    path = smooth_gaussian(path, width * frame_rate).reshape(positions.shape)
     independence = 2.0 * np.sqrt(np.pi) * width
     speed_noise = min(SPEED_NOISE, np.sqrt(2.0) * noise * frame_rate)
     heights = [
@@ -260,6 +262,13 @@ def measure_feet(positions: Array, frame_rate: float) -> FeetInMotion:
     )
 
 
+def _noise(positions: Array) -> float:
+    """Return the standard deviation of white noise along each axis, whatever the heading is."""
+    differences = np.linalg.norm(np.diff(positions, DIFFERENCE_ORDER, axis=0), axis=-1)
+    known = differences[np.isfinite(differences)]
+    return float(np.median(known)) / DIFFERENCE_GAIN / MEDIAN_LENGTH if known.size else 0.0
+
+
 def _speeds(path: Array, frame_rate: float) -> Array:
     """Return the lower of the speeds before and after each frame, shape of `path` without axes.
 
@@ -268,16 +277,15 @@ def _speeds(path: Array, frame_rate: float) -> Array:
     if len(path) == 1:
         return np.zeros(path.shape[:-1])
     steps = np.linalg.norm(np.diff(path, axis=0), axis=-1) * frame_rate
-    return np.asarray(
-        np.minimum(np.concatenate([steps[:1], steps]), np.concatenate([steps, steps[-1:]]))
-    )
+    steps = np.pad(steps, ((1, 1), (0, 0), (0, 0)), mode="edge")
+    return np.asarray(np.minimum(steps[:-1], steps[1:]))
 
 
 def _above_ground(heights: Array, seen: Flags, frame_rate: float) -> Array:
     """Return the heights of both ankles (or toes) above the ground, shape (n_frames, 2).
 
-    The ground of a frame is the highest level within a second above which the lower foot stays
-    for a second: a foot on a box is on the ground if the other one follows.
+    Ground is the highest level within a second above which the lower foot stays for a second: a
+    foot on a box is on the ground if the other one follows.
     """
     from scipy.ndimage import maximum_filter1d, minimum_filter1d  # slow to import
 
