@@ -22,7 +22,8 @@ HUMAN_LEG_LENGTH_M = 0.9
 definition."""
 
 MEDIAN_LENGTH = 1.538
-"""Median length of a vector of three standard normal numbers. By definition."""
+"""Ratio of the median length of a vector of three normal numbers to their deviation. By
+definition."""
 
 SPEED_NOISE = 0.15
 """Meters per second: feet are smoothed until noise moves them no faster along each axis. Chosen
