@@ -238,18 +238,11 @@ class ResidualPrior:
         return result
 
     def confidence(
-        self,
-        variances: Array,
-        distance: float,
-        constant: bool = True,
-        level: float | None = None,
+        self, variances: Array, distance: float, constant: bool, level: float | None = None
     ) -> Array:
-        """Return the probability that joints of a new actor are within a distance of their
-        mean.
+        """Return the probability that joints of a new actor are near their mean.
 
-        `constant` states whether the variances include the constant offset; `level` is their
-        mean logarithm over the take, if these are only a part of it.
-        """
+        `constant`: with the constant offset. `level`: mean log variance of the complete take."""
         calibration = Calibration(*map(float, self.calibration[0 if constant else 1]))
         return probability_within(variances, distance, calibration, level)
 
