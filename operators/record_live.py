@@ -3,7 +3,10 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.languages import translated
 from ..mocap_assist.live.live_take import (
+    ESC_ENDS,
+    NO_DURATION,
     LiveBundle,
     keep_on_esc,
     read_live,
@@ -26,6 +29,18 @@ class MOCAP_OT_record_live(WatchedOperator, bpy.types.Operator):
     selected, why_not = selected_armature, why_not_record
     read_scene, write_scene = read_live, write_live
     open_view, rescue = watch_live, keep_on_esc
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        if not self.duration:  # nothing would end it
+            self.report({"ERROR"}, translated(NO_DURATION))
+            return {"CANCELLED"}
+        return super().execute(context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        outcome = super().invoke(context, event)
+        if outcome == {"RUNNING_MODAL"}:
+            self._watch.ending = ESC_ENDS
+        return outcome
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw nothing: a recording cannot be made again with other settings."""

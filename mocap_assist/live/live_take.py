@@ -2,14 +2,11 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, NamedTuple
 
 import bpy
-import numpy as np
 from mathutils import Matrix, Quaternion
 
-from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.recordings.live import PORT
 from ...solvers.settings import Settings, setting
@@ -19,6 +16,7 @@ from ..actions.action_write import write_action
 from ..actions.armature_write import check_writable
 from ..actions.reliability_curves import write_reliability
 from ..blender import compat
+from ..blender.block_references import BlockReference
 from ..blender.stored_json import store_json
 from ..jobs.protocol import PreviewSolve
 from ..panels.preference_values import preferences, preferred
@@ -28,8 +26,10 @@ from ..runtime.selection import selected_armature
 from ..scene import history
 from ..scene.controls import BoneKeys
 from ..scene.scene_rate import scene_rate
-from .solve_live_take import LiveProblem, RecordedTake, record_live, recorded_take
+from .solve_live_take import LiveBones, LiveProblem, RecordedTake, record_live, recorded_take
 
+NO_DURATION = "Set the duration of the recording: scripts and repeated presses have no Esc."
+ESC_ENDS = "Esc ends the recording"
 RECORDED_LIVE = "mocap_assist_recorded_live"
 """Custom property of the action: its origin as JSON. Clean treats it as raw."""
 
@@ -68,12 +68,12 @@ def read_live(
 ) -> PreviewSolve[RecordedTake]:
     """Read the rest pose of the rig; return the picklable solve."""
     choices = settings.choices
-    if bpy.app.background and not choices.duration:
-        raise InvalidMotionError("Without a window, set the duration of the recording.")
     check_writable(armature)
     rig, _ = read_target(scene, armature, find_roles(armature), choices.live_limbs, False)
     port = preferred("live_port") if preferences() is not None else PORT
-    return PreviewSolve(record_live, LiveProblem(port, rig, settings.taking, choices.duration))
+    first_frame = scene.frame_current_final
+    problem = LiveProblem(port, rig, settings.taking, choices.duration, first_frame)
+    return PreviewSolve(record_live, problem)
 
 
 def watch_live(
@@ -104,13 +104,10 @@ def write_live(
     _, switches = read_target(
         scene, armature, find_roles(armature), settings.choices.live_limbs, False
     )
-    step = scene_rate(scene) / take.frame_rate
-    frames, chosen = np.unique(np.round(take.frames * step), return_index=True)
-    frames = frames + scene.frame_current
-    keys = {bone: _at(channels, chosen) for bone, channels in take.keys.items()}
-    action, slot = write_action(armature, f"{armature.name}.live", frames, keys, switches)
-    confidence = {bone: values[chosen] for bone, values in take.confidence.items()}
-    write_reliability(armature, action, slot, frames, confidence)
+    frames = take.first_frame + take.frames * (scene_rate(scene) / take.frame_rate)
+    name = f"{armature.name}.live"
+    action, slot = write_action(armature, name, frames, take.keys, switches)
+    write_reliability(armature, action, slot, frames, take.confidence)
     store_json(action, RECORDED_LIVE, {
         "version": version(),
         "operation": "record_live",
@@ -123,55 +120,57 @@ def write_live(
     return f"{message} {take.remark}".strip()
 
 
-def _at(channels: BoneKeys, frames: Array) -> BoneKeys:
-    return BoneKeys(
-        *(
-            None if each is None else each[frames]
-            for each in (channels.rotations, channels.locations)
-        )
-    )
-
-
 class LivePoses:
     """Poses a rig by the newest preview until it is closed; then restores its pose."""
 
     def __init__(
         self, armature: bpy.types.Object, switches: Mapping[tuple[str, str], float]
     ) -> None:
-        self._armature = partial(bpy.data.objects.get, armature.name)
+        self._armature = BlockReference.of(armature)
         self._switches = switches
-        self._before: dict[str, Any] | None = None
+        self._bones: LiveBones | None = None
+        self._poses: dict[str, Matrix] = {}
+        self._old_switches: dict[tuple[str, str], Any] = {}
 
     def show(
         self, scene: bpy.types.Scene, target: bpy.types.Object, previews: Iterable[Any]
     ) -> None:
         """Let the rig take the pose of the last preview, if there is one."""
-        newest = list(previews)
-        if not newest:
+        newest = None
+        for preview in previews:
+            if isinstance(preview, LiveBones):
+                self._begin(target, preview)
+            else:
+                newest = preview
+        if newest is None or self._bones is None:
             return
-        bones = target.pose.bones
-        if self._before is None:
-            self._before = {name: bones[name].matrix_basis.copy() for name in newest[-1].keys}
-            self._old_switches = {
-                (bone, prop): bones[bone][prop] for bone, prop in self._switches
-                if bone in bones and prop in bones[bone]
-            }  # fmt: skip
-            for bone, prop in self._old_switches:
-                bones[bone][prop] = self._switches[bone, prop]
-        for name, channels in newest[-1].keys.items():
-            _pose(bones[name], channels)
+        for name, channels in newest.keys(self._bones).items():
+            _pose(target.pose.bones[name], channels)
         target.update_tag()
 
     def close(self) -> None:
         """Give the rig its former pose."""
-        armature = self._armature()
-        if self._before is None or armature is None:
+        try:
+            armature = self._armature.find()
+        except InvalidMotionError:  # deleted meanwhile
             return
-        for name, matrix in self._before.items():
-            armature.pose.bones[name].matrix_basis = matrix
+        bones = armature.pose.bones
+        for name in self._poses.keys() & set(bones.keys()):
+            bones[name].matrix_basis = self._poses[name]
         for (bone, prop), value in self._old_switches.items():
-            armature.pose.bones[bone][prop] = value
-        self._before = None
+            if bone in bones:
+                bones[bone][prop] = value
+        armature.update_tag()
+
+    def _begin(self, target: bpy.types.Object, shown: LiveBones) -> None:
+        """Remember the pose, and switch limbs to the controls that are keyed."""
+        bones, self._bones = target.pose.bones, shown
+        names = (*shown.rotating, *shown.moving)
+        self._poses = {name: bones[name].matrix_basis.copy() for name in names}
+        for (bone, prop), value in self._switches.items():
+            if bone in bones and prop in bones[bone]:
+                self._old_switches[bone, prop] = bones[bone][prop]
+                bones[bone][prop] = value
 
 
 def _pose(bone: bpy.types.PoseBone, channels: BoneKeys) -> None:

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...solvers.arrays import Array
-from ...solvers.errors import InvalidMotionError
+from ...solvers.arrays import Array, Single
+from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion import HumanoidMap, Motion, find_humanoid_map, forward_kinematics
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings.live import Receiver, StreamReader
@@ -21,7 +21,8 @@ from ..track.pose_previews import Show, no_preview
 POLL_INTERVAL_S = 0.002
 """Seconds between two looks at the socket. It bounds the delay, and the processor's load."""
 MAX_SILENCE_S = 10.0
-"""Seconds without data after which a recording of fixed duration ends. It guards scripts."""
+"""Seconds without a pose after which a recording of fixed duration ends. It guards scripts."""
+NOTHING_RECORDED = "Nothing was recorded: the actor was not measured yet."
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,27 +34,57 @@ class LiveProblem:
     settings: LiveTakeSettings
     duration_s: float
     """After calibration; 0: until Esc."""
+    first_frame: float
+    """Frame of the scene at which the recording starts."""
+
+
+class LiveBones(NamedTuple):
+    """First preview: what the frames hold."""
+
+    frame_rate: float
+    first_frame: float
+    rotating: tuple[str, ...]
+    moving: tuple[str, ...]
+    judged: tuple[str, ...]
+    """Bones with a confidence."""
 
 
 class LiveFrameKeys(NamedTuple):
-    """One frame of the rig: its preview, and a part of the recording."""
+    """One frame of the rig: a preview, and a part of the recording."""
 
-    frame_rate: float
     frame: int
-    keys: Mapping[str, BoneKeys]
-    confidence: Mapping[str, float]
-    """Of each keyed bone."""
+    n_skipped: int
+    rotations: Single
+    """Shape (n_rotating, 4)."""
+    locations: Single
+    """Shape (n_moving, 3)."""
+    confidence: Single
+    """Shape (n_judged,)."""
+
+    def keys(self, bones: LiveBones) -> dict[str, BoneKeys]:
+        """Return the channels of each bone, of one frame."""
+        rotations, locations = self.rotations[None], self.locations[None]
+        return channels_of(bones, rotations.astype(np.float64), locations.astype(np.float64))
 
 
 class RecordedTake(NamedTuple):
     """Channels of each bone for all frames."""
 
     frame_rate: float
+    first_frame: float
     frames: Array
-    """Numbers of the frames, shape (n_frames,), from 0."""
+    """Numbers of the frames, shape (n_frames,), from 0; some may be left out."""
     keys: Mapping[str, BoneKeys]
     confidence: Mapping[str, Array]
     remark: str = ""
+
+
+def channels_of(bones: LiveBones, rotations: Array, locations: Array) -> dict[str, BoneKeys]:
+    """Return the channels of each bone from those of all, (n_frames, n_bones, 4 or 3)."""
+    turned = dict(zip(bones.rotating, rotations.swapaxes(0, 1), strict=True))
+    moved = dict(zip(bones.moving, locations.swapaxes(0, 1), strict=True))
+    names = dict.fromkeys((*bones.rotating, *bones.moving))
+    return {name: BoneKeys(turned.get(name), moved.get(name)) for name in names}
 
 
 def record_live(
@@ -61,66 +92,92 @@ def record_live(
 ) -> RecordedTake:
     """Receive, reconstruct and retarget frames until the duration is over.
 
+    Silence and errors end the recording, which then holds the frames before.
+
     Raises
     ------
     InvalidMotionError
         No data came, or no body was found in it.
     """
+    shown: list[Any] = []
+
+    def keep(preview: Any) -> None:
+        show(preview)
+        shown.append(preview)
+
+    try:
+        _record(problem, progress, keep)
+    except MocapAssistError as error:
+        if len(shown) > 1:
+            return recorded_take(shown)._replace(remark=str(error))
+        raise
+    return recorded_take(shown)
+
+
+def _record(problem: LiveProblem, progress: Progress, keep: Show) -> None:
     take, stream = LiveTake(problem.settings), StreamReader()
-    shown: list[LiveFrameKeys] = []
     rig: _LiveRig | None = None
-    last_data = monotonic()
+    n_frames, last_pose = 0, monotonic()
     with Receiver(problem.port) as receiver:
-        while True:
+        while not problem.duration_s or n_frames < problem.duration_s * (
+            rig.frame_rate if rig else np.inf
+        ):
             frames = list(stream.read(*receiver.poll()))
+            progress(*_state(take, stream.heard.frames))
+            poses = take.add(frames)
+            if take.calibration is not None and rig is None:
+                rig = _LiveRig(problem, take.calibration, take.names)
+                keep(rig.bones)
+            if rig is not None:
+                for pose in poses:
+                    keep(rig.keys(pose, take.n_skipped))
+                    n_frames = pose.frame
+            if poses or (rig is None and take.calibrated_fraction > 0.0 and frames):
+                last_pose = monotonic()
+            elif problem.duration_s and monotonic() - last_pose > MAX_SILENCE_S:
+                raise InvalidMotionError(
+                    f"No actor was seen on port {problem.port} for {MAX_SILENCE_S:.0f} seconds."
+                    " Start the tracker, and check the port."
+                )
             if not frames:
-                _check_silence(problem, last_data)
-                progress(*_state(problem, take, len(shown), stream.heard.frames))
                 sleep(POLL_INTERVAL_S)
-                continue
-            last_data = monotonic()
-            for motion in take.add(frames):
-                if rig is None and take.calibration is not None:
-                    rig = _LiveRig(problem.target, take.calibration, take.names)
-                if rig is not None:
-                    shown.append(rig.keys(motion))
-                    show(shown[-1])
-            if problem.duration_s and shown and _seconds(shown) >= problem.duration_s:
-                return recorded_take(shown, take.n_skipped)
 
 
-def recorded_take(previews: Iterable[Any], n_skipped: int = 0) -> RecordedTake:
-    """Return the recording that these previews are the frames of.
+def recorded_take(previews: Iterable[Any]) -> RecordedTake:
+    """Return the recording that these previews are.
 
     Raises
     ------
     InvalidMotionError
-        There are none.
+        They hold no frame.
     """
-    frames = list(previews)
+    bones, *frames = [*previews] or [None]
     if not frames:
-        raise InvalidMotionError(
-            "Nothing was recorded: the actor was not measured yet. Start the tracker first."
-        )
-    first, numbers = frames[0], np.array([each.frame for each in frames], dtype=np.float64)
-    remark = f"{n_skipped} frames were skipped, as the solver was busy." if n_skipped else ""
+        raise InvalidMotionError(NOTHING_RECORDED)
+    numbers = np.array([each.frame for each in frames], dtype=np.float64)
+    rotations, locations, confidence = (
+        np.stack([getattr(each, name) for each in frames]).astype(np.float64)
+        for name in ("rotations", "locations", "confidence")
+    )
+    n_skipped = frames[-1].n_skipped
     return RecordedTake(
-        first.frame_rate,
+        bones.frame_rate,
+        bones.first_frame,
         numbers - numbers[0],
-        {bone: _joined([each.keys[bone] for each in frames]) for bone in first.keys},
-        {
-            bone: np.array([each.confidence[bone] for each in frames])
-            for bone in first.confidence
-        },
-        remark,
+        channels_of(bones, rotations, locations),
+        dict(zip(bones.judged, confidence.T, strict=True)),
+        f"{n_skipped} frames were skipped, as the solver was busy." if n_skipped else "",
     )
 
 
 class _LiveRig:
     """A target that follows an actor, who starts in its origin."""
 
-    def __init__(self, target: TargetRig, calibration: Motion, names: tuple[str, ...]) -> None:
-        self._target = target
+    def __init__(
+        self, problem: LiveProblem, calibration: Motion, names: tuple[str, ...]
+    ) -> None:
+        target = problem.target
+        self._target, self.frame_rate = target, calibration.frame_rate
         self._start = calibration.root_positions[-1] * (1.0, 1.0, 0.0)
         roles = find_humanoid_map(calibration.skeleton)
         self._retargeting = LiveRetargeting(
@@ -132,14 +189,26 @@ class _LiveRig:
         )
         self._sources = _sources(target, roles, names)
         self._still = Carried(IDENTITY[None], np.zeros(3), np.zeros((1, 3)))
+        self.bones = LiveBones(
+            self.frame_rate,
+            problem.first_frame,
+            tuple(control.bone for control in target.controls if control.rotates),
+            tuple(control.bone for control in target.controls if control.moves),
+            tuple(self._sources),
+        )
 
-    def keys(self, live: LiveMotion) -> LiveFrameKeys:
+    def keys(self, live: LiveMotion, n_skipped: int) -> LiveFrameKeys:
         posed = self._retargeting.update(_moved(live.motion, -self._start))
         keys = keys_of(self._target, forward_kinematics(posed), self._still)
-        confidence = {
-            bone: float(live.joints.confidence[joint]) for bone, joint in self._sources.items()
-        }
-        return LiveFrameKeys(posed.frame_rate, live.frame, keys, confidence)
+        rotations = [keys[bone].rotations for bone in self.bones.rotating]
+        locations = [keys[bone].locations for bone in self.bones.moving]
+        return LiveFrameKeys(
+            live.frame,
+            n_skipped,
+            np.array(rotations, dtype=np.float32).reshape(-1, 4),
+            np.array(locations, dtype=np.float32).reshape(-1, 3),
+            live.joints.confidence[list(self._sources.values())].astype(np.float32),
+        )
 
 
 def _sources(target: TargetRig, roles: HumanoidMap, names: tuple[str, ...]) -> dict[str, int]:
@@ -158,34 +227,10 @@ def _moved(motion: Motion, offset: Array) -> Motion:
     return motion.with_poses(motion.rotations, motion.root_positions + offset)
 
 
-def _joined(channels: list[BoneKeys]) -> BoneKeys:
-    """Return the channels of a bone over several frames."""
-    rotations = [each.rotations for each in channels if each.rotations is not None]
-    locations = [each.locations for each in channels if each.locations is not None]
-    return BoneKeys(
-        np.concatenate(rotations) if rotations else None,
-        np.concatenate(locations) if locations else None,
-    )
-
-
-def _seconds(shown: list[LiveFrameKeys]) -> float:
-    return (shown[-1].frame - shown[0].frame + 1) / shown[0].frame_rate
-
-
-def _check_silence(problem: LiveProblem, last_data: float) -> None:
-    if problem.duration_s and monotonic() - last_data > MAX_SILENCE_S:
-        raise InvalidMotionError(
-            f"No data came on port {problem.port} for {MAX_SILENCE_S:.0f} seconds. Start the"
-            " tracker, and check the port."
-        )
-
-
-def _state(
-    problem: LiveProblem, take: LiveTake, n_shown: int, n_heard: int
-) -> tuple[float, str]:
+def _state(take: LiveTake, n_heard: int) -> tuple[float, str]:
     """Return fraction and message of the progress."""
     if not n_heard:
         return 0.0, "Waiting for the tracker"
     if take.calibration is None:
         return take.calibrated_fraction, "Measuring the actor: move arms and legs"
-    return 1.0, "Recording: Esc ends"
+    return 1.0, "Recording"

@@ -43,6 +43,7 @@ class Watch:
         self._stop = stop
         self._began = monotonic()
         self.is_cancelled = False
+        self.ending = "Esc cancels"
         manager = context.window_manager
         manager.mocap_assist_job.owner = owner
         self._timer = manager.event_timer_add(TIMER_INTERVAL_S, window=context.window)
@@ -61,7 +62,7 @@ class Watch:
         state.running, state.fraction, state.message = True, fraction, message
         left = time_left(fraction, monotonic() - self._began)
         parts = [f"{translated(message)} {fraction:.0%}", translated(left)]
-        shown = "   ".join([*filter(None, parts), translated("Esc cancels")])
+        shown = "   ".join([*filter(None, parts), translated(self.ending)])
 
         def draw(header: bpy.types.Header, context: bpy.types.Context) -> None:
             row = header.layout.row(align=True)
@@ -100,7 +101,7 @@ def cancel_running() -> None:
 
 def time_left(fraction: float, elapsed_s: float) -> str:
     """Return how long a solve will still take, or an empty text while that is not known."""
-    if fraction < MIN_FRACTION or elapsed_s < MIN_ELAPSED_S:
+    if not MIN_FRACTION <= fraction < 1.0 or elapsed_s < MIN_ELAPSED_S:
         return ""
     left_s = elapsed_s * (1.0 - fraction) / fraction
     if left_s < SECONDS_UP_TO_S:

@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..motion.skeletons import MIN_BONE_M
 from ..rotations import (
     matrix_from_quaternion,
     normalize,
@@ -17,6 +16,9 @@ from .body_tables import SIDES
 from .joint_centers import JointCenters
 from .vectors import frame, median, swing_frames
 
+MIN_FOOT_M = 0.05
+"""Minimum distance between heel and toe markers. It guards a division where both labels are at
+one place."""
 MAX_SLOPE_SINE = 0.4
 """Maximum sine of the angle between the line of heel and toe markers and the sole. It guards
 actors whose heels never reach the ground, and heights that no angle has."""
@@ -80,7 +82,7 @@ def _leveling_matrix(heel: Array, toe: Array) -> Array:
     )
     length = float(median(np.linalg.norm(heel - toe, axis=-1)[:, None])[0])
     sine = np.clip(
-        (low_heel - low_toe) / max(length, MIN_BONE_M), -MAX_SLOPE_SINE, MAX_SLOPE_SINE
+        (low_heel - low_toe) / max(length, MIN_FOOT_M), -MAX_SLOPE_SINE, MAX_SLOPE_SINE
     )
     cosine = np.sqrt(1.0 - sine**2)
     return np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])

@@ -205,8 +205,8 @@ class LiveRetargeting:
         target_map: HumanoidMap,
         settings: RetargetSettings = RetargetSettings(),
     ) -> None:
-        source = find_body(motion.skeleton, source_map, "source's")
-        target = find_body(target_skeleton, target_map, "target's")
+        source = find_body(motion.skeleton, source_map, SOURCE)
+        target = find_body(target_skeleton, target_map, TARGET)
         contacts = _find_contacts(motion, source_map)
         poses = forward_kinematics(without_gaps(motion, source)[0])
         self._target_skeleton = target_skeleton

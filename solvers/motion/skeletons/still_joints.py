@@ -11,7 +11,11 @@ STILL_RAD = np.radians(0.02)
 file; the joints of an actor who stands still rotate by 0.1 degrees."""
 
 
-def still_joints(motion: Motion) -> Flags:
-    """Return which joints keep their local rotation, shape (n_joints,); NaN is left out."""
+def still_joints(motion: Motion, tolerance: float = STILL_RAD) -> Flags:
+    """Return which joints keep their local rotation within radians, shape (n_joints,).
+
+    NaN is left out; a joint that was never observed does not count as still.
+    """
     angles = angle_between(mean_rotation(motion.rotations), motion.rotations)
-    return np.asarray(np.nan_to_num(angles).max(axis=0) < STILL_RAD)
+    is_observed = motion.observed.any(axis=0)
+    return np.asarray(is_observed & (np.nan_to_num(angles).max(axis=0) < tolerance))

@@ -242,7 +242,7 @@ class ResidualPrior:
     ) -> Array:
         """Return the probability that joints of a new actor are near their mean.
 
-        `constant`: with the constant offset. `level`: mean log variance of the complete take."""
+        `constant`: with the constant offset. `level`: mean log variance of the take."""
         calibration = Calibration(*map(float, self.calibration[0 if constant else 1]))
         return probability_within(variances, distance, calibration, level)
 

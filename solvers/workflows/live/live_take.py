@@ -27,9 +27,9 @@ delay when frames arrive faster than they are reconstructed."""
 N_WARM_UP_FRAMES = 10
 """Number of frames of the calibration with which the filters begin. It guards the first poses
 against a jump, and bounds the time in which the stream waits."""
-MAX_GAP_FRAMES = 60
-"""Number of frames without data after which the filters start again. It bounds the time that a
-long gap takes."""
+MAX_GAP_S = 0.5
+"""Seconds without data after which the actor is measured from the start, or the filters begin
+again. It guards filters, whose frames follow each other, and lengths from a few frames."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +52,7 @@ class LiveMotion(NamedTuple):
     Attributes
     ----------
     frame : int
-        Since the first frame after calibration, at the rate of the stream.
+        Time slot after calibration, at the rate of the stream; slots without data are left out.
     motion : Motion
         One frame, without gaps.
     joints : LivePose
@@ -109,12 +109,13 @@ class LiveTake:
             self._calibrate(arrived)
             return []
         self.n_skipped += max(len(arrived) - MAX_WAITING, 0)
-        return [pose for frame in arrived[-MAX_WAITING:] for pose in self._started.add(frame)]
+        poses = [self._started.add(frame) for frame in arrived[-MAX_WAITING:]]
+        return [pose for pose in poses if pose is not None]
 
     def _calibrate(self, frames: list[LiveFrame]) -> None:
         for frame in frames:
-            if self._first_frames and frame.time <= self._first_frames[-1].time:
-                self._first_frames.clear()  # another sender, or the same one again
+            if self._first_frames and not _continues(self._first_frames[-1], frame):
+                self._first_frames.clear()
             self._first_frames.append(frame)
         if self.calibrated_fraction < 1.0:
             return
@@ -124,7 +125,7 @@ class LiveTake:
             self._first_frames.clear()
             return
         settings = ReconstructSettings(smoothing=self._settings.smoothing)
-        self._started = _StartedTake(recording, settings, self._first_frames[-1].time)
+        self._started = _StartedTake(recording, settings, self._first_frames[-1])
         self._first_frames.clear()
 
 
@@ -132,7 +133,7 @@ class _StartedTake:
     """A take whose actor was measured."""
 
     def __init__(
-        self, recording: JointRecording, settings: ReconstructSettings, last_time: float
+        self, recording: JointRecording, settings: ReconstructSettings, last: LiveFrame
     ) -> None:
         self._actor = measure_actor(recording, settings=settings)
         causal = replace(settings, causal=True)
@@ -144,44 +145,51 @@ class _StartedTake:
         n_warm_up = min(N_WARM_UP_FRAMES, recording.n_frames)
         for frame in _observed_frames(recording, recording.n_frames - n_warm_up):
             self._reconstructor.update(frame)
-        self._last = _complete_pose(self.calibration, self.calibration.n_frames - 1)
-        self._start, self._slot = last_time, 0
+        self._pose = _complete_pose(self.calibration, self.calibration.n_frames - 1)
+        self._last, self._start, self._slot = last, last.time, 0
 
     @property
     def names(self) -> tuple[str, ...]:
         return self._actor.names
 
-    def add(self, frame: LiveFrame) -> list[LiveMotion]:
-        """Return the poses up to this frame: one, or more after a gap, or none."""
-        if frame.names != self._actor.names:
-            return []
-        slot = round((frame.time - self._start) * self._actor.frame_rate)
-        n_missing = slot - self._slot - 1
-        if n_missing >= MAX_GAP_FRAMES or slot < self._slot:
-            self._reconstructor = LiveReconstructor(self._actor)
-            self._start = frame.time - (self._slot + 1) / self._actor.frame_rate
-            slot, n_missing = self._slot + 1, 0
-        missing = ObservedFrame(np.full((len(frame.names), 3), np.nan))
-        if slot == self._slot:
-            return []
-        observed = [missing] * n_missing + [
-            ObservedFrame(frame.positions, frame.states, frame.confidence)
-        ]
-        return [self._reconstruct(each) for each in observed]
+    def add(self, frame: LiveFrame) -> LiveMotion | None:
+        """Return the pose of a frame; None if it has other joints, or shares its time slot.
 
-    def _reconstruct(self, observed: ObservedFrame) -> LiveMotion:
-        pose, actor = self._reconstructor.update(observed), self._actor
-        self._slot += 1
+        Slots without a frame stay empty. After a gap, and with another body, the filters begin
+        again; a clock that was set back goes on from the last slot.
+        """
+        actor = self._actor
+        if frame.names != actor.names:
+            return None
+        if not _continues(self._last, frame):
+            self._reconstructor = LiveReconstructor(actor)
+        if frame.time <= self._last.time:
+            self._start = frame.time - (self._slot + 1) / actor.frame_rate
+        slot = round((frame.time - self._start) * actor.frame_rate)
+        self._last = frame
+        if slot <= self._slot:
+            return None
+        self._slot = slot
+        observed = ObservedFrame(frame.positions, frame.states, frame.confidence)
+        return LiveMotion(slot, *self._reconstruct(observed))
+
+    def _reconstruct(self, observed: ObservedFrame) -> tuple[Motion, LivePose]:
+        found, actor = self._reconstructor.update(observed), self._actor
         motion = motion_from_positions(
-            Tracks(actor.names, pose.positions[None], actor.frame_rate),
+            Tracks(actor.names, found.positions[None], actor.frame_rate),
             joint_parents(actor.names),
-            pose.reliability[None],
+            found.reliability[None],
             skeleton=self.calibration.skeleton,
-            twists=pose.twists,
+            twists=found.twists,
             refine=False,
         )
-        self._last = _complete_pose(motion, 0, self._last)
-        return LiveMotion(self._slot, self._last, pose)
+        self._pose = _complete_pose(motion, 0, self._pose)
+        return self._pose, found
+
+
+def _continues(last: LiveFrame, frame: LiveFrame) -> bool:
+    """Return whether a frame shows the same body soon after the last one."""
+    return frame.body == last.body and 0.0 < frame.time - last.time <= MAX_GAP_S
 
 
 def _observed_frames(recording: JointRecording, first: int) -> Iterable[ObservedFrame]:
