@@ -73,7 +73,7 @@ def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, *owners: st
         column = layout.column(align=True)
         text = f"{translated(job.message)} {job.fraction:.0%}"
         column.progress(factor=job.fraction, type="BAR", text=text, translate=False)
-        column.label(text="Esc cancels")
+        column.label(text=translated(job.ending), translate=False)
     return bool(job.running)
 
 

@@ -60,6 +60,7 @@ class Watch:
         if not state.running or fraction < state.fraction:  # a new phase, or take
             self._began = monotonic()
         state.running, state.fraction, state.message = True, fraction, message
+        state.ending = self.ending
         left = time_left(fraction, monotonic() - self._began)
         parts = [f"{translated(message)} {fraction:.0%}", translated(left)]
         shown = "   ".join([*filter(None, parts), translated(self.ending)])

@@ -11,7 +11,8 @@ import time
 from importlib import import_module
 
 import bgui
-from driver_scene import empty_scene, unfold_alone
+import bpy
+from driver_scene import empty_scene, settle, unfold_alone
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 
@@ -61,7 +62,33 @@ def steps():
     yield from bgui.key("Escape")
     yield 0.5
     assert listening.current() is None
+    yield from record_live()
     bgui.shot()
+
+
+def record_live():
+    """The sample's armature follows the made actor; Esc makes an action of it."""
+    bpy.ops.mocap_assist.load_sample()
+    armature = bpy.context.view_layer.objects.active
+    sample = armature.animation_data.action
+    yield from settle(pointer=middle_of_view())
+    yield from bgui.scan()
+    bgui.shot("6-armature.png")
+    yield from bgui.click(*bgui.at("mocap_assist.record_live"))
+    bgui.move(*middle_of_view())
+    job = bpy.context.window_manager.mocap_assist_job
+    assert job.running
+    yield from perform("hand up", "wave right", "wave left")
+    assert job.message == "Recording"
+    bgui.shot("7-recording.png")
+    yield from perform("hand up")
+    bgui.shot("8-hand-up.png")
+    yield from bgui.key("Escape")
+    yield 1.0
+    assert not job.running
+    action = armature.animation_data.action
+    assert action != sample and action.frame_range[1] - action.frame_range[0] > 60
+    yield from settle()
 
 
 def middle_of_view():
