@@ -201,7 +201,9 @@ class MOCAP_PG_job(bpy.types.PropertyGroup):
     running: bpy.props.BoolProperty(name="Running")
     fraction: bpy.props.FloatProperty(name="Done", subtype="FACTOR", min=0.0, max=1.0)
     message: bpy.props.StringProperty(name="Message")
-    ending: bpy.props.StringProperty(name="Ending", description="What Esc does")
+    ending: bpy.props.StringProperty(
+        name="Ending", description="What Esc does", default="Esc cancels"
+    )
     owner: bpy.props.StringProperty(name="Panel", description="Panel that shows the progress")
 
 
