@@ -11,6 +11,7 @@ from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion
 from ...solvers.rotations import multiply, rotate
+from ..actions.fitting import fitting_slots
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene.rig import placement_of
@@ -56,10 +57,12 @@ def with_carriers(
     for carrier in carriers:
         _play(carrier, armature, source)
     moves = []
-    for frame in frames:
-        scene.frame_set(int(np.floor(frame)), subframe=float(frame - np.floor(frame)))
-        moves.append(placement_of(_carried_by(armature) @ start, armature.name))
-    scene.frame_set(before)
+    try:
+        for frame in frames:
+            scene.frame_set(int(np.floor(frame)), subframe=float(frame - np.floor(frame)))
+            moves.append(placement_of(_carried_by(armature) @ start, armature.name))
+    finally:
+        scene.frame_set(before)
     if np.ptp([size for _, _, size in moves]) > MAX_GROWTH:
         raise InvalidMotionError(
             f"The objects above {armature.name} change their size. Bake them into its bones."
@@ -80,11 +83,7 @@ def _above(armature: bpy.types.Object) -> Iterator[bpy.types.Object]:
 
 
 def _is_moving(carrier: bpy.types.Object) -> bool:
-    animation = carrier.animation_data
-    return bool(
-        carrier.constraints
-        or (animation is not None and (animation.action or animation.nla_tracks))
-    )
+    return bool(carrier.constraints) or carrier.animation_data is not None
 
 
 def _carried_by(armature: bpy.types.Object) -> Matrix:
@@ -94,21 +93,40 @@ def _carried_by(armature: bpy.types.Object) -> Matrix:
 
 
 def _play(carrier: bpy.types.Object, armature: bpy.types.Object, source: Source) -> None:
-    """Let a carrier play its slot of an action, or the track that is called as the take's."""
-    action, _ = source
+    """Let a carrier play its part of a take; without one it stays where it is.
+
+    Where the armature has no other take, what the carrier plays is of this one.
+    """
+    part = _part_of(carrier, armature, source[0])
+    n_takes = sum(bool(fitting_slots(armature, action)) for action in bpy.data.actions)
+    if part is None and n_takes == 1:
+        return
+    carrier.animation_data_create().action = None
+    for track in _tracks(carrier):
+        track.mute = True
+    if part is not None:
+        compat.assign(carrier, *part)
+
+
+def _part_of(
+    carrier: bpy.types.Object, armature: bpy.types.Object, action: bpy.types.Action
+) -> Source | None:
+    """Return the carrier's slot of an action, or what is called as the take of the armature."""
     own = next((slot for slot in action.slots if slot.identifier == f"OB{carrier.name}"), None)
     if own is not None:
-        compat.assign(carrier, action, own)
-        return
+        return action, own
     names = {
         track.name
         for track in _tracks(armature)
-        if any(s.action == action for s in track.strips)
+        if any(strip.action == action for strip in track.strips)
     }
     for track in _tracks(carrier):
         if track.name in names and track.strips:
             strip = track.strips[0]
-            compat.assign(carrier, strip.action, strip.action_slot)
+            return strip.action, strip.action_slot
+    _, bar, stack = action.name.partition("|")  # Blender's older importer of FBX
+    part = bpy.data.actions.get(f"{carrier.name}|{stack}") if bar else None
+    return (part, part.slots[0]) if part and part.slots else None
 
 
 def _tracks(owner: bpy.types.Object) -> list[bpy.types.NlaTrack]:
