@@ -38,6 +38,7 @@ LABELED = {
     "mocap_assist/importing/recording_objects.py": {"make_objects", "_never_observed",
                                                     "_make_armature", "add_takes"},
     "mocap_assist/library/background.py": {"message_of"},
+    "mocap_assist/library/left_out.py": {"describe_left_out"},
     "mocap_assist/live/listening.py": {"MODES"},
     "mocap_assist/panels/figure_rows.py": {"FIGURES"},
     "mocap_assist/retarget/bone_list.py": {"PRESETS"},

@@ -16,8 +16,6 @@ half of the width of a wrist."""
 MIN_GROWTH = 0.02
 """Difference of a bone's scale from 1, a ratio, from which it is reported. Chosen by hand: 1 cm
 of a thigh."""
-N_SAMPLED_KEYS = 5
-"""Number of keys of a scale, evenly spaced, that are looked at. It bounds the run time."""
 MAX_LISTED = 3
 
 
@@ -61,11 +59,9 @@ def _shifts(names: Sequence[str], positions: Array) -> dict[str, float]:
 
 
 def _grows(curve: bpy.types.FCurve) -> bool:
-    points = curve.keyframe_points
-    step = max(1, len(points) // N_SAMPLED_KEYS)
-    return any(
-        abs(points[index].co.y - 1.0) >= MIN_GROWTH for index in range(0, len(points), step)
-    )
+    keys = np.empty((len(curve.keyframe_points), 2), np.float32)
+    curve.keyframe_points.foreach_get("co", keys.ravel())
+    return bool(np.any(np.abs(keys[:, 1] - 1.0) >= MIN_GROWTH))
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -140,6 +140,28 @@ def test_a_body_moves_with_what_carries_it(walker, blank, tmp_path, brought, suf
     assert where["Hips"][-1] - where["Hips"][0] == pytest.approx([3.0, 2.0, 0.0], abs=0.02)
 
 
+def test_a_body_has_not_the_travel_of_another_take(walker, blank, load):
+    carrier = blank.data.objects.new("Carrier", None)
+    blank.context.scene.collection.objects.link(carrier)
+    walker.parent = carrier
+    for frame, along in ((1, 0.0), (60, 2.0)):
+        carrier.location.y = along
+        carrier.keyframe_insert("location", frame=frame)
+    track = carrier.animation_data.nla_tracks.new()
+    track.strips.new("first", 1, carrier.animation_data.action)
+    walker.animation_data.action.copy()
+    source = walker.animation_data.action, walker.animation_data.action_slot
+    take = load("mocap_assist.actions.armature_read").read_take(walker, blank.context.scene)
+    motion = take.parts[0].motion
+
+    carried = load("mocap_assist.library.carriers").with_carriers(
+        blank.context.scene, walker, source, take.frames, motion, 1.0
+    )
+
+    travel = carried.root_positions - motion.root_positions
+    assert travel == pytest.approx(0.0, abs=1e-5)
+
+
 def test_keys_at_tenths_of_a_frame_make_no_finer_take(make_armature, animate, blank, load):
     """Exporters add keys between frames at fast moments."""
     armature = make_armature()
@@ -181,10 +203,13 @@ def test_what_bones_do_beyond_rotations_is_reported(walker, blank, tmp_path, bro
         walker.pose.bones["LeftUpLeg"].keyframe_insert("location", frame=frame)
         walker.pose.bones["Head"].scale = (size,) * 3
         walker.pose.bones["Head"].keyframe_insert("scale", frame=frame)
+    for frame, size in ((26, 1.0), (30, 0.5), (34, 1.0)):
+        walker.pose.bones["LeftArm"].scale.y = size
+        walker.pose.bones["LeftArm"].keyframe_insert("scale", index=1, frame=frame)
     export(blank, tmp_path / "take.glb")
 
     brought(tmp_path / "take.glb")
 
     said = capfd.readouterr().out
     assert "distance to their parents, which is left out: LeftUpLeg, by up to 10 cm." in said
-    assert "Bones change their size, which is left out: Head." in said
+    assert "Bones change their size, which is left out: Head, LeftArm." in said
