@@ -149,9 +149,19 @@ def write_fixed(
     name = action.name
     keep_card(action, report)  # Esc may end the retargeting
     if settings.choices.rig:
-        report = yield from retargeted(here, settings.choices.rig, report)
+        try:
+            report = yield from retargeted(here, settings.choices.rig, report)
+        except GeneratorExit:  # Esc: Blender adds no undo step for a button that was cancelled
+            push_undo(name)
+            raise
         keep_card(played_source(here.find()[1])[0], report)
     return f"{name} was fixed: {_summary(report)}."
+
+
+def push_undo(name: str) -> None:
+    """Add an undo step after the fix of an action or take of that name."""
+    if bpy.ops.ed.undo_push.poll():
+        bpy.ops.ed.undo_push(message=f"Fix {name}")
 
 
 def fixed_subject(subject: bpy.types.Object, fixed: Fixed) -> bpy.types.Object:

@@ -11,6 +11,7 @@ from ..blender.path_properties import FOLDER, HIDDEN, absolute, path_property
 from ..jobs.job import POLL_INTERVAL_S
 from ..languages import translated
 from ..runtime.solver_operator import SolverOperator
+from .fixing import push_undo
 from .queue import QueuedTake, Status, show_status, show_takes, shown_queue, takes_of
 
 POINTER = {"MOUSEMOVE", "LEFTMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN"}
@@ -90,11 +91,11 @@ class QueueOperator(SolverOperator):
                 raise
             except (MocapAssistError, MemoryError) as error:
                 n_failed += 1
-                _push_undo(take.name)  # its import stays
+                push_undo(take.name)  # its import stays
                 show_status(index, Status.FAILED, str(error) or "Memory ran out.")
             else:
                 show_status(index, Status.DONE, message)
-                _push_undo(take.name)
+                push_undo(take.name)
         return _summary(len(self._takes), n_failed)
 
 
@@ -106,11 +107,6 @@ def _summary(n_takes: int, n_failed: int) -> str:
         return message
     failed = translated(f"{n_failed} failed: see the list.")
     return f"{message} {failed}"
-
-
-def _push_undo(name: str) -> None:
-    if bpy.ops.ed.undo_push.poll():
-        bpy.ops.ed.undo_push(message=f"Fix {name}")
 
 
 def _over_sidebar(event: bpy.types.Event) -> bool:

@@ -36,7 +36,7 @@ def retargeted(here: Subject, rig: str, report: dict[str, Any]) -> Steps[dict[st
 
 
 def _solved(solve: Callable[..., Any]) -> Steps[Any]:
-    """Solve in a process of its own, if it takes long, while Blender's window goes on."""
+    """Solve in a process of its own, if it takes long; meanwhile only Esc works."""
     if isinstance(solve, ShortSolve):
         return run(solve)
     job = Job(solve)

@@ -42,11 +42,16 @@ def test_rig_gets_its_motion_from_another_process(waits_for_rig, window, sample)
     assert "retargeted" in action[CARD] and nothing_is_left(window)
 
 
-def test_esc_while_the_rig_waits_keeps_the_fixed_take(waits_for_rig, window, sample):
+def test_esc_while_the_rig_waits_keeps_the_fixed_take_as_an_undo_step(
+    waits_for_rig, window, sample, load, monkeypatch
+):
     button, rig = waits_for_rig
+    steps = []
+    monkeypatch.setattr(load("mocap_assist.fix.fixing"), "push_undo", steps.append)
     before = rig.animation_data.action
 
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 
     assert rig.animation_data.action == before and nothing_is_left(window)
     assert CARD in sample.animation_data.action
+    assert steps == [sample.animation_data.action.name]
