@@ -31,6 +31,11 @@ N_CHANNELS = {
     "rotation_axis_angle": 4,
 }
 """Properties of a bone that a result may change, and how many channels each has."""
+TIMING = (
+    "action_frame_start", "action_frame_end", "scale", "repeat", "frame_start_raw",
+    "frame_end_raw",
+)  # fmt: skip
+"""Properties of a strip that place its action in the scene, in the order to set them."""
 
 
 def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Source:
@@ -82,7 +87,8 @@ def lay_delta(armature: bpy.types.Object, base: Source, delta: Source) -> None:
     """Let an armature play the base action on an NLA track, and the delta on one above it.
 
     An earlier delta of the same base is replaced in its strip, which keeps its influence, with
-    keys. The influence is a free value: it can be dialed, and keyed.
+    keys, and its timing. Where tracks have other strips, too, new ones are made with the
+    influence of the earlier delta. It is a free value: it can be dialed, and keyed.
 
     Raises
     ------
@@ -92,25 +98,41 @@ def lay_delta(armature: bpy.types.Object, base: Source, delta: Source) -> None:
     check_writable(armature)
     animation = armature.animation_data
     earlier = delta_tracks(animation, base[0])
-    if [len(track.strips) for pair in earlier for track in pair] == [1, 1]:
-        _play_again(earlier[0], delta)
+    is_pair = [len(pair) for pair in earlier] == [2]
+    if is_pair and all(len(track.strips) == 1 for track in earlier[0]):
+        _play_again(earlier[0], base, delta)
     else:
+        dialed = [strip.influence for *_, track in earlier for strip in track.strips]
         remove_deltas(animation, base[0])
         below = new_strip(animation, base)
         below.blend_type = animation.action_blend_type
         _free_influence(below, animation.action_influence)
         strip = new_strip(animation, delta)
         strip.blend_type = "COMBINE"
-        _free_influence(strip, 1.0)
+        _free_influence(strip, dialed[-1] if dialed else 1.0)
     animation.action = None
 
 
-def _play_again(pair: Sequence[bpy.types.NlaTrack], delta: Source) -> None:
-    """Let the upper one of two tracks with a strip each play a new delta."""
+def _play_again(pair: Sequence[bpy.types.NlaTrack], base: Source, delta: Source) -> None:
+    """Let the upper one of two tracks with a strip each play a new delta.
+
+    Both strips stay where the animator moved and scaled them. A delta of other frames would
+    not fit there: then both play at the frames of their actions.
+    """
     for track in pair:
         track.mute = track.strips[0].mute = False
+    below, strip = (track.strips[0] for track in pair)
     pair[1].name = delta[0].name
-    play_in(pair[1].strips[0], delta)
+    if tuple(strip.action.frame_range) == tuple(delta[0].frame_range):
+        timing = [getattr(strip, name) for name in TIMING]
+        strip.action, strip.name = delta[0], delta[0].name
+        strip.action_slot = delta[1]
+        for name, value in zip(TIMING, timing, strict=True):
+            setattr(strip, name, value)
+        return
+    for each, source in ((below, base), (strip, delta)):
+        each.scale = each.repeat = 1.0
+        play_in(each, source)
 
 
 def _free_influence(strip: bpy.types.NlaStrip, value: float) -> None:
