@@ -38,6 +38,9 @@ def revert(subject: bpy.types.Object) -> str:
 
 def _revert(player: bpy.types.Object, raw: Source) -> None:
     """Assign the recorded action and slot; remove NLA tracks of its results."""
+    above = player.animation_data.action
+    if above is not None and above != raw[0]:
+        above.use_fake_user = True  # such as a fix by hand above the tracks
     tracks = player.animation_data.nla_tracks
     remove_deltas(player.animation_data, raw[0])
     for track in list(tracks):

@@ -93,7 +93,7 @@ def played_result(armature: bpy.types.Object) -> Source | None:
     """Return the result of ours that an armature plays, as its action or on an NLA track.
 
     Muted tracks and strips play nothing. An assigned action that replaces the tracks hides
-    them, unless it is the recorded one.
+    them, unless it is the recorded one, or a fix of few bones.
     """
     animation = armature.animation_data
     if animation is None:
@@ -101,13 +101,25 @@ def played_result(armature: bpy.types.Object) -> Source | None:
     for player in (animation, *playing_strips(animation)):
         source = source_of(player)
         raw = source and raw_of(source[0])
-        if raw:
-            return None if player != animation and _hides_tracks(animation, raw) else source
+        if source and raw:
+            is_below = player != animation
+            return None if is_below and _hides_tracks(animation, source, raw) else source
     return None
 
 
-def _hides_tracks(animation: bpy.types.AnimData, raw: Source) -> bool:
-    return animation.action_blend_type == "REPLACE" and animation.action not in {None, raw[0]}
+def _hides_tracks(animation: bpy.types.AnimData, result: Source, raw: Source) -> bool:
+    """Whether the assigned action replaces most of the bones of a result on a track."""
+    action, slot = animation.action, animation.action_slot
+    if animation.action_blend_type != "REPLACE" or not slot or action in {None, raw[0]}:
+        return False
+    moved = _moved_by(result)
+    return 2 * len(moved & _moved_by((action, slot))) > len(moved)
+
+
+def _moved_by(source: Source) -> set[str]:
+    """Return the paths of the bones that an action animates; an empty one is the object."""
+    bag = compat.channelbag(*source)
+    return {curve.data_path.rpartition(".")[0] for curve in bag.fcurves} if bag else set()
 
 
 def source_of(player: bpy.types.AnimData | bpy.types.NlaStrip) -> Source | None:

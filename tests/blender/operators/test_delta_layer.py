@@ -97,6 +97,51 @@ def test_second_clean_keeps_the_keys_of_the_influence(noisy, clean):
     assert result is None and strip.action.name == strip.name == delta.name == "walk.delta.001"
 
 
+def test_second_clean_keeps_the_strips_where_they_were_moved(noisy, clean, load):
+    clean(result_as="DELTA_LAYER")
+    strips = [track.strips[0] for track in noisy.animation_data.nla_tracks]
+    for strip in strips:
+        strip.scale = 2.0
+        strip.frame_start += 30.0
+    before = [(each.frame_start, each.frame_end) for each in strips]
+
+    clean(result_as="DELTA_LAYER", strength=0.5)
+
+    strips = [track.strips[0] for track in noisy.animation_data.nla_tracks]
+    assert [(each.frame_start, each.frame_end) for each in strips] == before == [before[0]] * 2
+    assert [each.scale for each in strips] == [2.0, 2.0]
+    assert [each.action.name for each in strips] == ["walk", "walk.delta.001"]
+
+    channels = load("mocap_assist.blender.compat").channelbag(
+        strips[0].action, strips[0].action_slot
+    )
+    for curve in channels.fcurves:
+        curve.keyframe_points.insert(61, curve.evaluate(60))
+    clean(result_as="DELTA_LAYER")
+
+    strips = [track.strips[0] for track in noisy.animation_data.nla_tracks]
+    assert [(each.frame_start, each.frame_end) for each in strips] == [(1.0, 61.0)] * 2
+    assert strips[1].action.name == "walk.delta.002"
+
+
+def test_delta_without_its_base_is_replaced_with_its_influence(noisy, clean):
+    clean(result_as="DELTA_LAYER")
+    tracks, raw = noisy.animation_data.nla_tracks, noisy.animation_data.nla_tracks[0]
+    action, slot = raw.strips[0].action, raw.strips[0].action_slot
+    tracks[1].strips[0].influence = 0.25
+    tracks.remove(raw)
+    lone = tracks.new()
+    lone.strips.new("lone", 1, tracks[0].strips[0].action)
+    noisy.animation_data.action = action
+    noisy.animation_data.action_slot = slot
+    tracks[0].strips[0].influence = lone.strips[0].influence = 0.25
+
+    clean(result_as="DELTA_LAYER", strength=0.5)
+
+    played = [(t.strips[0].action.name, t.strips[0].influence) for t in tracks]
+    assert played == [("walk", 1.0), ("walk.delta.001", 0.25)]
+
+
 def test_dialed_influence_shows_at_once(noisy, clean, load, blank):
     clean(result_as="DELTA_LAYER")
     strip = noisy.animation_data.nla_tracks[1].strips[0]
@@ -154,3 +199,22 @@ def test_delta_of_markers_is_refused(blank):
 
     with pytest.raises(RuntimeError, match="Delta Layer is for armatures"):
         blank.ops.mocap_assist.denoise(result_as="DELTA_LAYER")
+
+
+def test_delta_is_hidden_only_by_an_action_of_most_bones(noisy, clean, blank, load):
+    played_result = load("mocap_assist.scene.history").played_result
+    clean(result_as="DELTA_LAYER")
+
+    noisy.pose.bones["Head"].keyframe_insert("rotation_euler", frame=20)
+    by_hand = noisy.animation_data.action
+    assert played_result(noisy)[0].name == "walk.clean"
+
+    for bone in noisy.pose.bones:
+        bone.keyframe_insert("rotation_euler", frame=20)
+    assert played_result(noisy) is None
+    bag = load("mocap_assist.blender.compat").channelbag(by_hand, by_hand.slots[0])
+    for curve in [each for each in bag.fcurves if '"Head"' not in each.data_path]:
+        bag.fcurves.remove(curve)
+
+    assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
+    assert by_hand.use_fake_user
