@@ -10,6 +10,8 @@ from ..runtime.selection import selected_subject
 VIEW, RANGE = "mocap_assist_issue_view", "mocap_assist_issue_range"
 FRAMES_AROUND = 4
 """Frames of the preview range before and after an issue, by definition of *Preview Range*."""
+_former: dict[int, tuple[int, int, bool]] = {}
+"""Start, end and use of the animator's preview range, by the session's number of the scene."""
 
 
 def draw_view_switches(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -30,7 +32,9 @@ def show_issue(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> No
 
 
 def preview_issue(scene: bpy.types.Scene, issue: bpy.types.PropertyGroup) -> None:
-    """Set the preview range to an issue and the frames around it."""
+    """Set the preview range to an issue and the frames around it; keep the animator's own."""
+    own = scene.frame_preview_start, scene.frame_preview_end, scene.use_preview_range
+    _former.setdefault(scene.session_uid, own)
     scene.use_preview_range = True
     scene.frame_preview_start = round(issue.start) - FRAMES_AROUND
     scene.frame_preview_end = round(issue.stop) + FRAMES_AROUND
@@ -50,10 +54,14 @@ def _point_of(context: bpy.types.Context, name: str) -> Vector | None:
 
 
 def _range_switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    """Set the preview range to the selected issue, or end it."""
+    """Set the preview range to the selected issue, or give back the animator's own."""
     shown = context.scene.mocap_assist
     if not getattr(self, RANGE):
-        context.scene.use_preview_range = False
+        for scene in bpy.data.scenes:
+            if own := _former.pop(scene.session_uid, None):
+                scene.frame_preview_start, scene.frame_preview_end = own[:2]
+                scene.use_preview_range = own[2]
+        _former.clear()  # scenes of files that are closed
     elif 0 <= shown.active_issue < len(shown.issues):
         preview_issue(context.scene, shown.issues[shown.active_issue])
 

@@ -6,14 +6,23 @@ from ...solvers.errors import MocapAssistError
 from ..runtime import after_result
 from ..runtime.solver_operator import SolverOperator
 
+_awaited: list[str] = []
+"""Name of the scene that the next quiet check is for."""
+
 
 class CheckOperator(SolverOperator):
     """Mix in before bpy.types.Operator: a check that may be quiet.
 
-    The message of the result that it follows stays in the status bar.
+    The message of the result that it follows stays in the status bar. The animator works on
+    meanwhile: nothing is blocked by a check that was not asked for.
     """
 
     is_quiet: bpy.props.BoolProperty(options={"SKIP_SAVE", "HIDDEN"})
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if self.is_quiet and self._watch.is_on and event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        return super().modal(context, event)
 
     def _finish(self, message: str) -> set[str]:
         return {"FINISHED"} if self.is_quiet else super()._finish(message)
@@ -26,14 +35,18 @@ def renew_later(scene: bpy.types.Scene) -> None:
     """Check again once Blender is idle, where Check was pressed in this scene before."""
     if not scene.mocap_assist.checked or bpy.app.background:
         return
+    _awaited[:] = [scene.name]
     if not bpy.app.timers.is_registered(renew):
         bpy.app.timers.register(renew, first_interval=0.0)
 
 
 def renew() -> None:
-    """Press Check quietly in the first window; no press where another solve runs by now."""
+    """Press Check quietly in a window of the scene; no press where another solve runs."""
     check = bpy.ops.mocap_assist.measure_quality
-    for window in bpy.context.window_manager.windows[:1]:
+    windows = [
+        each for each in bpy.context.window_manager.windows if each.scene.name in _awaited
+    ]
+    for window in windows[:1]:
         area = max(window.screen.areas, key=lambda each: each.type == "VIEW_3D")
         region = next(each for each in area.regions if each.type == "WINDOW")
         with bpy.context.temp_override(window=window, area=area, region=region):

@@ -1,9 +1,11 @@
 """A jump shows the issue as the switches choose; results are checked again."""
 
+from contextlib import nullcontext
 from types import SimpleNamespace
 
 import pytest
 from mathutils import Matrix, Vector
+from modal_events import event
 
 
 @pytest.fixture
@@ -42,6 +44,12 @@ def test_preview_range_has_four_frames_around_an_issue_while_its_switch_is_on(
 
     switches.mocap_assist_issue_range = False
     assert not preview(scene)
+
+    scene.use_preview_range, scene.frame_preview_start, scene.frame_preview_end = True, 5, 9
+    switches.mocap_assist_issue_range = True
+    assert preview(scene) == (26, 34)
+    switches.mocap_assist_issue_range = False
+    assert preview(scene) == (5, 9)
 
 
 @pytest.mark.parametrize(("x", "is_moved"), [(0.5, False), (0.95, True), (3.0, True)])
@@ -99,6 +107,42 @@ def test_results_are_checked_again_where_check_was_pressed_before(
     blank.ops.mocap_assist.denoise(strength=0.5)
 
     assert timers == [renewing.renew]
+
+
+def test_results_are_checked_again_in_a_window_of_their_scene(blank, load, monkeypatch):
+    renewing, pressed = load("mocap_assist.check.renewing"), []
+    scenes = [SimpleNamespace(name=name) for name in ("Other", "Ours")]
+    view = SimpleNamespace(type="VIEW_3D", regions=[SimpleNamespace(type="WINDOW")])
+    screen = SimpleNamespace(areas=[view])
+    windows = [SimpleNamespace(scene=scene, screen=screen) for scene in scenes]
+    context = SimpleNamespace(
+        window_manager=SimpleNamespace(windows=windows),
+        temp_override=lambda window, **_: nullcontext(pressed.append(window)),
+    )
+    check = SimpleNamespace(poll=lambda: False)
+    ops = SimpleNamespace(mocap_assist=SimpleNamespace(measure_quality=check))
+    monkeypatch.setattr(renewing, "bpy", SimpleNamespace(context=context, ops=ops))
+    monkeypatch.setattr(renewing, "_awaited", ["Ours"])
+
+    renewing.renew()
+
+    assert pressed == windows[1:]
+
+
+def test_only_a_check_that_was_asked_for_takes_the_window(actor, load, make_button, window):
+    settings = load("solvers.denoising")
+    kind = load("mocap_assist.check.button_settings").CheckBundle
+    bundle = kind(settings.QualitySettings(), settings.IssueSettings())
+    button = make_button("measure_quality", bundle)
+    button.is_quiet = False
+    assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+    assert button.modal(window.context, event("A", "PRESS")) == {"RUNNING_MODAL"}
+
+    button.is_quiet = True
+    for key in ("A", "ESC"):
+        assert button.modal(window.context, event(key, "PRESS")) == {"PASS_THROUGH"}
+    button.is_quiet = False
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 
 
 class Timers:
