@@ -141,7 +141,8 @@ def issue_ranges(issues: Iterable[tuple[float, float, str]]) -> dict[Row, tuple[
     """Return the ranges of each kind of issue, from first and last frames with their kinds."""
     rows: dict[Row, tuple[Range, ...]] = dict.fromkeys(ISSUE_ROWS.values(), ())
     for first, last, kind in issues:
-        rows[ISSUE_ROWS[kind]] += (Range(first, last, Mark.ISSUE),)
+        if row := ISSUE_ROWS.get(kind):  # files of another version may hold other kinds
+            rows[row] += (Range(first, last, Mark.ISSUE),)
     return rows
 
 

@@ -17,9 +17,11 @@ def clipped(position: float | None, *, left: bool) -> Iterator[None]:
     before = gpu.state.scissor_get()
     gpu.state.scissor_test_set(True)
     gpu.state.scissor_set(*half_of(gpu.state.viewport_get(), position, left=left))
-    yield
-    gpu.state.scissor_set(*before)
-    gpu.state.scissor_test_set(False)
+    try:
+        yield
+    finally:
+        gpu.state.scissor_set(*before)
+        gpu.state.scissor_test_set(False)
 
 
 def half_of(

@@ -1,5 +1,6 @@
 """Readable names of humanoid roles, such as "Upper Leg L" for leftUpperLeg."""
 
+from ...solvers.motion import HUMANOID_ROLES
 from ..languages import translated
 
 PARTS = (
@@ -17,7 +18,12 @@ ENDINGS = {"left": "L", "right": "R"}
 
 
 def role_label(role: str) -> str:
-    """Return the name of a role in the language of the window, with the side at its end."""
+    """Return the name of a role in the language of the window, with the side at its end.
+
+    A role that is unknown, such as one of another version's file, is its own name.
+    """
+    if role not in HUMANOID_ROLES:
+        return role
     for side, ending in ENDINGS.items():
         if role.startswith(side):
             return f"{_part_label(role.removeprefix(side))} {ending}"

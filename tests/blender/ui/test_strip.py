@@ -131,7 +131,7 @@ def compat(load):
     return load("mocap_assist.blender.compat")
 
 
-def test_issues_are_those_that_check_listed_for_this_action(blank, reading, actor):
+def test_issues_are_those_that_check_listed_for_this_action(blank, reading, actor, load):
     action = actor.animation_data.action
     for curve in curves_of(action):
         curve.keyframe_points[30].co.y += 1.0
@@ -143,6 +143,10 @@ def test_issues_are_those_that_check_listed_for_this_action(blank, reading, acto
     strip = shown(reading.strip_of(blank.context))
     assert strip["SPIKES"] == spikes
     assert sum(map(len, strip.values())) == len(issues)
+    issues[0].kind = "of a later version"
+    load("mocap_assist.drawing.overlay_drawing").refresh()
+    strip = shown(reading.strip_of(blank.context))
+    assert sum(map(len, strip.values())) == len(issues) - 1
 
     blank.context.scene.mocap_assist.checked = "another action"
     assert reading.strip_of(blank.context) is None
