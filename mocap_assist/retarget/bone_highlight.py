@@ -30,10 +30,9 @@ def why_certain(row: bpy.types.PropertyGroup, side: str) -> str:
 
 
 def show_pair(listed: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Select both bones of the active row, and highlight them: the update of a click."""
+    """Select both bones of the active row: the update of a click."""
     for armature, bone in _pair(context):
         select_only_bone(armature, bone)
-    setattr(context.window_manager, SWITCH, True)
 
 
 def _pair(context: bpy.types.Context) -> Iterator[tuple[bpy.types.Object, str]]:
@@ -51,7 +50,7 @@ def _pair(context: bpy.types.Context) -> Iterator[tuple[bpy.types.Object, str]]:
 def highlighted_bones(context: bpy.types.Context) -> list[tuple[bpy.types.Object, Single]]:
     """Return armatures with the line from head to tail of their bone, shape (1, 2, 3).
 
-    Only while one of both is active, so that a list from another day draws nothing.
+    Only while one of both is active, so that an old list draws nothing.
     """
     pair = list(_pair(context))
     if context.view_layer.objects.active not in [armature for armature, _ in pair]:
@@ -77,13 +76,14 @@ def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None
 
 
 def register() -> None:
-    """Add the switch, which starts off."""
+    """Add the switch, which starts on."""
     setattr(
         bpy.types.WindowManager,
         SWITCH,
         bpy.props.BoolProperty(
             name="Highlight",
             description="Draw both bones of the selected row over the 3D View",
+            default=True,
             update=_switched,
         ),
     )

@@ -166,6 +166,7 @@ def test_roles_have_readable_and_different_names(load):
     assert labels["rightThumbMetacarpal"] == "Thumb 1 R"
     assert labels["leftLittleDistal"] == "Little Finger 3 L"
     assert len(set(labels.values())) == len(labels)
+    assert label_of("leftTail") == "leftTail"
 
 
 @pytest.fixture
@@ -188,6 +189,11 @@ def test_click_on_a_row_selects_and_highlights_both_bones(listed, walker, blank,
 
     blank.context.view_layer.objects.active = None
     assert not highlight.highlighted_bones(blank.context)
+
+    blank.context.window_manager.mocap_assist_highlight = False
+    listed.active_row = 0
+    assert not blank.context.window_manager.mocap_assist_highlight
+    blank.context.window_manager.mocap_assist_highlight = True
 
 
 def test_row_without_a_bone_on_one_side_highlights_the_other(listed, blank, highlight):
