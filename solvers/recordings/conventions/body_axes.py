@@ -113,18 +113,24 @@ def judge_up_of_joints(
 ) -> UpAxis:
     """Return the axis along which joints stand that were read with Y up.
 
+    Frames count in which hips, head and feet are observed; other joints may be missing.
+
     Parameters
     ----------
     positions : shape (n_frames, n_joints, 3); NaN where missing
     roles : index of each humanoid role
     expected : evidence of the format for each axis that is possible
     """
-    observed = positions[np.isfinite(positions).all(axis=(1, 2))]
-    step = max(1, len(observed) // N_SAMPLED_FRAMES)
-    body = StandingJoints.from_roles(roles)
+    is_observed = np.isfinite(positions).all(axis=2)
+    body = StandingJoints.from_roles(
+        {role: joint for role, joint in roles.items() if is_observed[:, joint].any()}
+    )
+    shown = [] if body is None else [body.hips, body.head, *body.feet]
+    observed = positions[is_observed[:, shown].all(axis=1)]
     if body is None or not len(observed):
         best = max(expected, key=lambda axis: expected[axis])
-        return UpAxis(best, best, is_clear=True)
+        return UpAxis(best, best, is_clear=False, confidence=0.5)
+    step = max(1, len(observed) // N_SAMPLED_FRAMES)
     return _weigh(observed[::step], body, dict.fromkeys(AXES, 0.0), expected)
 
 

@@ -89,7 +89,7 @@ def measure_floor(positions: Array, body: StandingJoints) -> dict[AxisName, floa
         axis: max(
             0.0,
             1.0
-            - abs(float(np.percentile((positions[:, body.joints] @ direction).min(axis=1), 5)))
+            - abs(float(np.percentile(np.nanmin(positions[:, body.joints] @ direction, axis=1), 5)))
             / (MAX_FLOOR_FRACTION * height_of(positions, body)),
         )
         for axis, direction in AXES.items()
@@ -107,5 +107,6 @@ def measure_travel(positions: Array, body: StandingJoints) -> dict[AxisName, flo
 
 def height_of(positions: Array, body: StandingJoints) -> float:
     """Return the size of a body along the axis on which it is longest."""
-    extents = np.ptp(positions[:, body.joints], axis=1).max(axis=1)
+    joints = positions[:, body.joints]
+    extents = (np.nanmax(joints, axis=1) - np.nanmin(joints, axis=1)).max(axis=1)
     return max(float(np.median(extents)), 1e-9)

@@ -169,6 +169,16 @@ def test_json_of_named_joints_is_a_body(tmp_path, walk):
     assert recording.tracks.frame_rate == pytest.approx(60.0)
 
 
+@pytest.mark.parametrize("unobserved", ["rightHand", "rightFoot", "head"])
+def test_a_joint_that_is_never_observed_does_not_hide_the_up_axis(tmp_path, walk, unobserved):
+    partial = walk | {unobserved: np.full((F, 3), np.nan)}
+
+    recording, said = read(tmp_path, table(partial, ROKOKO, lambda name, axis: f"{name}_{axis}"))
+
+    check(recording, walk)
+    assert "interpreted as up" not in said
+
+
 def test_json_of_one_frame_is_refused(tmp_path):
     points = np.zeros((25, 4)).tolist()
 
