@@ -1,6 +1,7 @@
 """Read JSON of any pose estimator that lists the joints of people, frame by frame."""
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -59,8 +60,8 @@ def open_frames_json(
 
     A frame is an object with `keypoints`, `keypoints3d`, `joints`, `positions` or the like: a
     list of points, a list of numbers, or an object with a point for each name. It may list
-    people in `instances`, `people` or the like, or be a list of points itself. Joints without
-    names are recognized by their bones (`name_joints`). Axes and unit are judged from the body.
+    people in `instances`, `people` or the like, or be a list of points itself. Named joints may
+    be missing in some frames. Joints without names are recognized by their bones (`name_joints`). Axes and unit are judged from the body.
 
     Parameters
     ----------
@@ -71,7 +72,7 @@ def open_frames_json(
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, has one frame, or no people in 3D.
+        The file is missing, damaged, has one frame of each person, or no people in 3D.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -79,7 +80,7 @@ def open_frames_json(
     """
     check_scale(scale)
     by_key: dict[str, list[BodiesFrame]] = {}
-    names: dict[str, tuple[str, ...]] = {}
+    columns: dict[str, dict[str, int]] = {}
     rate: float | None = None
     second = 1.0
     for member in json_members(path, lists=True):
@@ -91,21 +92,22 @@ def open_frames_json(
             time, second = (float(member.value[key]), TIME_KEYS[key]) if key else (time, second)
         found = {}
         for person in _people(member.value):
-            if names.setdefault(person.identity, person.names) == person.names:
-                unknown = np.full(len(person.positions), np.nan)
-                found[person.identity] = BodyJoints(person.positions, unknown)
+            positions = _placed(person, columns.setdefault(person.identity, {}))
+            unknown = np.full(len(positions), np.nan)
+            found[person.identity] = BodyJoints(positions, unknown)
         by_key.setdefault(member.key, []).append(BodiesFrame(time, found, member.done))
         progress(0.8 * member.done, "Reading")
     frames = _frames(by_key)
-    n_frames = sum(bool(frame.bodies) for frame in frames)
-    if n_frames == 1 or (n_frames and len(names) == n_frames):
+    n_frames = Counter(body for frame in frames for body in frame.bodies)
+    if n_frames and max(n_frames.values()) == 1:
         raise InvalidFileError(
             f"{path} holds the joints of one frame. Combine all frames in an array of the shape"
             " (frames, joints, 3), and save it with numpy.save."
         )
 
     def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
-        return _recording(path, names[body], body, frames, times, rate, scale, progress)
+        names = tuple(columns[body])
+        return _recording(path, names, body, frames, times, rate, scale, progress)
 
     return open_frames(path, frames, second, read)
 
@@ -122,6 +124,29 @@ def _frames(by_key: Mapping[str, list[BodiesFrame]]) -> list[BodiesFrame]:
     return [each for frames in by_key.values() for each in frames if each.bodies]
 
 
+def _placed(person: _Person, columns: dict[str, int]) -> Array:
+    """Return the joints of a frame in the columns of their names; new names are added."""
+    if not person.names:
+        return person.positions
+    for name in person.names:
+        columns.setdefault(name, len(columns))
+    positions = np.full((len(columns), 3), np.nan)
+    positions[[columns[name] for name in person.names]] = person.positions
+    return positions
+
+
+def _widened(frame: BodiesFrame, body: str, n_joints: int) -> BodiesFrame:
+    """Return a frame of one body with the joints that only later frames name."""
+    if body not in frame.bodies:
+        return frame._replace(bodies={})
+    positions, confidence = frame.bodies[body]
+    n_missing = n_joints - len(positions)
+    if n_missing > 0:
+        positions = np.pad(positions, ((0, n_missing), (0, 0)), constant_values=np.nan)
+        confidence = np.pad(confidence, (0, n_missing), constant_values=np.nan)
+    return frame._replace(bodies={body: BodyJoints(positions, confidence)})
+
+
 def _recording(
     path: Path | str,
     names: tuple[str, ...],
@@ -133,7 +158,7 @@ def _recording(
     progress: Progress,
 ) -> JointRecording:
     try:
-        points, _ = stacked(body, frames)
+        points, _ = stacked(body, [_widened(frame, body, len(names)) for frame in frames])
     except ValueError:
         raise InvalidFileError(
             f"{path}: the number of joints of body {body} changes. Export it again."
@@ -199,6 +224,8 @@ def _person(body: Mapping[str, Any], count: int) -> Iterator[_Person]:
 
 def _coordinates(joint: Any) -> Any:
     """Return x, y and z of an object, or what stands in its place."""
+    if joint is None:
+        return [None] * 3
     if isinstance(joint, Mapping):
         inner = joint.get("position", joint)
         if isinstance(inner, Mapping):

@@ -169,6 +169,31 @@ def test_json_of_named_joints_is_a_body(tmp_path, walk):
     assert recording.tracks.frame_rate == pytest.approx(60.0)
 
 
+def test_named_joints_may_be_missing_in_some_frames(tmp_path, walk):
+    frames = [
+        {"joints": {name: list(walk[role][frame]) for name, role in ROKOKO.items()}}
+        for frame in range(F)
+    ]
+    del frames[0]["joints"]["LeftHand"], frames[5]["joints"]["Head"]
+    frames[7]["joints"]["Neck"] = None
+
+    recording, _ = read(tmp_path, json.dumps(frames))
+
+    missing = np.isnan(recording.tracks.positions).any(axis=2)
+    assert [(frame, recording.names[joint]) for frame, joint in np.argwhere(missing)] == [
+        (0, "left_wrist"), (5, "head"), (7, "neck"),
+    ]  # fmt: skip
+
+
+def test_json_of_two_people_in_two_frames_is_read(tmp_path, walk):
+    person = {name: list(walk[role][0]) for name, role in ROKOKO.items()}
+    frame = {"people": [{"id": 1, "joints": person}, {"id": 2, "joints": person}]}
+
+    recording, _ = read(tmp_path, json.dumps([frame, frame]))
+
+    assert recording.tracks.n_frames == 2
+
+
 @pytest.mark.parametrize("unobserved", ["rightHand", "rightFoot", "head"])
 def test_a_joint_that_is_never_observed_does_not_hide_the_up_axis(tmp_path, walk, unobserved):
     partial = walk | {unobserved: np.full((F, 3), np.nan)}
