@@ -9,6 +9,7 @@ OLD_PICKLE = re.compile(
 """First bytes of pickles of protocol 0 and 1."""
 HDF5 = b"\x89HDF\r\n\x1a\n"
 SAFETENSORS = re.compile(rb"[\x00-\xff]{8}\s*\{\s*\"[^\"]+\"\s*:\s*\{\s*\"(dtype|format)\"")
+HTR = re.compile(rb"\s*\[Header\]\s*(#[^\n]*\n\s*)*FileType\s+[hg]tr")
 
 Detector = Callable[[bytes], bool]
 
@@ -55,7 +56,7 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
     ),
     (
         "HTR",
-        lambda head: re.match(rb"\s*\[Header\]\s*(#.*\s*)*FileType\s+[hg]tr", head) is not None,
+        lambda head: HTR.match(head) is not None,
         "{path} is an HTR or GTR file. Export it as BVH, FBX or C3D.",
     ),
     (
