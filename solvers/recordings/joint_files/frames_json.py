@@ -16,7 +16,13 @@ from ..containers import json_members
 from ..conventions import DEFAULT_FRAME_RATE, Bodies, check_scale
 from .body_json import BodiesFrame, BodyJoints, name_of_body, open_frames, stacked
 from .named_points import body_of_named_points
-from .point_arrays import body_of_points, read_body, stand_body
+from .point_arrays import (
+    body_of_points,
+    read_body,
+    second_of_times,
+    stand_body,
+    without_undetected,
+)
 from .unnamed_joints import has_layout
 
 POINT_KEYS = (
@@ -28,8 +34,8 @@ PEOPLE_KEYS = ("instances", "people", "persons", "bodies", "skeletons", "annots"
 """Members with the people of a frame."""
 IDENTITY_KEYS = ("id", "track_id", "person_id", "body_id", "personID")
 RATE_KEYS = ("fps", "frame_rate", "framerate", "frameRate")
-TIME_KEYS = {"timestamp": 1.0, "time": 1.0, "timestamp_ms": 0.001, "time_ms": 0.001}
-"""Seconds per unit of the time of a frame."""
+TIME_KEYS = {"timestamp": None, "time": None, "timestamp_ms": 0.001, "time_ms": 0.001}
+"""Seconds per unit of the time of a frame; None where the key does not state it."""
 HEAD = re.compile(
     rb"\s*\[\s*\[\s*\[\s*[-\d]|\s*[\[{].*?\"("
     + "|".join(POINT_KEYS).encode()
@@ -82,7 +88,7 @@ def open_frames_json(
     by_key: dict[str, list[BodiesFrame]] = {}
     columns: dict[str, dict[str, int]] = {}
     rate: float | None = None
-    second = 1.0
+    second: float | None = None
     for member in json_members(path, lists=True):
         if member.key in RATE_KEYS and _is_number(member.value):
             rate = float(member.value)
@@ -104,6 +110,9 @@ def open_frames_json(
             f"{path} holds the joints of one frame. Combine all frames in an array of the shape"
             " (frames, joints, 3), and save it with numpy.save."
         )
+
+    if second is None:
+        second = second_of_times(np.array([frame.time for frame in frames]), progress)
 
     def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
         names = tuple(columns[body])
@@ -247,7 +256,7 @@ def _points(values: list[Any]) -> Array | None:
         array = array.reshape(-1, (known or widths)[0]) if widths else array
     if array.ndim != 2 or array.shape[1] not in {3, 4} or len(array) < MIN_JOINTS:
         return None
-    return array[:, :3]
+    return array if array.shape[1] == 3 else without_undetected(array)
 
 
 def _is_number(value: Any) -> bool:

@@ -46,6 +46,9 @@ MIN_PIXELS = 10.0
 2D points, 0 to 1, from being read as depth."""
 MAX_STATURE_M, MIN_STATURE_M = 4.0, 0.5
 """Statures, meters, outside which lengths have no known unit. They guard normalized points."""
+MAX_STEP_S = 1.0
+"""Median step between frames, seconds, above which times without a unit are milliseconds. It
+guards slow recordings in seconds; milliseconds of 1000 Hz are mistaken for them."""
 LEGS = ("left", "right")
 MIN_FLEXION = 0.03
 """Distance of the knee from the line between hip and ankle, relative to the leg, that shows
@@ -68,7 +71,7 @@ def points_of_array(path: Path | str, array: NDArray[np.float64]) -> NDArray[np.
     """Return an array as points over time, shape (n_frames, n_points, 3).
 
     Of a body, coordinates may also be the first or the second axis, or all be in one row. A
-    fourth coordinate is the confidence, which is left out.
+    fourth coordinate is the confidence: points without any are not observed.
 
     Raises
     ------
@@ -99,7 +102,7 @@ def _as_points(array: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
     if array.ndim == 3:
         yield array
         if array.shape[2] == 4:
-            yield array[..., :3]
+            yield without_undetected(array)
         yield np.moveaxis(array, 1, 2)
         yield np.moveaxis(array, 2, 0)
         yield np.moveaxis(array, 0, 2)
@@ -107,6 +110,39 @@ def _as_points(array: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
         rows = array.reshape(len(array), -1, 3)
         if has_layout(rows.shape[1]) and name_joints(rows) is not None:
             yield rows
+
+
+def without_undetected(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the coordinates of points, NaN where the fourth value, a confidence, is 0.
+
+    Where all of them are 0, nothing was measured: only points at the origin are not observed.
+
+    Parameters
+    ----------
+    points : shape (..., n_points, 4)
+    """
+    is_undetected = points[..., 3:] == 0.0
+    if is_undetected.all():
+        is_undetected = ~points.any(axis=-1, keepdims=True)
+    return np.where(is_undetected, np.nan, points[..., :3])
+
+
+def second_of_times(times: Array, progress: Progress) -> float:
+    """Return the seconds per unit of times whose unit the file does not state.
+
+    Parameters
+    ----------
+    times : shape (n_frames,); NaN where missing
+    progress : Progress
+        Is given a message where they are milliseconds.
+    """
+    steps = np.diff(times[np.isfinite(times)])
+    if not len(steps) or np.median(steps) <= MAX_STEP_S:
+        return 1.0
+    progress(
+        0.8, Remark("Times have no unit; by their steps they are interpreted as milliseconds")
+    )
+    return 0.001
 
 
 def read_body(

@@ -21,7 +21,7 @@ from ..conventions import (
     stand_markers,
 )
 from .named_points import body_of_named_points
-from .point_arrays import body_of_points, read_body, stand_body
+from .point_arrays import body_of_points, read_body, second_of_times, stand_body
 
 COORDINATE = re.compile(
     r"(?P<name>.*?)([\s_.:\-]+(pos(ition)?|loc(ation)?|translat(e|ion)|tr?|world))?[\s_.:\-]*"
@@ -36,11 +36,12 @@ NO_POSITION = re.compile(
 )
 """Ends of the names of columns that hold no positions."""
 TIMES = {
-    "time": 1.0, "times": 1.0, "timestamp": 1.0, "t": 1.0, "seconds": 1.0, "time_s": 1.0,
+    "time": None, "times": None, "timestamp": None, "t": None, "seconds": 1.0, "time_s": 1.0,
     "timestamp_s": 1.0, "time (s)": 1.0, "time(s)": 1.0, "time [s]": 1.0, "sec": 1.0,
     "time_ms": 0.001, "timestamp_ms": 0.001, "time (ms)": 0.001, "milliseconds": 0.001,
 }  # fmt: skip
-"""Seconds per unit of a time stamp, by the title of its column."""
+"""Seconds per unit of a time stamp, by the title of its column; None where that does not state
+it."""
 MIN_POINTS = 8
 """Number of points of a table. It guards tables of something else, such as of one sensor."""
 
@@ -52,7 +53,8 @@ class _Columns(NamedTuple):
     places: Array
     """Column of x, y and z of each point, shape (n_points, 3)."""
     time: int | None
-    second: float
+    second: float | None
+    """Seconds per unit of the times; None if the title does not state it."""
     unit: float | None
     """Meters, by the titles; None if they do not say it."""
     width: int
@@ -105,9 +107,11 @@ def read_point_table(
     points = np.where(np.isfinite(points).all(axis=-1, keepdims=True), points, np.nan)
     if not len(points) or np.isnan(points).all():
         raise InvalidFileError(f"{path} has no points that are observed in any frame.")
-    times = None if columns.time is None else columns.second * rows[:, columns.time]
+    times = None if columns.time is None else rows[:, columns.time]
     if times is None or not np.isfinite(times).all():
         times = None
+    else:
+        times = times * (columns.second or second_of_times(times, progress))
     return _recording(path, columns, points, times, scale, progress)
 
 
@@ -163,5 +167,5 @@ def _columns(titles: Sequence[str]) -> _Columns | None:
     time = next((column for column, title in enumerate(lower) if title in TIMES), None)
     unit = meters_from_unit_name(units.pop()) if len(units) == 1 else None
     places = np.array([[axes[axis] for axis in "xyz"] for axes in points.values()])
-    second = 1.0 if time is None else TIMES[lower[time]]
+    second = None if time is None else TIMES[lower[time]]
     return _Columns(tuple(points), places, time, second, unit, len(titles))

@@ -32,6 +32,14 @@ ROKOKO = TRUNK | {
     }.items()
 }  # fmt: skip
 
+HUMAN36M = [
+    "hips", *(side + part for side in ("right", "left")
+              for part in ("UpperLeg", "LowerLeg", "Foot")),
+    "spine", "neck", "neck", "head",
+    *(side + part for side in ("left", "right")
+      for part in ("UpperArm", "LowerArm", "Hand")),
+]  # fmt: skip
+
 
 @pytest.fixture(scope="module")
 def walk():
@@ -140,14 +148,7 @@ def in_camera(points):
     lambda frames: frames,
 ])  # fmt: skip
 def test_json_of_frames_without_names_is_a_body(tmp_path, walk, wrap):
-    order = [
-        "hips", *(side + part for side in ("right", "left")
-                  for part in ("UpperLeg", "LowerLeg", "Foot")),
-        "spine", "neck", "neck", "head",
-        *(side + part for side in ("left", "right")
-          for part in ("UpperArm", "LowerArm", "Hand")),
-    ]  # fmt: skip
-    frames = in_camera(np.stack([walk[role] for role in order], axis=1))
+    frames = in_camera(np.stack([walk[role] for role in HUMAN36M], axis=1))
 
     recording, said = read(tmp_path, json.dumps(wrap(frames)))
 
@@ -183,6 +184,36 @@ def test_named_joints_may_be_missing_in_some_frames(tmp_path, walk):
     assert [(frame, recording.names[joint]) for frame, joint in np.argwhere(missing)] == [
         (0, "left_wrist"), (5, "head"), (7, "neck"),
     ]  # fmt: skip
+
+
+def test_points_without_confidence_are_not_observed(tmp_path, walk):
+    points = np.stack([walk[role] for role in HUMAN36M], axis=1)
+    points = np.concatenate([points, np.ones((F, len(HUMAN36M), 1))], axis=2)
+    points[4, HUMAN36M.index("leftHand")] = 0.0
+    np.save(tmp_path / "joints.npy", points)
+
+    from_json, _ = read(tmp_path, json.dumps(points.tolist()))
+
+    for recording in (from_json, read_recording(tmp_path / "joints.npy")):
+        missing = np.isnan(recording.tracks.positions).any(axis=2)
+        assert [(frame, recording.names[joint]) for frame, joint in np.argwhere(missing)] == [
+            (4, "WristLeft")
+        ]
+
+
+def test_times_without_a_unit_may_be_milliseconds(tmp_path, walk):
+    frames = [
+        {"time": 1000.0 * frame / 60.0,
+         "joints": {name: list(walk[role][frame]) for name, role in ROKOKO.items()}}
+        for frame in range(F)
+    ]  # fmt: skip
+    header, *lines = table(walk, ROKOKO, lambda name, axis: f"{name}_{axis}").splitlines()
+    rows = [f"{16.6667 * frame},{line.split(',', 1)[1]}" for frame, line in enumerate(lines)]
+
+    for content in (json.dumps(frames), "\n".join([header, *rows])):
+        recording, said = read(tmp_path, content)
+        assert recording.tracks.frame_rate == pytest.approx(60.0, rel=1e-3)
+        assert "interpreted as milliseconds" in said
 
 
 def test_json_of_two_people_in_two_frames_is_read(tmp_path, walk):
