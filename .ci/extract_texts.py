@@ -50,7 +50,7 @@ LABELED = {
                                                   "_beyond_limits", "_cuts"},
     "solvers/denoising/window_estimates/channel_groups.py": {"_describe_prior"},
     "solvers/motion/skeletons/file_conventions.py": {"sentence", "OFFSET_ADDED",
-                                                     "_confidence_in_up"},
+                                                     "_confidence_in_up", "_up_at_rest"},
     "solvers/recordings/conventions/body_axes.py": {"describe_guessed_axis"},
     "solvers/recordings/conventions/body_unit.py": {"describe_guessed_unit",
                                                     "question_of_size"},
