@@ -31,8 +31,10 @@ function optionWords(settings) {
     }
     if (kind === "switch") {
       words = words.concat(value === "no" ? opposite || [] : name);
+    } else if (kind === "many") {
+      words = words.concat(name, shellSplit(value));
     } else {
-      words = words.concat(name, kind === "many" ? shellSplit(value) : value);
+      words = words.concat(name + "=" + value);
     }
   }
   return words;
@@ -97,7 +99,7 @@ def setting(option: argparse.Action) -> str:
     described: dict[str, Any] = {"key": option.dest, "type": "string"}
     if option.nargs == 0:
         described["choices"] = ["", "yes", *(["no"] if words_of(option)[2] else [])]
-    elif option.type is Path:
+    elif option.type is Path and not option.nargs:
         described["subtype"] = "file_path"
     described |= {
         "default": "", "required": False,

@@ -23,7 +23,7 @@ const JOB_TYPE = {
     {"key": "unit", "type": "string", "default": "", "required": false, "description": "Length unit of the files; the import message reports what Auto found [guess, metres, centimetres, millimetres, inches, default guess]"},
     {"key": "up", "type": "string", "default": "", "required": false, "description": "Axis of the file that points up; set it if the actor lies on the floor [default auto]"},
     {"key": "preset", "type": "string", "default": "", "required": false, "description": "Named values of some settings; other options replace them [light, normal, heavy, optical, suit, video-ai, depth-camera]"},
-    {"key": "train", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "Clean clips to learn from [default: patterns of the take itself]"},
+    {"key": "train", "type": "string", "default": "", "required": false, "description": "Clean clips to learn from [default: patterns of the take itself]"},
     {"key": "bases", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "Bases learned from clean clips by the verb learn or the button Learn"},
     {"key": "library", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "A clip library, made by the verb index; each take uses the clips that are similar to it"},
     {"key": "joint_limits", "type": "string", "choices": ["", "yes"], "default": "", "required": false, "description": "Limit joints softly to the range of rotation in the clips of --train"},
@@ -89,8 +89,10 @@ function optionWords(settings) {
     }
     if (kind === "switch") {
       words = words.concat(value === "no" ? opposite || [] : name);
+    } else if (kind === "many") {
+      words = words.concat(name, shellSplit(value));
     } else {
-      words = words.concat(name, kind === "many" ? shellSplit(value) : value);
+      words = words.concat(name + "=" + value);
     }
   }
   return words;

@@ -47,8 +47,10 @@ function optionWords(settings) {
     }
     if (kind === "switch") {
       words = words.concat(value === "no" ? opposite || [] : name);
+    } else if (kind === "many") {
+      words = words.concat(name, shellSplit(value));
     } else {
-      words = words.concat(name, kind === "many" ? shellSplit(value) : value);
+      words = words.concat(name + "=" + value);
     }
   }
   return words;

@@ -24,7 +24,7 @@ const JOB_TYPE = {
     {"key": "up", "type": "string", "default": "", "required": false, "description": "Axis of the file that points up; set it if the actor lies on the floor [default auto]"},
     {"key": "preset", "type": "string", "default": "", "required": false, "description": "Named values of some settings; other options replace them [light, normal, heavy, video-ai, depth-camera]"},
     {"key": "library", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "A clip library, made by the verb index; each take uses the clips that are similar to it"},
-    {"key": "train", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "Clean clips of skeletons, or folders of them, to learn postures from [default: the shipped postures]"},
+    {"key": "train", "type": "string", "default": "", "required": false, "description": "Clean clips of skeletons, or folders of them, to learn postures from [default: the shipped postures]"},
     {"key": "postures", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "A posture library of your own, written by learn-postures"},
     {"key": "residuals", "type": "string", "subtype": "file_path", "default": "", "required": false, "description": "Residual prior of the sensor, written by learn-residuals [default: Kinect v2]"},
     {"key": "joints", "type": "string", "choices": ["", "yes"], "default": "", "required": false, "description": "With --output-folder: write joints with their confidence as .csv, instead of the motion of a skeleton"},
@@ -83,8 +83,10 @@ function optionWords(settings) {
     }
     if (kind === "switch") {
       words = words.concat(value === "no" ? opposite || [] : name);
+    } else if (kind === "many") {
+      words = words.concat(name, shellSplit(value));
     } else {
-      words = words.concat(name, kind === "many" ? shellSplit(value) : value);
+      words = words.concat(name + "=" + value);
     }
   }
   return words;

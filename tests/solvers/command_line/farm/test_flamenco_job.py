@@ -1,5 +1,6 @@
 """The job type for Flamenco makes tasks that run a batch in parts."""
 
+import argparse
 import json
 import shlex
 import shutil
@@ -9,6 +10,8 @@ from pathlib import Path
 
 import pytest
 import write_flamenco
+
+from solvers.command_line.verbs import VERBS
 
 ROOT = Path(__file__).parents[4]
 JOB_TYPE = ROOT / "docs" / "technical" / "farm" / "flamenco.js"
@@ -106,8 +109,8 @@ def test_job_types_of_one_verb_have_its_options(verb):
 def test_options_of_one_verb_are_words_of_its_command(compiled):
     job = compiled(
         write_flamenco.path("denoise"), manifest="m", output_folder="o", shards=1, options="",
-        command="c", strength="0.5", feet="no", train="a.bvh 'b c.bvh'", bases="d e.npz",
-        preset="",
+        command="c", strength="0.5", feet="no", train="a.bvh 'b c.bvh'", preset="",
+        forward="-y",
     )  # fmt: skip
 
     (command,) = job["tasks"][0]["commands"]
@@ -115,8 +118,10 @@ def test_options_of_one_verb_are_words_of_its_command(compiled):
     assert words[:8] == [
         "denoise", "--manifest", "m", "--output-folder", "o", "--shard", "1/1", "--report",
     ]  # fmt: skip
-    assert " ".join(words[9:]).startswith(
-        "--train a.bvh b c.bvh --bases d e.npz --strength 0.5"
-    )
-    assert {"b c.bvh", "d e.npz", "--no-feet"} <= {*words}
-    assert "--preset" not in words
+    parser = argparse.ArgumentParser()
+    VERBS["denoise"].add_options(parser)
+    parsed = parser.parse_args(words[9:])
+    assert parsed.train == [Path("a.bvh"), Path("b c.bvh")]
+    assert (parsed.strength, parsed.feet) == (0.5, False)
+    assert parsed.forward.lower() == "-y"
+    assert not any(word.startswith("--preset") for word in words)
