@@ -12,6 +12,7 @@ import pytest
 import write_flamenco
 
 from solvers.command_line.verbs import VERBS
+from solvers.settings import Axis
 
 ROOT = Path(__file__).parents[4]
 JOB_TYPE = ROOT / "docs" / "technical" / "farm" / "flamenco.js"
@@ -123,5 +124,5 @@ def test_options_of_one_verb_are_words_of_its_command(compiled):
     parsed = parser.parse_args(words[9:])
     assert parsed.train == [Path("a.bvh"), Path("b c.bvh")]
     assert (parsed.strength, parsed.feet) == (0.5, False)
-    assert parsed.forward.lower() == "-y"
+    assert parsed.forward == Axis.MINUS_Y
     assert not any(word.startswith("--preset") for word in words)
