@@ -7,7 +7,7 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ..languages import translated
-from .last_press import note_press
+from .last_press import note_press, noted_errors
 from .mixins import OperatorMixin
 
 
@@ -33,9 +33,9 @@ class ActOperator(OperatorMixin):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Act, and report the result or the error."""
         try:
-            message = self.act(context)
+            with noted_errors(self):
+                message = self.act(context)
         except MocapAssistError as error:
-            note_press(self, error)
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         note_press(self)

@@ -2,7 +2,8 @@
 
 import re
 import traceback
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -57,6 +58,16 @@ def note_press(
             changed_values(getattr(operator, "properties", None)),
         )
     ]
+
+
+@contextmanager
+def noted_errors(operator: Any) -> Iterator[None]:
+    """Remember an error that ends a press of this operator, and raise it again."""
+    try:
+        yield
+    except BaseException as error:
+        note_press(operator, error)
+        raise
 
 
 def last_press() -> Press | None:

@@ -6,7 +6,7 @@ import bpy
 from bpy.props import CollectionProperty, EnumProperty, StringProperty
 
 from ...solvers.errors import MocapAssistError
-from ..blender.last_press import note_press
+from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import SettingsMixin
 from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
 from ..languages import translated
@@ -52,12 +52,14 @@ class FilesOperator(SettingsMixin):
         """Import while a script, or the redo panel, waits."""
         paths, choices = chosen_paths(self), self.settings().choices
         self.kinds = kinds_of(paths)
-        return self.end(context, import_files(context, paths, choices))
+        with noted_errors(self):
+            imported = import_files(context, paths, choices)
+        return self.end(context, imported)
 
     def end(self, context: bpy.types.Context, imported: Imported) -> set[str]:
         """Report what became of the files."""
         self.note = imported.note
-        note_press(self, sentence=imported.sentence if imported.failed else "")
+        note_press(self, sentence="".join(imported.failed[:1]))
         self.report({"ERROR"} if imported.failed else {"INFO"}, translated(imported.sentence))
         return {"FINISHED"} if imported.made else {"CANCELLED"}
 
@@ -103,6 +105,7 @@ class WaitingImport(FilesOperator):
         try:
             self._job = ImportJob(context, paths, self.settings().choices)
         except MocapAssistError as error:
+            note_press(self, error)
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         context.window_manager.modal_handler_add(self)
@@ -121,7 +124,8 @@ class WaitingImport(FilesOperator):
             passes = is_in_status_bar(context, event)
             return {"PASS_THROUGH"} if passes else {"RUNNING_MODAL"}
         try:
-            ended = job.step(context)
+            with noted_errors(self):
+                ended = job.step(context)
         except BaseException:
             job.cancel(context)
             raise

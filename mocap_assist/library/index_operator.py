@@ -6,6 +6,7 @@ from functools import partial
 import bpy
 
 from ...solvers.errors import MocapAssistError, SolveCancelled
+from ..blender.last_press import note_press
 from ..blender.mixins import SettingsMixin
 from ..jobs.job import run
 from ..languages import translated
@@ -99,6 +100,7 @@ class WaitingIndex(SettingsMixin):
     def _report(self, indexed: Indexed) -> set[str]:
         for sentence in indexed.refused:
             logger.warning("%s", sentence)
+        note_press(self)
         more = len(indexed.refused) - MAX_NAMED_FILES
         named = [*indexed.refused[:MAX_NAMED_FILES], *[f"And {more} more."] * (more > 0)]
         level = {"WARNING"} if indexed.refused else {"INFO"}
@@ -107,5 +109,6 @@ class WaitingIndex(SettingsMixin):
 
     def _give_up(self, error: MocapAssistError) -> set[str]:
         cancelled = isinstance(error, SolveCancelled)
+        note_press(self, error)
         self.report({"INFO"} if cancelled else {"ERROR"}, translated(str(error)))
         return {"CANCELLED"}

@@ -9,6 +9,7 @@ import bpy
 
 from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion import read_humanoid_map, write_humanoid_map
+from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import OperatorMixin
 from ..blender.path_properties import absolute, path_property
 from ..drawing.color_icons import BARS, bars_icon
@@ -100,10 +101,12 @@ class _BoneButton(OperatorMixin):
     def done(self, act: Callable[[], None]) -> set[str]:
         """Run an action, and report an error as a sentence."""
         try:
-            act()
+            with noted_errors(self):
+                act()
         except MocapAssistError as error:
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
+        note_press(self)
         return {"FINISHED"}
 
 

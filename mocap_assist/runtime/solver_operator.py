@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import bpy
 
 from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
-from ..blender.last_press import note_press
+from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import SettingsMixin
 from ..blender.time_slices import Work
 from ..jobs.job import Job, ShortSolve, run
@@ -80,8 +80,9 @@ class SolverOperator(SettingsMixin):
         if not hasattr(self, "_subject"):  # otherwise a redo, for the same subject
             self.remember(context)
         try:
-            result = run(type(self).read_scene(*self._read_arguments()))
-            message = type(self).write_scene(*self._read_arguments(), result, None)
+            with noted_errors(self):
+                result = run(type(self).read_scene(*self._read_arguments()))
+                message = type(self).write_scene(*self._read_arguments(), result, None)
         except (MocapAssistError, MemoryError) as error:
             return self._give_up(error)
         return self._finish(message)
@@ -99,6 +100,9 @@ class SolverOperator(SettingsMixin):
             return self._finish(end.value)
         except (MocapAssistError, MemoryError) as error:
             return self._give_up(error)
+        except BaseException as error:
+            note_press(self, error)
+            raise
         self._watch = Watch(context, self.settings_group, self._acts.close)
         self._watch.show(context, *progress)
         context.window_manager.modal_handler_add(self)

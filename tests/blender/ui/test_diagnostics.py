@@ -34,6 +34,22 @@ def test_diagnostics_of_an_error_have_its_place_and_no_names(blank, actor, copie
     assert f" {getpass.getuser()} " not in text
 
 
+def test_diagnostics_of_an_unexpected_error_have_its_place(blank, load, copied):
+    class Button(load("mocap_assist.blender.act_operator").ActOperator):
+        bl_idname = "MOCAP_ASSIST_OT_broken"
+
+        def act(self, context):
+            raise KeyError(SECRET)
+
+    with pytest.raises(KeyError):
+        Button().execute(bpy.context)
+
+    text = copied()
+    assert "Last press: MOCAP_ASSIST_OT_broken, ended with KeyError" in text
+    assert "  mocap_assist/blender/act_operator.py:" in text
+    assert SECRET not in text
+
+
 def test_diagnostics_name_versions_and_changed_preferences(blank, copied, load):
     ours = load("mocap_assist.panels.preference_values").preferences()
     ours.tab, ours.show_research = SECRET, True
