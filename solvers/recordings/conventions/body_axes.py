@@ -122,9 +122,9 @@ def judge_up_of_joints(
     expected : evidence of the format for each axis that is possible
     """
     is_observed = np.isfinite(positions).all(axis=2)
-    body = StandingJoints.from_roles(
-        {role: joint for role, joint in roles.items() if is_observed[:, joint].any()}
-    )
+    body = StandingJoints.from_roles({
+        role: joint for role, joint in roles.items() if is_observed[:, joint].any()
+    })
     shown = [] if body is None else [body.hips, body.head, *body.feet]
     observed = positions[is_observed[:, shown].all(axis=1)]
     if body is None or not len(observed):

@@ -89,7 +89,11 @@ def measure_floor(positions: Array, body: StandingJoints) -> dict[AxisName, floa
         axis: max(
             0.0,
             1.0
-            - abs(float(np.percentile(np.nanmin(positions[:, body.joints] @ direction, axis=1), 5)))
+            - abs(
+                float(
+                    np.percentile(np.nanmin(positions[:, body.joints] @ direction, axis=1), 5)
+                )
+            )
             / (MAX_FLOOR_FRACTION * height_of(positions, body)),
         )
         for axis, direction in AXES.items()

@@ -12,7 +12,7 @@ import pytest
 import write_flamenco
 
 from solvers.command_line.verbs import VERBS
-from solvers.settings import Axis
+from solvers.recordings import Axis
 
 ROOT = Path(__file__).parents[4]
 JOB_TYPE = ROOT / "docs" / "technical" / "farm" / "flamenco.js"

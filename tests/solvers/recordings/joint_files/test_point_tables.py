@@ -229,7 +229,9 @@ def test_json_of_two_people_in_two_frames_is_read(tmp_path, walk):
 def test_a_joint_that_is_never_observed_does_not_hide_the_up_axis(tmp_path, walk, unobserved):
     partial = walk | {unobserved: np.full((F, 3), np.nan)}
 
-    recording, said = read(tmp_path, table(partial, ROKOKO, lambda name, axis: f"{name}_{axis}"))
+    recording, said = read(
+        tmp_path, table(partial, ROKOKO, lambda name, axis: f"{name}_{axis}")
+    )
 
     check(recording, walk)
     assert "interpreted as up" not in said
