@@ -67,7 +67,8 @@ def open_frames_json(
     A frame is an object with `keypoints`, `keypoints3d`, `joints`, `positions` or the like: a
     list of points, a list of numbers, or an object with a point for each name. It may list
     people in `instances`, `people` or the like, or be a list of points itself. Named joints may
-    be missing in some frames. Joints without names are recognized by their bones (`name_joints`). Axes and unit are judged from the body.
+    be missing in some frames. Joints without names are recognized by their bones
+    (`name_joints`). Axes and unit are judged from the body.
 
     Parameters
     ----------
