@@ -51,7 +51,7 @@ def note_press(
     ending = type(error).__name__ if error is not None else "an error" if sentence else "done"
     _last[:] = [
         Press(
-            operator.bl_idname,
+            getattr(operator, "bl_idname", type(operator).__name__),
             ending,
             template_of(str(error) if error is not None else sentence),
             () if error is None else calls_of(error),
