@@ -39,7 +39,7 @@ TIME_KEYS = {"timestamp": None, "time": None, "timestamp_ms": 0.001, "time_ms": 
 HEAD = re.compile(
     rb"\s*\[\s*\[\s*\[\s*[-\d]|\s*[\[{].*?\"("
     + "|".join(POINT_KEYS).encode()
-    + rb')"\s*:\s*[\[{]',
+    + rb')"\s*:\s*(\[\s*([\[{\d-]|null)|\{)',
     re.DOTALL,
 )
 MIN_JOINTS = 8
