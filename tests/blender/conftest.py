@@ -23,6 +23,7 @@ import pytest
 
 pytest_plugins = (
     "armature_fixtures", "common_fixtures", "panel_fixtures", "rig_fixtures", "rigify_fixtures",
+    "solve_fixtures",
     "tracked_fixtures", "window_fixtures",
 )  # fmt: skip
 
