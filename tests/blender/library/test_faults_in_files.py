@@ -28,7 +28,7 @@ def failing(load, monkeypatch):
 
 
 def test_other_actions_of_a_file_are_read_when_one_raises(load, blend_file, failing):
-    failing("read_source", lambda scene, armature, source: source[0].name == "wave_0")
+    failing("read_source", lambda scene, armature, source, root: source[0].name == "wave_0")
 
     (read,) = load("mocap_assist.library.blend_clips").read_files([str(blend_file)], False, ())
 
