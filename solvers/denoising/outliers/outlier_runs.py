@@ -33,7 +33,7 @@ takes of the first press at up to twice their speed: with 1e4, and as rare a fir
 with bursts lose 4 %."""
 PRIOR_RUNS = 1e-4
 """Number of longer errors among these samples. Fast movement looks like one, so the first one
-of a take has to be likely beyond doubt. Chosen by hand on the same takes: with 0.1 a throw
+of a take needs far more evidence. Chosen by hand on the same takes: with 0.1 a throw
 and a punch of clean ones are taken for errors."""
 BURST_PRIOR_PSEUDOCOUNT = 1e9
 """The number of samples, one of them the start of a burst, which only its shape makes
