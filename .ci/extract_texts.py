@@ -27,7 +27,7 @@ LABELED = {
     "mocap_assist/check/panel.py": {"_draw_figures", "KINDS"},
     "mocap_assist/check/held_operator.py": {"HELD", "CLICKED"},
     "mocap_assist/clean/report.py": {"clean_report"},
-    "mocap_assist/drawing/strip_ranges.py": {"Row", "Mark"},
+    "mocap_assist/drawing/strip_ranges.py": {"StripRow", "Mark"},
     "mocap_assist/exporting/export_menu.py": {"ENTRY"},
     "mocap_assist/fix/fixing.py": {"SUMMARY"},
     "mocap_assist/fix/panel.py": {"_draw_card"},

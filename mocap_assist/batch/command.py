@@ -28,7 +28,7 @@ from .pictures import draw_result
 from .report_verb import HELP as REPORT_HELP
 from .report_verb import add_report_options, perform_report
 from .saving import STDOUT, add_output_options, check_folder, save, target_file
-from .verbs import VERBS, Verb
+from .verbs import VERBS, SceneVerb
 
 PROG = "blender FILE --command mocap_assist"
 FAILED = 2
@@ -172,7 +172,9 @@ def _work(arguments: argparse.Namespace, screen: Screen) -> None:
         draw_result(bpy.context.scene, made, arguments.picture)
 
 
-def _subjects(name: str | None, excluded_armature: str, verb: Verb) -> list[bpy.types.Object]:
+def _subjects(
+    name: str | None, excluded_armature: str, verb: SceneVerb
+) -> list[bpy.types.Object]:
     """Return the armatures, parents of markers, or points of depth images to process."""
     objects = list(bpy.context.scene.objects)
     armatures = [each for each in objects if each.type == "ARMATURE"]

@@ -52,7 +52,7 @@ def no_armature(arguments: argparse.Namespace) -> str:
 
 
 @dataclass(frozen=True)
-class Verb:
+class SceneVerb:
     """A verb: its options, and its work on an armature."""
 
     help: str
@@ -175,21 +175,21 @@ def _convert(
 
 
 VERBS = {
-    "fix": Verb(
+    "fix": SceneVerb(
         "Fix takes of any origin by what suits them: track, clean, solve or reconstruct.",
         add_fix_options,
         perform_fix,
         on_depth=True,
     ),
-    "denoise": Verb(
+    "denoise": SceneVerb(
         "Remove jitter and spikes from actions, fill gaps and plant feet.",
         _clean_options,
         _clean,
     ),
-    "quality": Verb(
+    "quality": SceneVerb(
         "Measure jitter, spikes, gaps and sliding feet.", _check_options, _check, writes=False
     ),
-    "convert": Verb(
+    "convert": SceneVerb(
         "Export the current actions of armatures, raw or clean, as BVH in centimeters, Y up;"
         " markers as TRC.",
         _convert_options,
@@ -198,7 +198,7 @@ VERBS = {
         check=_check_targets,
         solves=False,
     ),
-    "export": Verb(
+    "export": SceneVerb(
         EXPORT_HELP,
         add_export_options,
         perform_export,
@@ -206,32 +206,34 @@ VERBS = {
         check=check_export,
         on_markers=False,
     ),
-    "reconstruct": Verb(
+    "reconstruct": SceneVerb(
         "Rebuild missing and wrong joints of depth camera takes, and plant feet.",
         add_reconstruct_options,
         perform_reconstruct,
         on_markers=False,
     ),
-    "simulate": Verb(
+    "simulate": SceneVerb(
         "Simulate a body with mass that follows the motions of armatures.",
         add_simulate_options,
         perform_simulate,
         on_markers=False,
     ),
-    "retarget": Verb(
+    "retarget": SceneVerb(
         "Transfer the motions of an armature to another one.",
         add_retarget_options,
         perform_retarget,
         excluded_armature=retarget_target,
         on_markers=False,
     ),
-    "unbake": Verb(
+    "unbake": SceneVerb(
         "Replace a key on every frame with a few keys with handles.",
         add_unbake_options,
         perform_unbake,
         on_markers=False,
     ),
-    "vary": Verb(VARY_HELP, add_vary_options, perform_vary, on_markers=False),
-    "find": Verb(FIND_HELP, add_find_options, perform_find, writes=False, check=check_find),
+    "vary": SceneVerb(VARY_HELP, add_vary_options, perform_vary, on_markers=False),
+    "find": SceneVerb(
+        FIND_HELP, add_find_options, perform_find, writes=False, check=check_find
+    ),
 }
 """A new verb is a new entry here."""

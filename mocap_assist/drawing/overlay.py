@@ -111,7 +111,7 @@ def raw_and_clean(armature: bpy.types.Object) -> tuple[Source | None, Source | N
     return raw, None if slot is None else (newest, slot)
 
 
-class _Key(NamedTuple):
+class _BlockKey(NamedTuple):
     """Key of a block of figures; it holds no data-blocks, since undo replaces them."""
 
     armature: int
@@ -120,7 +120,7 @@ class _Key(NamedTuple):
     frames: range
 
 
-_cache: dict[_Key, Figures] = {}
+_cache: dict[_BlockKey, Figures] = {}
 _keys: dict[tuple[int, int], Keys] = {}
 
 
@@ -128,7 +128,7 @@ def figures_at(armature: bpy.types.Object, source: Source, frame: float) -> Figu
     """Return the figures around a frame; keys are read once and cached until `forget`."""
     action, slot = source
     frames = _block(action, frame, len(armature.data.bones))
-    key = _Key(armature.session_uid, action.session_uid, slot.handle, frames)
+    key = _BlockKey(armature.session_uid, action.session_uid, slot.handle, frames)
     if key not in _cache:
         _make_room(_cache, MAX_CACHED)
         _cache[key] = read_figures(armature, source, frames, _keys_of(source))

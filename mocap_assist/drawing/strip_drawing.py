@@ -11,7 +11,7 @@ import numpy as np
 from ...solvers.arrays import Single
 from ..languages import translated
 from . import strip_reading
-from .strip_ranges import COLORS, Range, Row
+from .strip_ranges import COLORS, Range, StripRow
 from .strip_reading import Strip
 
 EDITORS = ("DOPESHEET_EDITOR", "GRAPH_EDITOR")
@@ -174,7 +174,7 @@ def _heights(strip: Strip) -> Iterator[float]:
 
 
 def _ranges(strip: Strip) -> Iterator[tuple[float, Range]]:
-    rows: list[Row] = list(strip.rows)
+    rows: list[StripRow] = list(strip.rows)
     for height, row in zip(_heights(strip), rows, strict=True):
         for each in strip.rows[row]:
             yield height, each

@@ -19,7 +19,7 @@ LOW_CONFIDENCE, HIGH_CONFIDENCE = 0.5, 0.75
 certainty, above which it is reliable."""
 
 
-class Row(Enum):
+class StripRow(Enum):
     """Row of the strip, from top to bottom; its value is the label in panels and drawings."""
 
     CONFIDENCE = "Confidence"
@@ -58,22 +58,22 @@ COLORS: Mapping[Mark, Color] = {
     Mark.LEFT_FOOT: (0.35, 0.80, 0.45, 1.0),
     Mark.RIGHT_FOOT: (0.20, 0.70, 0.75, 1.0),
 }
-ISSUE_ROWS: Mapping[str, Row] = {
-    "spike": Row.SPIKES,
-    "gap": Row.GAPS,
-    "jitter": Row.JITTER,
-    "foot slide": Row.FOOT_SLIDES,
-    "limit": Row.LIMITS,
-    "cut": Row.CUTS,
+ISSUE_ROWS: Mapping[str, StripRow] = {
+    "spike": StripRow.SPIKES,
+    "gap": StripRow.GAPS,
+    "jitter": StripRow.JITTER,
+    "foot slide": StripRow.FOOT_SLIDES,
+    "limit": StripRow.LIMITS,
+    "cut": StripRow.CUTS,
 }
 """By kind of an issue."""
-MARKS: Mapping[Row, tuple[Mark, ...]] = {
-    Row.CONFIDENCE: (Mark.LOW, Mark.MEDIUM, Mark.HIGH),
+MARKS: Mapping[StripRow, tuple[Mark, ...]] = {
+    StripRow.CONFIDENCE: (Mark.LOW, Mark.MEDIUM, Mark.HIGH),
     **dict.fromkeys(ISSUE_ROWS.values(), (Mark.ISSUE,)),
-    Row.FILLED: (Mark.FILLED,),
-    Row.CORRECTED: (Mark.CORRECTED,),
-    Row.LEFT_FOOT: (Mark.LEFT_FOOT,),
-    Row.RIGHT_FOOT: (Mark.RIGHT_FOOT,),
+    StripRow.FILLED: (Mark.FILLED,),
+    StripRow.CORRECTED: (Mark.CORRECTED,),
+    StripRow.LEFT_FOOT: (Mark.LEFT_FOOT,),
+    StripRow.RIGHT_FOOT: (Mark.RIGHT_FOOT,),
 }
 
 
@@ -85,7 +85,7 @@ class Range(NamedTuple):
     mark: Mark
 
 
-Rows = Mapping[Row, tuple[Range, ...]]
+Rows = Mapping[StripRow, tuple[Range, ...]]
 
 
 def ranges_of(frames: Array, step: float, mark: Mark) -> tuple[Range, ...]:
@@ -137,9 +137,11 @@ def confidence_ranges(lowest: Array, frames: Array, step: float) -> tuple[Range,
     return tuple(sorted(found, key=lambda each: each.first))
 
 
-def issue_ranges(issues: Iterable[tuple[float, float, str]]) -> dict[Row, tuple[Range, ...]]:
+def issue_ranges(
+    issues: Iterable[tuple[float, float, str]],
+) -> dict[StripRow, tuple[Range, ...]]:
     """Return the ranges of each kind of issue, from first and last frames with their kinds."""
-    rows: dict[Row, tuple[Range, ...]] = dict.fromkeys(ISSUE_ROWS.values(), ())
+    rows: dict[StripRow, tuple[Range, ...]] = dict.fromkeys(ISSUE_ROWS.values(), ())
     for first, last, kind in issues:
         if row := ISSUE_ROWS.get(kind):  # files of another version may hold other kinds
             rows[row] += (Range(first, last, Mark.ISSUE),)

@@ -19,8 +19,8 @@ from .confidence_colors import reliability_source
 from .strip_ranges import (
     Mark,
     Range,
-    Row,
     Rows,
+    StripRow,
     confidence_ranges,
     contact_ranges,
     issue_ranges,
@@ -61,7 +61,7 @@ class Strip(NamedTuple):
     rows: Rows
 
 
-class _Key(NamedTuple):
+class _StripKey(NamedTuple):
     """Key of a strip; it holds no data-blocks, since undo replaces them."""
 
     action: tuple[int, int, int]
@@ -71,7 +71,7 @@ class _Key(NamedTuple):
 
 
 _actions: dict[tuple[int, int, int], ActionKeys | None] = {}
-_strips: dict[_Key, Strip | None] = {}
+_strips: dict[_StripKey, Strip | None] = {}
 
 
 def forget() -> None:
@@ -95,7 +95,9 @@ def strip_of(context: bpy.types.Context) -> Strip | None:
     is_checked = shown.checked == source[0].name
     block = (armature.session_uid, source[0].session_uid, source[1].handle)
     bones = _selected(armature)
-    key = _Key(block, bones, shown.report if is_checked else "", len(shown.issues) * is_checked)
+    key = _StripKey(
+        block, bones, shown.report if is_checked else "", len(shown.issues) * is_checked
+    )
     if key not in _strips:
         keys = _keys_of(block, armature, source)
         listed = shown.issues if is_checked else ()
@@ -136,13 +138,15 @@ def strip_from(
     keys: ActionKeys, bones: frozenset[str], issues: Iterable[tuple[float, float, str]]
 ) -> Strip | None:
     """Compute the rows that have a range, for some bones, or for all if there are none."""
-    rows: dict[Row, tuple[Range, ...]] = {
-        Row.CONFIDENCE: _confidence(keys, bones),
+    rows: dict[StripRow, tuple[Range, ...]] = {
+        StripRow.CONFIDENCE: _confidence(keys, bones),
         **issue_ranges(issues),
-        Row.FILLED: ranges_of(_frames(keys.filled, bones), keys.step, Mark.FILLED),
-        Row.CORRECTED: ranges_of(_frames(keys.corrected, bones), keys.step, Mark.CORRECTED),
+        StripRow.FILLED: ranges_of(_frames(keys.filled, bones), keys.step, Mark.FILLED),
+        StripRow.CORRECTED: ranges_of(
+            _frames(keys.corrected, bones), keys.step, Mark.CORRECTED
+        ),
     }
-    feet = ((Row.LEFT_FOOT, Mark.LEFT_FOOT), (Row.RIGHT_FOOT, Mark.RIGHT_FOOT))
+    feet = ((StripRow.LEFT_FOOT, Mark.LEFT_FOOT), (StripRow.RIGHT_FOOT, Mark.RIGHT_FOOT))
     for (row, mark), foot in zip(feet, keys.contacts, strict=True):
         rows[row] = contact_ranges(foot, keys.step, mark)
     found = {row: ranges for row, ranges in rows.items() if ranges}

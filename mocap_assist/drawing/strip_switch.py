@@ -9,7 +9,7 @@ from bpy.types import SpaceDopeSheetEditor, SpaceGraphEditor
 from ..panels.drawing import draw_sentence
 from .color_icons import square_icon
 from .strip_drawing import EDITORS, draw_strip
-from .strip_ranges import MARKS, Mark, Row
+from .strip_ranges import MARKS, Mark, StripRow
 from .strip_reading import strip_of
 from .view_drawing import redraw
 
@@ -30,10 +30,12 @@ def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) ->
         draw_sentence(layout, context, NOTHING, icon="INFO")
         return
     column = layout.column(align=True)
-    if Row.CONFIDENCE in strip.rows:
-        column.label(text=Row.CONFIDENCE.value)
-        _draw_marks(column, MARKS[Row.CONFIDENCE], columns=3)
-    others = (mark for row in strip.rows if row is not Row.CONFIDENCE for mark in MARKS[row])
+    if StripRow.CONFIDENCE in strip.rows:
+        column.label(text=StripRow.CONFIDENCE.value)
+        _draw_marks(column, MARKS[StripRow.CONFIDENCE], columns=3)
+    others = (
+        mark for row in strip.rows if row is not StripRow.CONFIDENCE for mark in MARKS[row]
+    )
     _draw_marks(column, dict.fromkeys(others), columns=2)
 
 

@@ -13,8 +13,8 @@ from ...solvers.workflows import (
     FixedTake,
     FixSettings,
     MarkerMotion,
+    MotionFromJoints,
     RebuiltMotion,
-    TrackedMotion,
     fix_take,
 )
 from ..clean.solve_cleaning import Cleaned, Problem, Solution, names_of
@@ -82,12 +82,12 @@ def fix(
 
 def _take_of(
     problem: Problem | RebuildProblem | Tracks | DepthRecording,
-) -> Motion | Tracks | TrackedMotion | DepthRecording:
+) -> Motion | Tracks | MotionFromJoints | DepthRecording:
     match problem:
         case Problem():
             return problem.recordings[0]
         case RebuildProblem():
-            return TrackedMotion(
+            return MotionFromJoints(
                 problem.body,
                 read_source(problem),
                 problem.tracking_state,

@@ -118,7 +118,7 @@ def index_sources(problem: IndexProblem, *, progress: Progress = unwatched) -> I
     )
     refused += [why for _, why in report.refused]
     with open_clip_library(path) as library:
-        indexing = _Indexing(library, problem.tags, refused)
+        indexing = _ClipAdder(library, problem.tags, refused)
         blender = problem.blender
         indexing.index_blends([*blends.values()], blender, within(progress, file_fraction, 1.0))
         return Indexed(
@@ -151,7 +151,7 @@ def _blends(source: Source) -> list[_Blend]:
     ]
 
 
-class _Indexing:
+class _ClipAdder:
     """Adds clips to a library, and counts them."""
 
     def __init__(self, library: ClipLibrary, tags: tuple[str, ...], refused: list[str]) -> None:

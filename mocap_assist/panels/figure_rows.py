@@ -13,7 +13,7 @@ FIGURES = (
 UNKNOWN = "–"
 
 
-class Row(NamedTuple):
+class FigureRow(NamedTuple):
     """One figure of a result."""
 
     label: str
@@ -21,7 +21,7 @@ class Row(NamedTuple):
     after: str
 
 
-def figure_rows(entries: Sequence[Mapping[str, Any]]) -> list[Row]:
+def figure_rows(entries: Sequence[Mapping[str, Any]]) -> list[FigureRow]:
     """Return the figures of the raw action and of its last result, from an action's history."""
     cleaned = [entry for entry in entries if "before" in entry and "after" in entry]
     if not cleaned:
@@ -30,7 +30,7 @@ def figure_rows(entries: Sequence[Mapping[str, Any]]) -> list[Row]:
     has_rotations = before.get("mean_rotation_noise_deg") is not None
     hidden = "mean_position_noise_mm" if has_rotations else "mean_rotation_noise_deg"
     return [
-        Row(label, *(_figure(each.get(key), factor, form) for each in (before, after)))
+        FigureRow(label, *(_figure(each.get(key), factor, form) for each in (before, after)))
         for label, key, factor, form in FIGURES
         if key != hidden and (key in before or key in after)
     ]

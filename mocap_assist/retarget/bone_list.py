@@ -13,7 +13,7 @@ from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import OperatorMixin
 from ..blender.path_properties import absolute, path_property
 from ..drawing.color_icons import BARS, bars_icon
-from ..drawing.strip_ranges import MARKS, Mark, Row, confidence_mark
+from ..drawing.strip_ranges import MARKS, Mark, StripRow, confidence_mark
 from ..languages import translated
 from ..panels.drawing import draw_sentence, is_wide
 from ..runtime.selection import selected_armature, why_not_retarget
@@ -230,7 +230,7 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 def _draw_legend(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw what the bars mean, and the switch of the highlight."""
     row = layout.row(align=True)
-    for mark in MARKS[Row.CONFIDENCE]:
+    for mark in MARKS[StripRow.CONFIDENCE]:
         row.label(text=mark.value, icon_value=bars_icon(mark))
     row.prop(context.window_manager, SWITCH, text="", icon="BONE_DATA", toggle=True)
 

@@ -52,7 +52,7 @@ from .reading_settings import (
 )
 from .recording_figures import recording_figures
 from .refuse_stand_ins import refuse_stand_ins
-from .scene_files import SCENE_SUFFIXES, is_scene_file, suffix_by_content
+from .scene_suffixes import SCENE_SUFFIXES, is_scene_file, suffix_by_content
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [

@@ -13,7 +13,7 @@ from .containers import (
     is_c3d,
     json_length,
 )
-from .format import Format, one_body
+from .format_description import Format, one_body
 from .joint_files import (
     is_azure_csv,
     is_azure_json,

@@ -18,7 +18,7 @@ from .conventions import (
     reinterpreted,
     with_conventions,
 )
-from .format import Tracked
+from .format_description import Tracked
 from .formats import detect_format
 from .read_recording import OPENING_FRACTION, open_format
 from .reading_settings import DEFAULT_READING, FloorPlacement, ReadingSettings

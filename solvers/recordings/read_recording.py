@@ -12,7 +12,7 @@ from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched, within
 from .conventions import Bodies, Body, check_scale
 from .depth_files import DepthSettings, detect_depth_format, read_depth
-from .format import Format, Tracked
+from .format_description import Format, Tracked
 from .formats import detect_format
 
 OPENING_FRACTION = 0.9

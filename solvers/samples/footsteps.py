@@ -39,7 +39,7 @@ BRAKING = 5.0
 """Deceleration of the foot at landing, in strides per squared duration of the swing."""
 
 
-class FootPath(NamedTuple):
+class FootTrajectory(NamedTuple):
     """Trajectory of one foot."""
 
     ankles: Array
@@ -52,7 +52,7 @@ class FootPath(NamedTuple):
     """Phase of the stride, shape (n_frames,); the foot is on the ground below TOE_OFF."""
 
 
-def plan_foot_path(strides: Array, positions: Array, headings: Array) -> FootPath:
+def plan_foot_path(strides: Array, positions: Array, headings: Array) -> FootTrajectory:
     """Return the trajectory of a foot that stands at the given positions in order.
 
     Parameters
@@ -72,7 +72,7 @@ def plan_foot_path(strides: Array, positions: Array, headings: Array) -> FootPat
     standing = _standing_ankle(positions[stride], headings[stride], phase)
     swinging = _swinging_ankle(positions, headings, stride, swing)
     ankles = np.where((phase < TOE_OFF)[:, None], standing, swinging)
-    return FootPath(
+    return FootTrajectory(
         ankles,
         _foot_rotation(yaw, _SOLE_CURVE(phase)),
         _foot_rotation(yaw, _TOE_CURVE(phase)),

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ..arrays import Array
-from .footsteps import MID_STANCE, FootPath, plan_foot_path
+from .footsteps import MID_STANCE, FootTrajectory, plan_foot_path
 from .walker import ANKLE_HEIGHT_M
 
 N_MARGIN_STEPS = 5
@@ -35,7 +35,7 @@ class WalkPlan:
         The point on the floor below the body.
     heading : shape (n_frames,), radians
         Direction of walking about Z; 0 is towards -Y.
-    feet : pair of FootPath
+    feet : pair of FootTrajectory
         Left and right.
     span : pair of float
         First and last step of the plan; the frames lie between.
@@ -45,7 +45,7 @@ class WalkPlan:
     steps: Array
     ground: Array
     heading: Array
-    feet: tuple[FootPath, FootPath]
+    feet: tuple[FootTrajectory, FootTrajectory]
     span: tuple[float, float]
     rng: np.random.Generator
 

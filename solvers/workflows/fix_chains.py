@@ -22,7 +22,7 @@ from ..motion import (
 from ..progress import Progress, within
 from ..signals import find_runs
 from .capture_recording import CapturedMotion
-from .fix_report import Take, TakeOrigin, TrackedMotion, find_origin, observed_samples
+from .fix_report import MotionFromJoints, Take, TakeOrigin, find_origin, observed_samples
 from .motion_from_markers import MarkerMotion, motion_from_markers
 from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
@@ -153,7 +153,7 @@ def reconstruct_joints(
 
 
 def reconstruct_tracked(
-    tracked: TrackedMotion,
+    tracked: MotionFromJoints,
     planting: PlantSettings | None,
     contacts: Flags | None,
     progress: Progress,
@@ -190,7 +190,7 @@ def take_before(take: Take, chain: ChainResult, progress: Progress) -> Motion | 
     of a camera the skeleton that Import makes of them, depth images the tracked body.
     """
     match take:
-        case TrackedMotion():
+        case MotionFromJoints():
             return take.motion
         case JointRecording():
             standardized = standardize_joint_names(take)

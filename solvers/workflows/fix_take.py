@@ -25,10 +25,10 @@ from .fix_chains import (
 )
 from .fix_depth import track_depth
 from .fix_report import (
+    MotionFromJoints,
     Take,
     TakeFigures,
     TakeOrigin,
-    TrackedMotion,
     describe_empty_frames,
     describe_missing_points,
     drop_missing_points,
@@ -140,7 +140,7 @@ def fix_take(
 
     Parameters
     ----------
-    recording : Motion, Tracks, JointRecording, TrackedMotion or DepthRecording
+    recording : Motion, Tracks, JointRecording, MotionFromJoints or DepthRecording
         NaN where nothing was observed.
     settings : FixSettings
     contacts : bool, shape (n_frames, 2), left and right
@@ -208,7 +208,7 @@ def _fix(
     match recording:
         case Motion():
             return clean_motion(recording, planting, contacts, progress)
-        case TrackedMotion():
+        case MotionFromJoints():
             return reconstruct_tracked(recording, planting, contacts, progress)
         case JointRecording():
             return reconstruct_joints(recording, planting, progress)

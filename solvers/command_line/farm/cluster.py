@@ -27,7 +27,7 @@ PROJECT = __package__.split(".", maxsplit=1)[0]
 """Name by which a worker imports this code."""
 
 
-class Cluster:
+class WorkerCluster:
     """The workers of a cluster."""
 
     max_crashes = 2
@@ -62,7 +62,7 @@ class ClusterExecutor(Executor):
     def submit(
         self, function: Callable[..., Any], /, *args: Any, **kwargs: Any
     ) -> "Future[Any]":
-        """Submit a call; arguments from `Cluster.share` arrive as their values."""
+        """Submit a call; arguments from `WorkerCluster.share` arrive as their values."""
         future: Future[Any] = Future()
         call = partial(_call_after, self._check, function)
         remote = self._executor.submit(call, *args, **kwargs)
@@ -93,7 +93,7 @@ class ClusterExecutor(Executor):
 
 
 @contextmanager
-def cluster_workers(address: str, paths: Sequence[Path]) -> Iterator[Cluster]:
+def cluster_workers(address: str, paths: Sequence[Path]) -> Iterator[WorkerCluster]:
     """Connect to the scheduler of a cluster and check its workers.
 
     Parameters
@@ -127,7 +127,7 @@ def cluster_workers(address: str, paths: Sequence[Path]) -> Iterator[Cluster]:
         ) from None
     with client:
         _check_workers(client, paths)
-        yield Cluster(client, address, paths)
+        yield WorkerCluster(client, address, paths)
 
 
 async def _try_connection(address: str) -> None:

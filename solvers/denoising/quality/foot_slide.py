@@ -67,7 +67,7 @@ class FootSlide:
         return float(np.nansum(self.speed) / self.frame_rate)
 
 
-class FootPath(NamedTuple):
+class FootPoints(NamedTuple):
     """Points of a foot over time.
 
     Attributes
@@ -83,20 +83,22 @@ class FootPath(NamedTuple):
     points: Array
 
 
-def foot_paths(tracks: Tracks, humanoid_map: HumanoidMap | None = None) -> tuple[FootPath, ...]:
+def foot_paths(
+    tracks: Tracks, humanoid_map: HumanoidMap | None = None
+) -> tuple[FootPoints, ...]:
     """Return ankle and toe of both feet, named as joints; none if one is missing."""
     joints = find_foot_joints(tracks, humanoid_map)
     if joints is None:
         return ()
     return tuple(
-        FootPath(side, tracks.names[each[0]], tracks.positions[:, each])
+        FootPoints(side, tracks.names[each[0]], tracks.positions[:, each])
         for side, each in zip(SIDES, joints, strict=True)
     )
 
 
 def sole_paths(
     motion: Motion, poses: WorldPoses, humanoid_map: HumanoidMap | None = None
-) -> tuple[FootPath, ...]:
+) -> tuple[FootPoints, ...]:
     """Return ankle, heel, ball and tip of both feet; none if one is missing."""
     joints = find_foot_joints(motion, humanoid_map)
     if joints is None:
@@ -108,12 +110,12 @@ def sole_paths(
         if leg := soles.get(int(each[0])):
             sole = sole_points(motion.skeleton, leg)
             points = [points[0], *(point.position(poses) for point in sole)]
-        paths.append(FootPath(side, motion.skeleton.names[each[0]], np.stack(points, axis=1)))
+        paths.append(FootPoints(side, motion.skeleton.names[each[0]], np.stack(points, axis=1)))
     return tuple(paths)
 
 
 def measure_foot_slide(
-    foot: FootPath, contact: Flags, frame_rate: float, cuts: tuple[int, ...] = ()
+    foot: FootPoints, contact: Flags, frame_rate: float, cuts: tuple[int, ...] = ()
 ) -> FootSlide:
     """Measure the horizontal speed of the slowest part of the foot.
 
@@ -122,7 +124,7 @@ def measure_foot_slide(
 
     Parameters
     ----------
-    foot : FootPath
+    foot : FootPoints
     contact : shape (n_frames,)
         A step counts if both of its frames are in contact.
     frame_rate : float, hertz

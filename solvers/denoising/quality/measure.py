@@ -17,7 +17,7 @@ from ...settings import Settings, setting
 from ..limits import limit_excess
 from .bone_drift import BoneDrift, measure_bone_drifts
 from .figures import quality_figures
-from .foot_slide import FootPath, FootSlide, foot_paths, measure_foot_slide, sole_paths
+from .foot_slide import FootPoints, FootSlide, foot_paths, measure_foot_slide, sole_paths
 from .joint_signals import Signal, SpikeRule, extract_signals
 from .report import quality_report
 
@@ -236,7 +236,7 @@ def measure_jitter(positions: Array, frame_rate: float, cuts: tuple[int, ...] = 
 
 def _foot_slides(
     recording: Motion | Tracks,
-    feet: tuple[FootPath, ...],
+    feet: tuple[FootPoints, ...],
     contacts: Flags | None,
     humanoid_map: HumanoidMap | None,
     cuts: tuple[int, ...],

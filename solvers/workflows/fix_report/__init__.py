@@ -7,14 +7,14 @@ from .missing_data import (
     observed_samples,
 )
 from .take_figures import UNKNOWN, TakeFigures, figure_texts, measure_take
-from .take_origin import Take, TakeOrigin, TrackedMotion, find_origin
+from .take_origin import MotionFromJoints, Take, TakeOrigin, find_origin
 
 __all__ = [
     "UNKNOWN",
+    "MotionFromJoints",
     "Take",
     "TakeFigures",
     "TakeOrigin",
-    "TrackedMotion",
     "describe_empty_frames",
     "describe_missing_points",
     "drop_missing_points",

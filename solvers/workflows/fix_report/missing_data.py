@@ -8,7 +8,7 @@ from ...arrays import Flags
 from ...depth_scene import DepthRecording
 from ...motion import JointRecording, Motion, Tracks
 from ...signals import find_runs
-from .take_origin import Take, TrackedMotion
+from .take_origin import MotionFromJoints, Take
 
 MAX_NAMES = 5
 """Number of markers that a sentence names. Chosen by hand: two lines of a default sidebar."""
@@ -59,7 +59,7 @@ def describe_empty_frames(take: Take) -> str:
     if not runs or empty.all():
         return ""
     n_frames, longest = int(empty.sum()), max(stop - start for start, stop in runs)
-    rate = take.motion.frame_rate if isinstance(take, TrackedMotion) else take.frame_rate
+    rate = take.motion.frame_rate if isinstance(take, MotionFromJoints) else take.frame_rate
     if n_frames == 1:
         return "1 frame has no data at all, it is filled from the frames before and after."
     return (
@@ -77,9 +77,9 @@ def observed_samples(recording: Motion | Tracks) -> Flags:
     return np.asarray(recording.observed[:, rotating])
 
 
-def _observed(take: Motion | Tracks | JointRecording | TrackedMotion) -> Flags:
+def _observed(take: Motion | Tracks | JointRecording | MotionFromJoints) -> Flags:
     match take:
-        case TrackedMotion():
+        case MotionFromJoints():
             return observed_samples(take.motion)
         case JointRecording():
             return observed_samples(take.tracks)

@@ -27,7 +27,7 @@ class TakeOrigin(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class TrackedMotion:
+class MotionFromJoints:
     """A motion that was solved from the joints of a depth camera.
 
     Attributes are those of `reconstruct_motion`.
@@ -40,7 +40,7 @@ class TrackedMotion:
     resize: bool = False
 
 
-Take = Motion | Tracks | JointRecording | TrackedMotion | DepthRecording
+Take = Motion | Tracks | JointRecording | MotionFromJoints | DepthRecording
 
 
 def find_origin(take: Take) -> TakeOrigin:
@@ -49,7 +49,7 @@ def find_origin(take: Take) -> TakeOrigin:
     Markers that are named but never observed do not count.
     """
     match take:
-        case JointRecording() | TrackedMotion():
+        case JointRecording() | MotionFromJoints():
             return TakeOrigin.CAMERA
         case DepthRecording():
             return TakeOrigin.DEPTH

@@ -188,8 +188,8 @@ def test_cache_has_no_blender_data(blank, reading, stepping):
 def test_rectangles_cover_the_last_frame_of_a_range(load, ranges, reading):
     drawing = load("mocap_assist.drawing.strip_drawing")
     rows = {
-        ranges.Row.SPIKES: (ranges.Range(5.0, 5.0, ranges.Mark.ISSUE),),
-        ranges.Row.FILLED: (ranges.Range(8.0, 9.0, ranges.Mark.FILLED),),
+        ranges.StripRow.SPIKES: (ranges.Range(5.0, 5.0, ranges.Mark.ISSUE),),
+        ranges.StripRow.FILLED: (ranges.Range(8.0, 9.0, ranges.Mark.FILLED),),
     }
 
     strip = reading.Strip(1.0, 10.0, 1.0, rows)
@@ -203,7 +203,7 @@ def test_rectangles_cover_the_last_frame_of_a_range(load, ranges, reading):
 
 def test_range_of_one_frame_is_visible_in_a_long_take(load, ranges, reading):
     drawing = load("mocap_assist.drawing.strip_drawing")
-    rows = {ranges.Row.SPIKES: (ranges.Range(500.0, 500.0, ranges.Mark.ISSUE),)}
+    rows = {ranges.StripRow.SPIKES: (ranges.Range(500.0, 500.0, ranges.Mark.ISSUE),)}
     strip = reading.Strip(1.0, 10_000.0, 1.0, rows)
     pixels_per_frame = 0.1
 

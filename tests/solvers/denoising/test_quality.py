@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.denoising.quality.bone_drift import measure_bone_drifts
-from solvers.denoising.quality.foot_slide import FootPath, measure_foot_slide
+from solvers.denoising.quality.foot_slide import FootPoints, measure_foot_slide
 from solvers.denoising.quality.measure import QualitySettings, measure_jitter, measure_quality
 from solvers.denoising.quality.report import compare_quality
 from solvers.errors import InvalidMotionError, InvalidSettingError, SolveCancelled
@@ -103,7 +103,7 @@ def test_slide_is_the_distance_in_contact():
     points[:, :, 0] = 0.003 * np.arange(201)[:, None]
     contact = np.arange(201) >= 100
 
-    slide = measure_foot_slide(FootPath("left", "foot", points), contact, 100.0)
+    slide = measure_foot_slide(FootPoints("left", "foot", points), contact, 100.0)
 
     assert_allclose(slide.mean_speed, 0.3, rtol=1e-9)
     assert_allclose(slide.distance, 0.3, rtol=1e-9)
@@ -114,7 +114,7 @@ def test_longest_slide_ends_at_a_cut():
     """A foot slips by 40 cm, 10 and 30 cm of it in two segments of a joined take."""
     points = np.zeros((41, 2, 3))
     points[:, :, 0] = 0.01 * np.arange(41)[:, None]
-    foot = FootPath("left", "foot", points)
+    foot = FootPoints("left", "foot", points)
 
     whole = measure_foot_slide(foot, np.ones(41, dtype=bool), 60.0)
     parts = measure_foot_slide(foot, np.ones(41, dtype=bool), 60.0, cuts=(11,))
@@ -127,7 +127,9 @@ def test_foot_that_rolls_over_its_toe_does_not_slide():
     points = np.zeros((50, 2, 3))
     points[:, 0, 1] = -0.01 * np.arange(50)
 
-    slide = measure_foot_slide(FootPath("left", "foot", points), np.ones(50, dtype=bool), 60.0)
+    slide = measure_foot_slide(
+        FootPoints("left", "foot", points), np.ones(50, dtype=bool), 60.0
+    )
 
     assert slide.distance == 0.0
 

@@ -16,8 +16,8 @@ from solvers.rotations.representations import angle_between
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 from solvers.workflows import (
     FixSettings,
+    MotionFromJoints,
     TakeOrigin,
-    TrackedMotion,
     figure_texts,
     find_origin,
     fix_take,
@@ -161,7 +161,7 @@ def test_joints_of_a_camera_are_reconstructed_and_not_cleaned_again(camera_walk)
 def test_armature_of_a_camera_is_reconstructed_on_its_skeleton(camera_walk):
     tracks = camera_walk.tracks
     motion = motion_from_points(tracks, vocabulary.joint_parents(tracks.names))
-    tracked = TrackedMotion(
+    tracked = MotionFromJoints(
         motion, tracking_state=camera_walk.tracking_state, sensor=camera_walk.sensor
     )
 
