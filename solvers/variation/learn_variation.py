@@ -26,7 +26,7 @@ from .curves import (
 from .loops import detect_loop
 from .mixing_kernel import MixingKernel
 from .moving_references import REFERENCE_SMOOTHING_S, split_moving_references
-from .published import learn_stepwise
+from .published import StepwiseModel
 from .variation_model import VariationModel
 from .vary_settings import DEFAULT_SETTINGS, VaryMethod, VarySettings
 
@@ -108,7 +108,7 @@ def learn_variation_model(
     stepwise = None
     if settings.method is not VaryMethod.MIXTURE:
         published = settings.method is VaryMethod.PUBLISHED
-        stepwise = learn_stepwise(
+        stepwise = StepwiseModel.learn(
             motions[0].skeleton,
             joints,
             root,

@@ -17,7 +17,6 @@ from .curves import LEG_ROWS, MotionCurves, clamp_softly, motion_from_curves, pa
 from .loops import close_loop, is_closed
 from .mixtures import draw_mixing_weights, mix_deviations
 from .plant_variant import plant_variant
-from .published import draw_stepwise_deviations
 from .time_warp import apply_time_warp
 from .variation_model import VariationModel
 from .vary_settings import DEFAULT_SETTINGS, VaryMethod, VarySettings
@@ -140,7 +139,7 @@ def _draw_deviations(
     mixed = mix_deviations(model, weights)
     if method is VaryMethod.MIXTURE or model.stepwise is None:
         return mixed
-    return draw_stepwise_deviations(model.stepwise, mixed, weights, rng)
+    return model.stepwise.draw(mixed, weights, rng)
 
 
 class _ExampleRange(NamedTuple):

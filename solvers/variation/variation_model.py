@@ -11,7 +11,7 @@ from ..motion import Skeleton
 from ..npz_members import integers, numbers, words
 from .curves import N_ROOT_CHANNELS
 from .mixing_kernel import MixingKernel
-from .published import STEPWISE_MEMBER, StepwiseModel, pack_stepwise, restore_stepwise
+from .published import StepwiseModel
 
 MIN_FRAME_RATE_HZ, MAX_FRAME_RATE_HZ = 1e-3, 1e6
 """Bounds of a plausible frame rate. They guard against damaged files."""
@@ -30,7 +30,7 @@ LAYOUT = ArchiveLayout(
         "carrier": numbers("moments", "joints", 4, or_empty=True),
         "warning": words(),
         "numbers": numbers(5),
-        "stepwise": STEPWISE_MEMBER,
+        "stepwise": StepwiseModel.SAVED,
     },
     holds="a damaged variation model",
     remedy="Learn it again.",
@@ -105,7 +105,7 @@ class VariationModel:
             "numbers": np.array([
                 self.frame_rate, self.kernel.scale, self.kernel.bias, self.center, self.loops,
             ]),
-            "stepwise": pack_stepwise(self.stepwise),
+            "stepwise": np.zeros(0) if self.stepwise is None else self.stepwise.pack(),
         })  # fmt: skip
 
 
@@ -126,7 +126,7 @@ def load_variation_model(path: Path | str) -> VariationModel:
     names, parents = arrays["names"].tolist(), arrays["parents"].tolist()
     try:
         skeleton = Skeleton(tuple(names), tuple(parents), arrays["offsets"])
-        stepwise = restore_stepwise(
+        stepwise = StepwiseModel.restore(
             arrays["stepwise"], skeleton, arrays["joints"], arrays["root"], frame_rate
         )
     except (ValueError, IndexError) as error:

@@ -4,12 +4,11 @@ Both are methods of `reconstruct` and baselines of `make bench-reconstruct`. The
 papers print them; the default improves on them next door.
 """
 
-from .posture_reconstruction import reconstruct_published_postures, search_as_published
+from .posture_reconstruction import reconstruct_published_postures
 from .residual_reconstruction import ThreeTermSettings, reconstruct_published_residuals
 
 __all__ = [
     "ThreeTermSettings",
     "reconstruct_published_postures",
     "reconstruct_published_residuals",
-    "search_as_published",
 ]

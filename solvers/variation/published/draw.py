@@ -8,12 +8,19 @@ Residuals come from the examples' own, mixed with slowly changing weights. Each 
 within the examples' range at that time and is pulled a little towards their mixture.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ...arrays import Array
 from ..curves import ROOT_ROW, clamp_softly
 from .features import ROOT_TRIPLE, compute_step_features, curves_from_states
-from .model import StepwiseModel
+
+if TYPE_CHECKING:
+    from .model import StepwiseModel
+
+Deviations = tuple[Array, Array, Array, Array]
+"""Those of joints, root, log warp rates and contact state."""
 
 RANGE_MARGIN = 0.05
 """Fraction of a channel's range over all times by which a variant may exceed, with saturation,
@@ -24,11 +31,11 @@ hand, as the paper gives no value."""
 
 
 def draw_stepwise_deviations(
-    model: StepwiseModel,
-    mixture: tuple[Array, Array, Array, Array],
+    model: "StepwiseModel",
+    mixture: Deviations,
     weights: Array,
     rng: np.random.Generator,
-) -> tuple[Array, Array, Array, Array]:
+) -> Deviations:
     """Draw deviations of joints, root, log warp rates and contact state.
 
     As published, joints and root deviate from the mean of the examples, and contacts are
@@ -58,7 +65,7 @@ def draw_stepwise_deviations(
     return joints + more_joints, root + more_root, log_warp_rates, contact_state
 
 
-def _draw_published(model: StepwiseModel, n: int, rng: np.random.Generator) -> Array:
+def _draw_published(model: "StepwiseModel", n: int, rng: np.random.Generator) -> Array:
     n_steps = model.states.shape[1]
     states = np.zeros((n, n_steps, *model.states.shape[2:]))
     no_state, no_features = np.zeros_like(states[:, 0]), np.zeros((n, 0))
@@ -79,7 +86,7 @@ def _draw_published(model: StepwiseModel, n: int, rng: np.random.Generator) -> A
 
 
 def _draw_coregionalized(
-    model: StepwiseModel, weights: Array, mixed: Array, rng: np.random.Generator
+    model: "StepwiseModel", weights: Array, mixed: Array, rng: np.random.Generator
 ) -> Array:
     """Return states that start as mixed examples do.
 
@@ -107,7 +114,7 @@ def _draw_coregionalized(
     return states
 
 
-def _weights_at_steps(model: StepwiseModel, weights: Array, n_steps: int) -> Array:
+def _weights_at_steps(model: "StepwiseModel", weights: Array, n_steps: int) -> Array:
     """Return the weights of each triple, shape (n_triples, n_variants, n_steps, n_examples)."""
     rows = np.round(np.linspace(0, weights.shape[2] - 1, n_steps)).astype(int)
     partition_rows = np.where(

@@ -1,13 +1,16 @@
-"""Learn the model that synthesizes variants frame by frame [ZH14, section 4.3]."""
+"""The model that synthesizes variants frame by frame [ZH14, section 4.3]."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar, Self
 
 import numpy as np
 
 from ...arrays import Array, Integers
 from ...motion import Skeleton
+from ...npz_members import Values, numbers
 from ...progress import Progress, unwatched, within
+from .draw import Deviations, draw_stepwise_deviations
 from .features import (
     N_CONTEXT,
     STEP_RATE_HZ,
@@ -18,7 +21,7 @@ from .features import (
     select_feature_columns,
     states_from_curves,
 )
-from .process import Hyperparameters
+from .process import N_PACKED, Hyperparameters
 from .stack import ProcessStack, learn_stack
 
 MIN_STEPS = 5
@@ -57,6 +60,102 @@ class StepwiseModel:
     residuals: Array
     hyperparameters: tuple[tuple[Hyperparameters, ...], ...]
 
+    SAVED: ClassVar[Values] = numbers("stacks", "triples", N_PACKED, or_empty=True)
+    """Description of what `pack` returns, in a saved file."""
+
+    @classmethod
+    def learn(
+        cls,
+        skeleton: Skeleton,
+        joints: Array,
+        root: Array,
+        frame_rate: float,
+        published: bool,
+        hyperparameters: tuple[tuple[Hyperparameters, ...], ...] = (),
+        progress: Progress = unwatched,
+    ) -> Self:
+        """Learn the distributions of all joints from examples in common time.
+
+        Parameters
+        ----------
+        skeleton : Skeleton
+        joints : shape (n_examples, n_samples, n_joints, 3)
+        root : shape (n_examples, n_samples, 4)
+        frame_rate : float, hertz
+        published : bool
+        hyperparameters : tuple of tuple of Hyperparameters
+            Known ones; without them they are learned.
+        progress : Progress
+        """
+        body = find_moving_body(skeleton, joints)
+        n_samples = joints.shape[1]
+        n_steps = max(
+            min(round((n_samples - 1) / frame_rate * STEP_RATE_HZ) + 1, n_samples), MIN_STEPS
+        )
+        states = states_from_curves(
+            body, joints, root, np.linspace(0.0, n_samples - 1.0, n_steps)
+        )
+        axes = np.zeros((0, 3 * body.n_triples)) if published else _principal_axes(states)
+        targets = states[:, 3:].reshape(-1, body.n_triples, 3)
+        features = _compute_features(states, axes)
+        columns = select_feature_columns(
+            body, (0, 1, 2, 3), features.shape[1] - 12 * body.n_triples, own=True
+        )
+        weights = np.ones(features.shape[1])
+        if not published:
+            weights[-1] = TIME_WEIGHT
+        initial: Sequence[list[Hyperparameters] | None]
+        initial = [list(each) for each in hyperparameters] or [None] * 4
+        steps, learned = learn_stack(
+            features,
+            targets,
+            columns,
+            weights,
+            published,
+            initial[0],
+            within(progress, 0.0, 0.8),
+        )
+        progress(0.8, "Learning start poses")
+        residuals = np.zeros_like(states)
+        residuals[:, 3:] = (targets - steps.predict(features)).reshape(states[:, 3:].shape)
+        first = []
+        for index, stage in enumerate(_build_first_stages(body, states) if published else ()):
+            stack, learned_first = learn_stack(*stage, published, initial[index + 1])
+            first.append((stack, learned_first))
+        return cls(
+            body, states, published, steps, tuple(stack for stack, _ in first), axes, residuals,
+            (tuple(learned), *(tuple(learned_first) for _, learned_first in first)),
+        )  # fmt: skip
+
+    def pack(self) -> Array:
+        """Return all hyperparameters, shape (n_stacks, n_triples, 18); all else follows."""
+        return np.array([
+            [each.to_vector() for each in stack] for stack in self.hyperparameters
+        ])
+
+    @classmethod
+    def restore(
+        cls, packed: Array, skeleton: Skeleton, joints: Array, root: Array, frame_rate: float
+    ) -> Self | None:
+        """Return the model of packed hyperparameters, None if there are none.
+
+        See `learn` for the other parameters.
+        """
+        hyperparameters = tuple(
+            tuple(Hyperparameters.from_vector(each) for each in stack) for stack in packed
+        )
+        if not hyperparameters:
+            return None
+        published = len(hyperparameters) > 1
+        return cls.learn(skeleton, joints, root, frame_rate, published, hyperparameters)
+
+    def draw(self, mixture: Deviations, weights: Array, rng: np.random.Generator) -> Deviations:
+        """Draw deviations of joints, root, log warp rates and contact state.
+
+        See `draw_stepwise_deviations`.
+        """
+        return draw_stepwise_deviations(self, mixture, weights, rng)
+
     def extra(self, last: Array, time: float) -> Array:
         """Return features of a step that all joints use, shape (n, n_extra); none as published.
 
@@ -68,61 +167,6 @@ class StepwiseModel:
             Normalized time of the step, from 0 to 1.
         """
         return _extra_features(last, time, self.axes)
-
-
-def learn_stepwise(
-    skeleton: Skeleton,
-    joints: Array,
-    root: Array,
-    frame_rate: float,
-    published: bool,
-    hyperparameters: tuple[tuple[Hyperparameters, ...], ...] = (),
-    progress: Progress = unwatched,
-) -> StepwiseModel:
-    """Learn the distributions of all joints from examples in common time.
-
-    Parameters
-    ----------
-    skeleton : Skeleton
-    joints : shape (n_examples, n_samples, n_joints, 3)
-    root : shape (n_examples, n_samples, 4)
-    frame_rate : float, hertz
-    published : bool
-    hyperparameters : tuple of tuple of Hyperparameters
-        Known ones; without them they are learned.
-    progress : Progress
-    """
-    body = find_moving_body(skeleton, joints)
-    n_samples = joints.shape[1]
-    n_steps = max(
-        min(round((n_samples - 1) / frame_rate * STEP_RATE_HZ) + 1, n_samples), MIN_STEPS
-    )
-    states = states_from_curves(body, joints, root, np.linspace(0.0, n_samples - 1.0, n_steps))
-    axes = np.zeros((0, 3 * body.n_triples)) if published else _principal_axes(states)
-    targets = states[:, 3:].reshape(-1, body.n_triples, 3)
-    features = _compute_features(states, axes)
-    columns = select_feature_columns(
-        body, (0, 1, 2, 3), features.shape[1] - 12 * body.n_triples, own=True
-    )
-    weights = np.ones(features.shape[1])
-    if not published:
-        weights[-1] = TIME_WEIGHT
-    initial: Sequence[list[Hyperparameters] | None]
-    initial = [list(each) for each in hyperparameters] or [None] * 4
-    steps, learned = learn_stack(
-        features, targets, columns, weights, published, initial[0], within(progress, 0.0, 0.8)
-    )
-    progress(0.8, "Learning start poses")
-    residuals = np.zeros_like(states)
-    residuals[:, 3:] = (targets - steps.predict(features)).reshape(states[:, 3:].shape)
-    first = []
-    for index, stage in enumerate(_build_first_stages(body, states) if published else ()):
-        stack, learned_first = learn_stack(*stage, published, initial[index + 1])
-        first.append((stack, learned_first))
-    return StepwiseModel(
-        body, states, published, steps, tuple(stack for stack, _ in first), axes, residuals,
-        (tuple(learned), *(tuple(learned_first) for _, learned_first in first)),
-    )  # fmt: skip
 
 
 def _build_first_stages(
