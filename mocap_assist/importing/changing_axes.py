@@ -9,7 +9,7 @@ from mathutils import Matrix, Quaternion
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import FileConventions
 from ...solvers.recordings import Axis, FloorPlacement, FloorPlacementSettings, Unit
-from ...solvers.recordings.conventions import floor_level, turn_between, with_axes
+from ...solvers.recordings.conventions import floor_level, rotation_between, with_axes
 from ...solvers.settings import setting
 from ..actions.armature_read import read_take
 from ..actions.marker_take import read_markers
@@ -100,8 +100,8 @@ def change_axes(context: bpy.types.Context, owner: bpy.types.Object, change: Axe
     after = FileConventions(**{**asdict(after), "unit": change.unit.metres or before.unit})
     scale = change.global_scale or _scale_of(origin)
     factor = scale / _scale_of(origin) * after.unit / before.unit
-    turn = Quaternion(turn_between(before, after)).to_matrix().to_4x4()
-    owner.matrix_basis = owner.matrix_basis @ turn @ Matrix.Scale(factor, 4)
+    rotation = Quaternion(rotation_between(before, after)).to_matrix().to_4x4()
+    owner.matrix_basis = owner.matrix_basis @ rotation @ Matrix.Scale(factor, 4)
     note_origin(owner, origin | asdict(after) | {"scale": scale})
     floor = change.place_on_floor
     if floor is FloorPlacement.ALWAYS or (

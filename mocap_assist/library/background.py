@@ -40,7 +40,7 @@ class Indexing:
         """Show nothing more but what it has done."""
         _on.remove(self)
         state = context.window_manager.mocap_assist_indexing
-        state.running, state.said = False, message
+        state.running, state.report = False, message
         redraw(context)
 
     def abandon(self, context: bpy.types.Context) -> None:

@@ -56,13 +56,13 @@ class Listening:
         return self in _on
 
     @property
-    def heard(self) -> StreamCounts:
+    def counts(self) -> StreamCounts:
         """Return a text with the numbers of received and dropped frames."""
-        return self.session.heard
+        return self.session.counts
 
     def state(self) -> str:
         """Return the available commands in a few words."""
-        return MODES[self.session.mode] if self.heard.frames else WAITING
+        return MODES[self.session.mode] if self.counts.frames else WAITING
 
     def poll(self, context: bpy.types.Context) -> None:
         """Receive new frames, execute their commands, and show the result."""
@@ -87,7 +87,9 @@ class Listening:
         self.figure.remove()
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
-        logger.info("Listened to %d frames, dropped %d", self.heard.frames, self.heard.dropped)
+        logger.info(
+            "Listened to %d frames, dropped %d", self.counts.frames, self.counts.dropped
+        )
         redraw(context, "VIEW_3D")
 
     def _show(self, context: bpy.types.Context) -> None:

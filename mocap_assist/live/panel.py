@@ -16,7 +16,7 @@ RECORD = "mocap_assist.record_live"
 
 
 class PerformPanel(PanelMixin):
-    """The buttons Listen and Record Live, the port, and what is heard."""
+    """The buttons Listen and Record Live, the port, and what was received."""
 
     bl_label = "Perform"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}
@@ -44,7 +44,7 @@ class PerformPanel(PanelMixin):
         draw_sentence(layout, context, listening.state())
         if listening.message:
             draw_sentence(layout, context, listening.message, icon="INFO")
-        heard = listening.heard
-        draw_sentence(layout, context, f"{heard.frames} frames, {heard.dropped} dropped")
-        if heard.why:
-            draw_sentence(layout, context, heard.why, icon="ERROR")
+        counts = listening.counts
+        draw_sentence(layout, context, f"{counts.frames} frames, {counts.dropped} dropped")
+        if counts.why:
+            draw_sentence(layout, context, counts.why, icon="ERROR")

@@ -123,7 +123,7 @@ def _record(problem: LiveProblem, progress: Progress, keep: Show) -> None:
             rig.frame_rate if rig else np.inf
         ):
             frames = list(stream.read(*receiver.poll()))
-            progress(*_state(take, stream.heard.frames))
+            progress(*_state(take, stream.counts.frames))
             poses = take.add(frames)
             if take.calibration is not None and rig is None:
                 rig = _LiveRig(problem, take.calibration, take.names)
@@ -227,9 +227,9 @@ def _moved(motion: Motion, offset: Array) -> Motion:
     return motion.with_poses(motion.rotations, motion.root_positions + offset)
 
 
-def _state(take: LiveTake, n_heard: int) -> tuple[float, str]:
+def _state(take: LiveTake, n_frames: int) -> tuple[float, str]:
     """Return fraction and message of the progress."""
-    if not n_heard:
+    if not n_frames:
         return 0.0, "Waiting for the tracker"
     if take.calibration is None:
         return take.calibrated_fraction, "Measuring the actor: move arms and legs"

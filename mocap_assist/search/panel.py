@@ -95,8 +95,8 @@ def _draw_library(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     if state.running:
         text = f"{translated(state.message)} {state.fraction:.0%}"
         layout.progress(factor=state.fraction, type="BAR", text=text, translate=False)
-    elif state.said:
-        draw_sentence(layout, context, state.said)
+    elif state.report:
+        draw_sentence(layout, context, state.report)
 
 
 def _draw_query(column: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -78,7 +78,7 @@ def _poll_search(job: Job[Finding], grid: tuple[float, float], meters: float) ->
     try:
         _list_matches(job.result(), grid, meters)
     except MocapAssistError as error:
-        bpy.context.window_manager.mocap_assist_indexing.said = str(error)
+        bpy.context.window_manager.mocap_assist_indexing.report = str(error)
     redraw(bpy.context)
     return None
 

@@ -27,7 +27,7 @@ class MOCAP_PG_indexing(bpy.types.PropertyGroup):
     running: bpy.props.BoolProperty(name="Running")
     fraction: bpy.props.FloatProperty(name="Done", subtype="FACTOR", min=0.0, max=1.0)
     message: bpy.props.StringProperty(name="Message")
-    said: bpy.props.StringProperty(
+    report: bpy.props.StringProperty(
         name="Report", description="Result of the last Build Library"
     )
 

@@ -127,22 +127,22 @@ def knees_bend_backward(motion: Motion, joints: Joints) -> bool:
         return False
     sampled = motion.rotations[:: -(-motion.n_frames // MAX_SAMPLED_FRAMES)]
     still = Motion(motion.skeleton, sampled, np.zeros((len(sampled), 3)), motion.frame_rate)
-    places = forward_kinematics(still).positions
-    left, right = (places[:, thigh] for thigh in thighs)
-    forward = np.cross(left - right, places[:, top] - places[:, joints["hips"]])
-    bends = [_knee_bends(places, joints, side, forward) for side in SIDES]
+    positions = forward_kinematics(still).positions
+    left, right = (positions[:, thigh] for thigh in thighs)
+    forward = np.cross(left - right, positions[:, top] - positions[:, joints["hips"]])
+    bends = [_knee_bends(positions, joints, side, forward) for side in SIDES]
     return all(
         len(each) >= MIN_BENT_FRAMES and bool((each > 0.0).mean() < MAX_KNEES_FORWARD)
         for each in bends
     )
 
 
-def _knee_bends(places: Array, joints: Joints, side: str, forward: Array) -> Array:
+def _knee_bends(positions: Array, joints: Joints, side: str, forward: Array) -> Array:
     """Return how far forward each clearly bent knee is, as a fraction of the leg."""
     roles = [f"{side}{part}" for part in LIMBS["Leg"]]
     if any(role not in joints for role in roles):
         return np.empty(0)
-    hip, knee, ankle = (places[:, joints[role]] for role in roles)
+    hip, knee, ankle = (positions[:, joints[role]] for role in roles)
     leg = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(ankle - knee, axis=-1)
     along = (ankle - hip) / np.maximum(np.linalg.norm(ankle - hip, axis=-1), 1e-9)[:, None]
     aside = knee - hip

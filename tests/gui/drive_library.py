@@ -75,7 +75,7 @@ def index():
     yield from settle(2)
     bgui.shot("2-indexing.png")
     yield from wait_for(lambda: not state().running)
-    assert state().said.startswith("The library has "), state().said
+    assert state().report.startswith("The library has "), state().report
     yield from settle()
     bgui.shot("3-indexed.png")
 
@@ -83,11 +83,11 @@ def index():
 def keep_current():
     """What is added while the switch is on is read without anybody pressing Index."""
     yield from press("mocap_assist.keep_current", column=0.75)
-    said = state().said
+    report = state().report
     first = sorted(CLIPS.glob("*.bvh"))[0]
     (CLIPS / "added.bvh").write_bytes(first.read_bytes())
-    yield from wait_for(lambda: state().said != said)
-    assert "1 read" in state().said, state().said
+    yield from wait_for(lambda: state().report != report)
+    assert "1 read" in state().report, state().report
     yield from settle()
     bgui.shot("3-kept-current.png")
 

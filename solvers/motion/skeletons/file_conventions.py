@@ -42,12 +42,12 @@ class FileConventions:
 
     def sentence(self) -> str:
         """Return what was judged, for a report: without a period."""
-        sure = "" if self.is_certain else self._confidence_in_up()
+        certainty = "" if self.is_certain else self._confidence_in_up()
         rest = "" if self.rest_up in {None, self.up} else self._up_at_rest()
         added = f", {OFFSET_ADDED}" if self.offset_added else ""
         return (
-            f"{self.up} is up{rest}{sure}{added}, {self.forward} is forward, lengths are in"
-            f" {unit_name(self.unit)}"
+            f"{self.up} is up{rest}{certainty}{added}, {self.forward} is forward, lengths are"
+            f" in {unit_name(self.unit)}"
         )
 
     def _confidence_in_up(self) -> str:

@@ -16,7 +16,7 @@ from ...motion import (
 )
 from ...progress import Progress, Remark, unwatched
 from .axes import longest_bone_path, rotation_to_z_up
-from .file_axes import FORWARD, turn_motion
+from .file_axes import FORWARD, rotate_motion
 from .standing_joints import (
     AXES,
     N_SAMPLED_FRAMES,
@@ -203,7 +203,7 @@ def rotate_to_z_up(motion: Motion, axis: UpAxisName, rest_axis: UpAxisName) -> M
     """
     if axis == rest_axis == "Y":
         return motion
-    return turn_motion(motion, rotation_to_z_up(axis), rotation_to_z_up(rest_axis))
+    return rotate_motion(motion, rotation_to_z_up(axis), rotation_to_z_up(rest_axis))
 
 
 def _judge_by_extent(skeleton: Skeleton, positions: Array) -> UpAxis:

@@ -49,6 +49,6 @@ def is_mirrored(points: Array, left: int, right: int, back: int, front: int) -> 
         points[:, one, :2] - points[:, other, :2]
         for one, other in ((left, right), (front, back))
     )
-    turn = across[:, 0] * ahead[:, 1] - across[:, 1] * ahead[:, 0]
-    turn = turn[np.isfinite(turn) & (turn != 0.0)]
-    return bool(len(turn) and (turn > 0.0).mean() > MIN_MIRRORED_FRACTION)
+    handedness = across[:, 0] * ahead[:, 1] - across[:, 1] * ahead[:, 0]
+    handedness = handedness[np.isfinite(handedness) & (handedness != 0.0)]
+    return bool(len(handedness) and (handedness > 0.0).mean() > MIN_MIRRORED_FRACTION)

@@ -64,20 +64,20 @@ def with_axes(
     )
 
 
-def turn_between(before: FileConventions, after: FileConventions) -> Array:
-    """Return the quaternion that turns what was read by `before` as `after` would read it."""
+def rotation_between(before: FileConventions, after: FileConventions) -> Array:
+    """Return the quaternion that rotates what was read by `before` as `after` would read it."""
     return np.asarray(quaternion_from_matrix(_matrix(after) @ _matrix(before).T))
 
 
-def rotated_conventions(before: FileConventions, turn: Array) -> FileConventions:
+def rotated_conventions(before: FileConventions, rotation: Array) -> FileConventions:
     """Return the axes of the file that are up and forward after a rotation by a quaternion.
 
     Parameters
     ----------
     before : conventions by which the recording was read
-    turn : rotation to axes of the project, by multiples of 90 degrees
+    rotation : quaternion, to axes of the project, by multiples of 90 degrees
     """
-    matrix = matrix_from_quaternion(turn) @ _matrix(before)
+    matrix = matrix_from_quaternion(rotation) @ _matrix(before)
     return replace(before, up=_name_axis(matrix[2]), forward=_name_axis(-matrix[1]))
 
 
@@ -90,35 +90,39 @@ def reinterpreted(
     """
     before = conventions_of(recording)
     after = with_axes(before, up, forward)
-    return with_conventions(turned(recording, before, after), after)
+    return with_conventions(rotate_recording(recording, before, after), after)
 
 
-def turned(recording: Recording, before: FileConventions, after: FileConventions) -> Recording:
+def rotate_recording(
+    recording: Recording, before: FileConventions, after: FileConventions
+) -> Recording:
     """Return a recording that was read by some conventions in the axes of others."""
-    turn = turn_between(before, after)
-    if abs(turn[0]) > 1.0 - 1e-12:
+    rotation = rotation_between(before, after)
+    if abs(rotation[0]) > 1.0 - 1e-12:
         return recording
     if isinstance(recording, JointRecording):
-        joints = recording.with_tracks(turned(recording.tracks, before, after))
+        joints = recording.with_tracks(rotate_recording(recording.tracks, before, after))
         return cast(Recording, joints)
     if isinstance(recording, Tracks):
-        points = recording.with_positions(rotate(turn, recording.positions))
+        points = recording.with_positions(rotate(rotation, recording.positions))
         return cast(Recording, points)
     keeps_rest = after.rest_up is not None and before.up != after.up
-    rest_turn = np.array([1.0, 0.0, 0.0, 0.0]) if keeps_rest else turn
-    return cast(Recording, turn_motion(recording, turn, rest_turn))
+    rest_rotation = np.array([1.0, 0.0, 0.0, 0.0]) if keeps_rest else rotation
+    return cast(Recording, rotate_motion(recording, rotation, rest_rotation))
 
 
-def turn_motion(motion: Motion, turn: Array, rest_turn: Array) -> Motion:
-    """Turn the motion of a body by one quaternion, and its rest pose by another."""
-    skeleton = replace(motion.skeleton, offsets=rotate(rest_turn, motion.skeleton.offsets))
-    rotations = multiply(multiply(rest_turn, motion.rotations), inverse(rest_turn))
-    rotations[:, 0] = multiply(multiply(turn, motion.rotations[:, 0]), inverse(rest_turn))
+def rotate_motion(motion: Motion, rotation: Array, rest_rotation: Array) -> Motion:
+    """Rotate the motion of a body by one quaternion, and its rest pose by another."""
+    skeleton = replace(motion.skeleton, offsets=rotate(rest_rotation, motion.skeleton.offsets))
+    rotations = multiply(multiply(rest_rotation, motion.rotations), inverse(rest_rotation))
+    rotations[:, 0] = multiply(
+        multiply(rotation, motion.rotations[:, 0]), inverse(rest_rotation)
+    )
     return replace(
         motion,
         skeleton=skeleton,
         rotations=rotations,
-        root_positions=rotate(turn, motion.root_positions),
+        root_positions=rotate(rotation, motion.root_positions),
     )
 
 

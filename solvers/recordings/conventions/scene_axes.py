@@ -10,7 +10,7 @@ from ...arrays import Array
 from ...motion import AxisName, Motion, find_humanoid_map
 from .axes import rotation_to_z_up
 from .body_unit import MIN_MAP_SCORE
-from .file_axes import conventions_of, rotated_conventions, turn_motion
+from .file_axes import conventions_of, rotate_motion, rotated_conventions
 from .standing_joints import (
     AXES,
     StandingJoints,
@@ -77,14 +77,14 @@ def stand_scene_upright(takes: Sequence[Motion]) -> list[Motion]:
     axes = {verdict.axis for verdict in verdicts if verdict.is_refuted}
     if len(axes) != 1 or any(verdict.is_standing for verdict in verdicts):
         return list(takes)
-    turn = rotation_to_z_up(axes.pop())
-    return [_turned(take, turn) for take in takes]
+    rotation = rotation_to_z_up(axes.pop())
+    return [_rotate_take(take, rotation) for take in takes]
 
 
-def _turned(take: Motion, turn: Array) -> Motion:
+def _rotate_take(take: Motion, rotation: Array) -> Motion:
     stated = conventions_of(take)
-    judged = replace(rotated_conventions(stated, turn), stated_up=stated.up)
-    return replace(turn_motion(take, turn, turn), conventions=judged)
+    judged = replace(rotated_conventions(stated, rotation), stated_up=stated.up)
+    return replace(rotate_motion(take, rotation, rotation), conventions=judged)
 
 
 def _verdict(take: Motion) -> _Verdict | None:

@@ -157,8 +157,8 @@ def read_body(
 
     Without times, in seconds, and rate, in hertz, the rate of the format is assumed.
     """
-    usual = HUMANML3D_RATE_HZ if body.layout == SMPL else DEFAULT_FRAME_RATE
-    assumed = f". {usual:g} Hz is assumed" if times is None and rate is None else ""
+    default_rate = HUMANML3D_RATE_HZ if body.layout == SMPL else DEFAULT_FRAME_RATE
+    assumed = f". {default_rate:g} Hz is assumed" if times is None and rate is None else ""
     progress(
         0.8,
         Remark(
@@ -171,7 +171,7 @@ def read_body(
         body.names,
         body.positions,
         up=UP_OF_SMPL if body.layout == SMPL else UP,
-        rate=rate or usual,
+        rate=rate or default_rate,
         times=times,
         sensor=SENSORS.get(body.layout, Sensor.OTHER),
         scale=scale,

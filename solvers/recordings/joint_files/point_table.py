@@ -50,7 +50,7 @@ class _Columns(NamedTuple):
     """Columns of a table."""
 
     names: tuple[str, ...]
-    places: Array
+    positions: Array
     """Column of x, y and z of each point, shape (n_points, 3)."""
     time: int | None
     second: float | None
@@ -103,7 +103,7 @@ def read_point_table(
     rows = stream_cells(
         reader, find_separator(first[0]), columns.width, path, within(progress, 0.0, 0.8)
     )
-    points = rows[:, columns.places.astype(int)]
+    points = rows[:, columns.positions.astype(int)]
     points = np.where(np.isfinite(points).all(axis=-1, keepdims=True), points, np.nan)
     if not len(points) or np.isnan(points).all():
         raise InvalidFileError(f"{path} has no points that are observed in any frame.")
@@ -166,6 +166,6 @@ def _columns(titles: Sequence[str]) -> _Columns | None:
     lower = [title.lower() for title in titles]
     time = next((column for column, title in enumerate(lower) if title in TIMES), None)
     unit = meters_from_unit_name(units.pop()) if len(units) == 1 else None
-    places = np.array([[axes[axis] for axis in "xyz"] for axes in points.values()])
+    positions = np.array([[axes[axis] for axis in "xyz"] for axes in points.values()])
     second = None if time is None else TIMES[lower[time]]
-    return _Columns(tuple(points), places, time, second, unit, len(titles))
+    return _Columns(tuple(points), positions, time, second, unit, len(titles))

@@ -53,7 +53,7 @@ class StreamReader:
     """
 
     def __init__(self) -> None:
-        self.heard = StreamCounts()
+        self.counts = StreamCounts()
         self._body: int | None = None
         self._time = float("-inf")
         self._late: list[float] = []
@@ -67,10 +67,10 @@ class StreamReader:
         n_remaining = MAX_LINES
         for datagram in datagrams:
             if not n_remaining:
-                self.heard.skipped += max(datagram.count(b"\n"), 1)
+                self.counts.skipped += max(datagram.count(b"\n"), 1)
                 continue
             lines = datagram.splitlines()
-            self.heard.skipped += max(len(lines) - n_remaining, 0)
+            self.counts.skipped += max(len(lines) - n_remaining, 0)
             yield from self._frames(lines[:n_remaining])
             n_remaining = max(n_remaining - len(lines), 0)
 
@@ -79,8 +79,8 @@ class StreamReader:
             try:
                 frame = decode_frame(line)
             except InvalidMotionError as error:
-                self.heard.unreadable += 1
-                self.heard.why = str(error)
+                self.counts.unreadable += 1
+                self.counts.why = str(error)
                 continue
             if self._accepts(frame):
                 yield frame
@@ -89,14 +89,14 @@ class StreamReader:
         elapsed = frame.time - self._time
         starts_stream = elapsed > BODY_TIMEOUT_S or elapsed <= -NEW_STREAM_S
         if frame.body != self._body and not starts_stream:
-            self.heard.others += 1
+            self.counts.others += 1
             return False
         if not (starts_stream or elapsed > 0.0 or self._restarts(frame.time)):
-            self.heard.late += 1
+            self.counts.late += 1
             return False
         self._body, self._time = frame.body, frame.time
         self._late.clear()
-        self.heard.frames += 1
+        self.counts.frames += 1
         return True
 
     def _restarts(self, time: float) -> bool:

@@ -59,9 +59,9 @@ class LiveSession:
         return self._recognizer.mode
 
     @property
-    def heard(self) -> StreamCounts:
+    def counts(self) -> StreamCounts:
         """Number of received frames, and why others were dropped."""
-        return self._stream.heard
+        return self._stream.counts
 
     def receive(self, datagrams: Iterable[bytes]) -> SessionUpdate:
         """Process datagrams; return the new frame, events and query."""

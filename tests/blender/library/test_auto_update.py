@@ -60,7 +60,7 @@ def test_refusal_is_shown_and_updates_continue(poll, library, keep, blank, clip_
     keep()
 
     assert poll(3) == 1
-    assert "my.clips" in blank.context.window_manager.mocap_assist_indexing.said
+    assert "my.clips" in blank.context.window_manager.mocap_assist_indexing.report
 
 
 def test_source_with_the_library_name_as_prefix_is_checked(poll, library, keep, clip_files):

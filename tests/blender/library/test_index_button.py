@@ -109,8 +109,8 @@ def test_window_stays_responsive_during_indexing(waiting, blank, entries):
         time.sleep(0.05)
 
     assert outcomes == {"PASS_THROUGH", "FINISHED"}
-    assert waiting.state.said == "The library has 6 clips: 6 read."
-    assert waiting.reports == [({"INFO"}, waiting.state.said)]
+    assert waiting.state.report == "The library has 6 clips: 6 read."
+    assert waiting.reports == [({"INFO"}, waiting.state.report)]
     assert not waiting.timers and not list(waiting.jobs.iterdir())
     assert len(entries(waiting.path)) == 6
     assert blank.ops.mocap_assist.index_library.poll()

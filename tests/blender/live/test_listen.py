@@ -145,7 +145,7 @@ def test_invalid_datagrams_are_counted_only(listen, load, window, port, event):
 
     assert button.modal(window.context, event("TIMER")) == {"PASS_THROUGH"}
 
-    statistics = load("mocap_assist.live.listening").current().heard
+    statistics = load("mocap_assist.live.listening").current().counts
     assert (statistics.frames, statistics.unreadable) == (0, 3)
 
 

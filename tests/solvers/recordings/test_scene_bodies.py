@@ -13,7 +13,7 @@ from solvers.recordings.conventions import (
     stand_scene_upright,
     stature,
 )
-from solvers.recordings.conventions.file_axes import reinterpreted, turn_motion
+from solvers.recordings.conventions.file_axes import reinterpreted, rotate_motion
 from solvers.recordings.skeleton_files.smpl_body import smpl_joints
 from solvers.rotations import quaternion_from_euler
 
@@ -82,7 +82,7 @@ def test_an_actor_who_never_stands_is_reported_with_the_axis_to_choose(
     conventions, degrees, up
 ):
     turn = about("X", degrees)
-    lying = turn_motion(walk(conventions), turn, turn)
+    lying = rotate_motion(walk(conventions), turn, turn)
 
     (message,) = describe_lying([lying])
 
@@ -94,7 +94,7 @@ def test_a_take_that_stands_confirms_the_axis_of_the_file():
     turn = about("X", 90)
 
     assert not describe_lying([walk()])
-    assert not describe_lying([turn_motion(walk(), turn, turn), walk()])
+    assert not describe_lying([rotate_motion(walk(), turn, turn), walk()])
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_a_take_that_stands_confirms_the_axis_of_the_file():
 def test_a_walk_up_the_wall_is_turned_and_reported(conventions, degrees, up):
     turn = about("X", degrees)
 
-    (turned,) = stand_scene_upright([turn_motion(walk(conventions), turn, turn)])
+    (turned,) = stand_scene_upright([rotate_motion(walk(conventions), turn, turn)])
 
     assert trunk_of(turned)[2] > 0.9
     assert np.ptp(turned.root_positions[:, 2]) == pytest.approx(0.0, abs=1e-9)
@@ -118,9 +118,9 @@ def test_a_walk_up_the_wall_is_turned_and_reported(conventions, degrees, up):
 def lying(rest: str) -> Motion:
     """Return a body that lies on the floor, with its feet at the origin along its length."""
     turn = about("X", 90)
-    still = turn_motion(in_place(walk()), turn, turn)
+    still = rotate_motion(in_place(walk()), turn, turn)
     if rest == "stands":
-        return turn_motion(in_place(walk()), turn, STILL)
+        return rotate_motion(in_place(walk()), turn, STILL)
     if rest == "is a frame":
         offsets = still.skeleton.offsets.copy()
         offsets[NAMES.index("left_elbow")] += [0.0, 0.1, 0.2]
@@ -145,14 +145,14 @@ def test_an_actor_who_really_lies_is_left_lying(rest):
 def test_a_body_in_place_is_turned_by_its_rest_pose_and_the_floor():
     turn = about("X", 90)
 
-    (turned,) = stand_scene_upright([turn_motion(in_place(walk()), turn, turn)])
+    (turned,) = stand_scene_upright([rotate_motion(in_place(walk()), turn, turn)])
 
     assert trunk_of(turned)[2] > 0.9
 
 
 def test_one_take_that_stands_confirms_the_axis_for_all():
     turn = about("X", 90)
-    takes = [turn_motion(walk(), turn, turn), walk()]
+    takes = [rotate_motion(walk(), turn, turn), walk()]
 
     assert stand_scene_upright(takes) == takes
 
@@ -160,7 +160,7 @@ def test_one_take_that_stands_confirms_the_axis_for_all():
 def test_an_actor_who_crawls_head_first_is_left_lying():
     """Its feet are at the origin of the file's other axis in most frames."""
     turn = about("X", 90)
-    still = turn_motion(in_place(walk()), turn, turn)
+    still = rotate_motion(in_place(walk()), turn, turn)
     ahead = np.maximum(np.linspace(-2.0, 1.0, 60), 0.0)[::-1, None] * [0.0, -3.0, 0.0]
 
     take = replace(still, root_positions=still.root_positions + ahead)

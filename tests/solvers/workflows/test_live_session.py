@@ -112,7 +112,7 @@ def test_invalid_datagrams_are_counted_and_dropped():
     news = session.receive([b"", b"rubbish", b"\x00" * 100, b"{}"])
 
     assert (news.frame, news.events, news.query, news.message) == (None, (), None, "")
-    assert session.heard.unreadable == 3
+    assert session.counts.unreadable == 3
 
 
 @pytest.mark.parametrize("names", [("a", "b"), ("Head",), ("hips", "head")])

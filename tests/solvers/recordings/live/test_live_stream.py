@@ -32,7 +32,7 @@ def test_late_frames_are_dropped_and_counted():
     came = read(reader, *[frame(time) for time in (0.0, 0.1, 0.1, 0.05, 0.2)])
 
     assert came == [(0.0, 0), (0.1, 0), (0.2, 0)]
-    assert (reader.heard.frames, reader.heard.late, reader.heard.dropped) == (3, 2, 2)
+    assert (reader.counts.frames, reader.counts.late, reader.counts.dropped) == (3, 2, 2)
 
 
 def test_a_sender_that_was_started_again_is_heard():
@@ -70,7 +70,7 @@ def test_the_first_body_is_followed_until_it_is_gone():
     )  # fmt: skip
 
     assert came == [(0.0, 2), (0.1, 2), (1.2, 1), (1.3, 1)]
-    assert reader.heard.others == 3
+    assert reader.counts.others == 3
 
 
 def test_one_datagram_may_hold_many_lines_and_bad_ones():
@@ -80,8 +80,8 @@ def test_one_datagram_may_hold_many_lines_and_bad_ones():
     came = list(reader.read(b"".join(lines)))
 
     assert [each.time for each in came] == [0.0, 0.1]
-    assert reader.heard.unreadable == 1
-    assert reader.heard.why == "A frame is not readable as JSON."
+    assert reader.counts.unreadable == 1
+    assert reader.counts.why == "A frame is not readable as JSON."
 
 
 @given(st.lists(st.binary(max_size=80) | st.floats(0, 9).map(lambda t: encode_frame(frame(t)))))
@@ -91,8 +91,8 @@ def test_nothing_raises_and_all_is_counted(datagrams):
     came = [each for datagram in datagrams for each in reader.read(datagram)]
 
     lines = [line for each in datagrams for line in each.splitlines() if line.strip()]
-    assert reader.heard.frames == len(came)
-    assert reader.heard.frames + reader.heard.dropped == len(lines)
+    assert reader.counts.frames == len(came)
+    assert reader.counts.frames + reader.counts.dropped == len(lines)
 
 
 def test_a_recording_of_uneven_frames_is_even(rng):
@@ -179,13 +179,13 @@ def test_burst_of_junk_is_parsed_up_to_a_bound_and_counted(junk, monkeypatch):
 
     came = [each.time for each in reader.read(encode_frame(frame(0.0)), *junk)]
 
-    assert (came, reader.heard.frames) == ([0.0], 1)
+    assert (came, reader.counts.frames) == ([0.0], 1)
     assert len(decoded) <= MAX_LINES
     n_lines = sum(len(datagram.splitlines()) for datagram in junk)
     blank = sum(not line.strip() for each in junk for line in each.splitlines())
     looked_at = min(n_lines, MAX_LINES - 1)
-    assert reader.heard.skipped == n_lines - looked_at
-    assert reader.heard.unreadable == (0 if blank else looked_at)
+    assert reader.counts.skipped == n_lines - looked_at
+    assert reader.counts.unreadable == (0 if blank else looked_at)
     assert [each.time for each in reader.read(encode_frame(frame(0.1)))] == [0.1]
 
 

@@ -21,10 +21,10 @@ def walk(recordings) -> Motion:
 def turned(motion: Motion, axis: str, *, rest_too: bool) -> Motion:
     """Return the motion as it would be read from a file with another axis up."""
     turn = inverse(rotation_to_z_up(axis))
-    rest_turn = turn if rest_too else np.array([1.0, 0.0, 0.0, 0.0])
-    rotations = multiply(multiply(rest_turn, motion.rotations), inverse(rest_turn))
-    rotations[:, 0] = multiply(multiply(turn, motion.rotations[:, 0]), inverse(rest_turn))
-    offsets = rotate(rest_turn, motion.skeleton.offsets)
+    rest_rotation = turn if rest_too else np.array([1.0, 0.0, 0.0, 0.0])
+    rotations = multiply(multiply(rest_rotation, motion.rotations), inverse(rest_rotation))
+    rotations[:, 0] = multiply(multiply(turn, motion.rotations[:, 0]), inverse(rest_rotation))
+    offsets = rotate(rest_rotation, motion.skeleton.offsets)
     skeleton = Skeleton(motion.skeleton.names, motion.skeleton.parents, offsets)
     return Motion(skeleton, rotations, rotate(turn, motion.root_positions), motion.frame_rate)
 
