@@ -254,6 +254,30 @@ def test_constants_begin_with_no_superlative(folders):
     assert not superlatives, "write MAX_ or MIN_, a noun, and a unit"
 
 
+def test_each_class_has_a_name_of_its_own():
+    """Also a private one: a name read in one module must not mean another thing in the next."""
+    homes: dict[str, list[str]] = {}
+    for module, tree in modules(CODE):
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ClassDef):
+                homes.setdefault(node.name, []).append(str(module.relative_to(ROOT)))
+
+    assert not {name: where for name, where in homes.items() if len(where) > 1}
+
+
+def test_no_module_is_called_as_another_next_to_it_with_an_s():
+    """`operators` aside: there a button for one take and one for several are both right."""
+    folders = {path.parent for path, _ in modules(CODE)} - {ROOT / "operators"}
+    both = [
+        path.with_name(f"{path.stem}s.py")
+        for folder in folders
+        for path in folder.glob("*.py")
+        if path.with_name(f"{path.stem}s.py").exists()
+    ]
+
+    assert not both
+
+
 def test_stored_names_are_in_use():
     used = {name for _, tree in modules(CODE) for _, name in names_of(tree)}
 

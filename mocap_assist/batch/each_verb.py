@@ -32,7 +32,7 @@ from ...solvers.command_line.report import (
 )
 from ...solvers.command_line.screen import Screen
 from ...solvers.command_line.tasks import check_output_folder, find_inputs, shared_tasks
-from ...solvers.command_line.verb import Outcome, Task
+from ...solvers.command_line.verb_description import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
 from ...solvers.faults import Failure, attempt, escaped
 from ...solvers.files import is_missing, real_path

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ...solvers.command_line.batch import report_folder
 from ...solvers.command_line.screen import Screen, printable
-from ...solvers.command_line.verb import Task
+from ...solvers.command_line.verb_description import Task
 from ...solvers.errors import InvalidFileError
 
 HELP = "Write the report on the output folder of each, from the records of all machines."

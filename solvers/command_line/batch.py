@@ -17,7 +17,7 @@ from ..recordings import is_depth_recording, read_motion_or_tracks
 from .files import read
 from .report import Entry, output_of, picture_file, picture_of, remove_picture, write_report
 from .sharing import Record, Records, claimed, fingerprint, hook_remark, run_hook
-from .verb import Outcome, Task, Verb
+from .verb_description import Outcome, Task, Verb
 
 SKIPPED = "skipped"
 """Figure of a take that another process has."""

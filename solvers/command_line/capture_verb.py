@@ -17,7 +17,7 @@ from ..recordings.depth_files import DepthSettings
 from ..workflows import CapturedMotion, capture_recording
 from .files import JOINTS, find_recordings, write
 from .options import arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 
 def add_capture_options(parser: argparse.ArgumentParser) -> None:

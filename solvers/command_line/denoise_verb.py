@@ -29,7 +29,7 @@ from ..progress import Progress, within
 from .files import add_reading_options, read, read_all, with_body, write
 from .from_library import add_library_option, check_library, learn_bases
 from .options import add_preset_option, arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 
 class LearnedPrior(NamedTuple):

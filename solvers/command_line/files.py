@@ -25,7 +25,7 @@ from ..recordings import (
 from ..recordings.containers import is_folder, shown
 from ..recordings.conventions import conventions_of
 from .options import arguments_from, settings_from_arguments
-from .verb import Outcome
+from .verb_description import Outcome
 
 MOTIONS = ".bvh"
 POINTS = {".c3d": write_c3d, ".trc": write_trc}

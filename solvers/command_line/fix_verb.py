@@ -20,7 +20,7 @@ from ..workflows import (
 )
 from .files import add_reading_options, read_recorded, write
 from .options import arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 
 def add_fix_options(parser: argparse.ArgumentParser) -> None:

@@ -14,7 +14,7 @@ from ..retrieval import ClipEntry, FindSettings, Match, find_similar, load_clip_
 from ..workflows import IndexReport, index_files
 from .files import add_body_option
 from .options import arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 DEFAULT_N_MATCHES = 10
 """Default number of matches."""

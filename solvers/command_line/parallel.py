@@ -17,7 +17,7 @@ from .farm import LocalWorkers, Workers, cluster_workers
 from .screen import Screen
 from .sharing import RENEWAL_INTERVAL_S
 from .tasks import check_output_folder
-from .verb import Task, Verb
+from .verb_description import Task, Verb
 
 
 def workers_for(tasks: Sequence[Task]) -> AbstractContextManager[Workers | None]:

@@ -8,7 +8,7 @@ from ..reconstruction import PostureLibrarySettings
 from ..workflows import posture_library_from_clips
 from .files import add_reading_options, read_all
 from .options import arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 
 def add_postures_options(parser: argparse.ArgumentParser) -> None:

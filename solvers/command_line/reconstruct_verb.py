@@ -27,7 +27,7 @@ from ..workflows import (
 from .files import JOINTS, add_reading_options, read_all, read_recorded, with_body, write
 from .from_library import add_library_option, check_library, collect_postures
 from .options import add_preset_option, arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 
 class RebuiltTake(NamedTuple):

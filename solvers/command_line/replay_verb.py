@@ -13,7 +13,7 @@ from ..motion.humanoid import postures_from_motion
 from ..progress import Progress, within
 from ..recordings.live import MAX_JOINTS, PORT, LiveFrame, encode_frame, frames_from_recording
 from .files import add_reading_options, read_recorded
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 LOOPBACK = "127.0.0.1"
 MAX_SPEED = 100.0

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from ..faults import Failure, attempt
 from ..files import remove_leftovers, write_atomically
 from .sharing import Record, Records, claimed
-from .verb import Task
+from .verb_description import Task
 
 PAGE, FIGURES, PICTURES = "report.html", "report.json", Path("report")
 PICTURE = ".png"

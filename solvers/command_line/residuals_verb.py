@@ -13,7 +13,7 @@ from ..reconstruction import ResidualPriorSettings, learn_residual_prior
 from ..reconstruction.residual_correction import calibrate_confidence
 from ..recordings import read_tracked, recordings_in
 from .options import arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 
 def add_residuals_options(parser: argparse.ArgumentParser) -> None:

@@ -21,7 +21,7 @@ from ..recordings.conventions import CENTIMETER
 from ..retargeting import RetargetSettings, UnbakeSettings, reduce_keys, retarget
 from .files import add_reading_options, read, with_body, write
 from .options import add_preset_option, arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 
 class RetargetTarget(NamedTuple):

@@ -30,7 +30,7 @@ from .parallel import run_tasks, until_released, workers_for
 from .report import PAGE, has_picture, write_report
 from .screen import Screen, escape_undecodable_names, printable
 from .tasks import check_output_folder, shared_tasks, tasks_of
-from .verb import OutputKind, Task, Verb
+from .verb_description import OutputKind, Task, Verb
 
 FILES = {
     OutputKind.WORDS: "Recordings to read, or folders of them",

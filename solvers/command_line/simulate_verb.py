@@ -10,7 +10,7 @@ from ..physics import Simulated, SimulateSettings, simulate
 from ..progress import Progress, within
 from .files import add_reading_options, read, write
 from .options import add_preset_option, arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 
 def add_simulate_options(parser: argparse.ArgumentParser) -> None:

@@ -11,7 +11,7 @@ from ..progress import Progress, within
 from ..workflows import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .files import add_reading_options, read, write
 from .options import arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 MAX_LISTED_SWAPS = 5
 

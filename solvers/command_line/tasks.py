@@ -25,7 +25,7 @@ from .files import (
 )
 from .report import PICTURE
 from .sharing import Listed, Records, claimed, read_manifest
-from .verb import OutputKind, Task, Verb
+from .verb_description import OutputKind, Task, Verb
 
 MAX_NAME_LETTERS = 40
 """Letters of the name of a body in the name of a file."""

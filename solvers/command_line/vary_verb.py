@@ -13,7 +13,7 @@ from ..variation import VarySettings, measure_variation
 from ..workflows import vary_motions
 from .files import add_reading_options, read_all
 from .options import add_preset_option, arguments_from, settings_from_arguments
-from .verb import Outcome, Task
+from .verb_description import Outcome, Task
 
 SHEET = "variants.png"
 MAX_DRAWN_VARIANTS = 20

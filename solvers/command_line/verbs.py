@@ -32,7 +32,7 @@ from .retarget_verbs import (
 from .simulate_verb import add_simulate_options, perform_simulate
 from .solve_verb import add_solve_options, perform_solve
 from .vary_verb import add_vary_options, perform_vary
-from .verb import Outcome, OutputKind, Task, Verb
+from .verb_description import Outcome, OutputKind, Task, Verb
 
 
 def _learn_options(parser: argparse.ArgumentParser) -> None:

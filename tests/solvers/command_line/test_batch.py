@@ -106,7 +106,7 @@ def test_parallel_jobs_name_the_failed_file_and_do_the_others(
 DEADLY = """
 import os, sys
 from solvers.command_line.run import run
-from solvers.command_line.verb import OutputKind, Outcome, Verb
+from solvers.command_line.verb_description import OutputKind, Outcome, Verb
 
 def no_options(parser):
     pass

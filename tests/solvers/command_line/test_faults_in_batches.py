@@ -6,7 +6,7 @@ import pytest
 
 from solvers.command_line.files import add_reading_options, write
 from solvers.command_line.run import run
-from solvers.command_line.verb import Outcome, OutputKind, Verb
+from solvers.command_line.verb_description import Outcome, OutputKind, Verb
 from solvers.progress import unwatched
 from solvers.recordings import read_bvh
 
