@@ -90,18 +90,18 @@ demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: 
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
 docs: .venv-4.5/ready  ## tables of settings and buttons, and job types of Flamenco, in docs
-	PYTHONPATH=. $(PYTHON_4.5) .ci/write_docs.py
-	PYTHONPATH=. $(PYTHON_4.5) .ci/write_flamenco.py
+	PYTHONPATH=. $(PYTHON_4.5) .ci/documents/write_docs.py
+	PYTHONPATH=. $(PYTHON_4.5) .ci/documents/write_flamenco.py
 
 catalogs: .venv-4.5/ready zip  ## texts of other languages; ARGUMENTS=--untranslated prints what lacks one
-	$(PYTHON_4.5) .ci/catalogs.py --zip $(ZIP) $(ARGUMENTS)
+	$(PYTHON_4.5) .ci/languages/catalogs.py --zip $(ZIP) $(ARGUMENTS)
 
 pictures: .venv-4.5/ready  ## the pictures of docs/formats and of Reconstruct, from ../shared/data
-	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_formats.py ../shared/data
-	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_reconstruction.py ../shared/data
+	PYTHONPATH=. $(PYTHON_4.5) .ci/documents/draw_formats.py ../shared/data
+	PYTHONPATH=. $(PYTHON_4.5) .ci/documents/draw_reconstruction.py ../shared/data
 
 pictures-origins: .venv-4.5/ready  ## takes of many makers, imported, cleaned, on Rigify: build/origins
-	PYTHONPATH=.:.ci $(PYTHON_4.5) .ci/draw_origins.py ../shared/data build/origins $(TAKES)
+	PYTHONPATH=. $(PYTHON_4.5) .ci/documents/draw_origins.py ../shared/data build/origins $(TAKES)
 
 # Each writes what is shipped from recordings of ../shared/data; ARGUMENTS="--out FILE" writes
 # elsewhere, and tests/training/README.md says from which recordings, and how long it takes.
@@ -218,19 +218,19 @@ sensitivity: .venv-4.5/ready  ## halve and double each tuned constant; ARGUMENTS
 
 .PHONY: extension extension-per-python extension-plain zip repository
 extension: .venv-4.5/ready  ## the zips of all platforms, with their wheels: dist
-	$(PYTHON_4.5) .ci/build_extension.py
+	$(PYTHON_4.5) .ci/packages/build_extension.py
 
 extension-per-python: .venv-4.5/ready  ## zips of half the size, for each platform and Python
-	$(PYTHON_4.5) .ci/build_extension.py --per-python
+	$(PYTHON_4.5) .ci/packages/build_extension.py --per-python
 
 extension-plain: .venv-4.5/ready  ## a zip without wheels, for a Blender of another Python
-	$(PYTHON_4.5) .ci/build_extension.py --plain
+	$(PYTHON_4.5) .ci/packages/build_extension.py --plain
 
 zip: .venv-4.5/ready  ## the zip for Linux, which the tests install
-	@$(PYTHON_4.5) .ci/build_extension.py --platform linux-x64
+	@$(PYTHON_4.5) .ci/packages/build_extension.py --platform linux-x64
 
 repository: .venv-4.5/ready  ## what a studio serves to its Blenders from a share: dist/repository
-	$(PYTHON_4.5) .ci/build_repository.py $(ARGUMENTS)
+	$(PYTHON_4.5) .ci/packages/build_repository.py $(ARGUMENTS)
 
 # --- The Python package ---
 
@@ -242,12 +242,12 @@ wheel: .venv-wheel/ready  ## the solvers as a package for pip: dist
 
 .PHONY: version release
 version: .venv-4.5/ready  ## write the next version where it stands: make version NUMBER=0.3.0
-	$(PYTHON_4.5) .ci/release.py version "$(NUMBER)"
+	$(PYTHON_4.5) .ci/packages/release.py version "$(NUMBER)"
 
 release: .venv-4.5/ready  ## check this commit, and gather all files of its release; TESTED=yes
-	$(PYTHON_4.5) .ci/release.py check $(if $(TESTED),--tested)
+	$(PYTHON_4.5) .ci/packages/release.py check $(if $(TESTED),--tested)
 	@$(MAKE) --no-print-directory extension extension-per-python wheel
-	$(PYTHON_4.5) .ci/release.py collect
+	$(PYTHON_4.5) .ci/packages/release.py collect
 
 # --- Environments ---
 

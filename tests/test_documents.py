@@ -45,7 +45,7 @@ def name_of(document: Path) -> str:
 
 @pytest.fixture(scope="module")
 def write_docs():
-    spec = spec_from_file_location("write_docs", ROOT / ".ci" / "write_docs.py")
+    spec = spec_from_file_location("write_docs", ROOT / ".ci" / "documents" / "write_docs.py")
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -118,7 +118,7 @@ def test_files_named_in_guides_exist(document):
 
 
 def test_every_button_has_a_row_on_the_page_of_buttons(write_docs):
-    """A new button is named in `PAGES` of `.ci/write_docs.py`, with the page it is on."""
+    """A new button and its page are named in `PAGES` of `.ci/documents/write_docs.py`."""
     named = [name for names in write_docs.PAGES.values() for name in names.split()]
     page = (ROOT / "docs" / "manual" / "buttons.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| \*\*.+?\*\* \| `mocap_assist\.(\w+)`", page, re.MULTILINE)

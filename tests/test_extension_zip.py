@@ -56,7 +56,7 @@ def shipped(tmp_path_factory) -> ZipFile:
     if find_spec("bpy") is None:
         pytest.skip("no bpy, which carries the tool that builds extensions")
     folder = tmp_path_factory.mktemp("zip")
-    script = ROOT / ".ci" / "build_extension.py"
+    script = ROOT / ".ci" / "packages" / "build_extension.py"
     command = [sys.executable, str(script), "--plain", "--output", str(folder)]
     built = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
     with ZipFile(built.stdout.strip()) as archive:

@@ -57,7 +57,7 @@ def package(folder, version, minimum="4.5.0"):
 
 
 def make_repository(zips, output):
-    script = ROOT / ".ci" / "build_repository.py"
+    script = ROOT / ".ci" / "packages" / "build_repository.py"
     command = [sys.executable, str(script), "--zips", str(zips), "--output", str(output)]
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
 

@@ -32,11 +32,11 @@ def collected():
     """Return the texts that classes and source have now, as `make catalogs` collects them."""
     import bpy
 
-    sys.path.insert(0, str(CHECKOUT / ".ci"))
+    sys.path.insert(0, str(CHECKOUT / ".ci" / "languages"))
     try:
         return importlib.import_module("catalogs").all_texts(bpy)
     finally:
-        sys.path.remove(str(CHECKOUT / ".ci"))
+        sys.path.remove(str(CHECKOUT / ".ci" / "languages"))
 
 
 def test_catalogs_have_exactly_the_texts_of_the_window(catalogs, collected):

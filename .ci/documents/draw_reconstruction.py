@@ -17,7 +17,7 @@ from solvers.pictures import StickFigureSettings, ViewDirection, draw_stick_figu
 from solvers.recordings import read_recording
 from solvers.workflows import reconstruct_recording
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "docs" / "pictures" / "results"
 SAMPLES = {
     "irds": ("irds/215_18_5_8_1_stand.txt", range(8, 36), "front"),

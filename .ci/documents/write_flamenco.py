@@ -12,7 +12,7 @@ from typing import Any
 
 from solvers.command_line.verbs import VERBS
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 FARM = ROOT / "docs" / "technical" / "farm"
 SOURCE = FARM / "flamenco.js"
 OF_ONE_VERB = ("fix", "denoise", "reconstruct")

@@ -1,9 +1,9 @@
 """Build and check the extension's zips, with their wheels, from the manifest.
 
-    python .ci/build_extension.py                         every platform of the manifest
-    python .ci/build_extension.py --platform linux-x64    one of them
-    python .ci/build_extension.py --per-python            a zip of half the size for each Python
-    python .ci/build_extension.py --plain                 without wheels
+    python .ci/packages/build_extension.py                       every platform of the manifest
+    python .ci/packages/build_extension.py --platform linux-x64  one of them
+    python .ci/packages/build_extension.py --per-python          a smaller zip for each Python
+    python .ci/packages/build_extension.py --plain               without wheels
 
 Needs an installed `bpy`, because Blender's own build tool travels in it; imports nothing of it.
 """
@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 import write_manual
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 WHEELS = ROOT / "wheels"
 # What is shipped is for the manifest to say; these are only slow to copy.
 NOT_COPIED = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "wheels")

@@ -1,8 +1,8 @@
 """Make a static extension repository: what a studio serves to its Blenders from a share.
 
-    python .ci/build_repository.py                           every platform of the manifest
-    python .ci/build_repository.py --platform linux-x64      one of them
-    python .ci/build_repository.py --zips FOLDER             from zips that are built
+    python .ci/packages/build_repository.py                       every platform of the manifest
+    python .ci/packages/build_repository.py --platform linux-x64  one of them
+    python .ci/packages/build_repository.py --zips FOLDER         from zips that are built
 
 Needs an installed `bpy`, because Blender's own tool writes the index.
 """
@@ -18,7 +18,7 @@ from pathlib import Path
 
 import build_extension
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 INDEX = "index.json"
 PAGE = "index.html"
 CHECKSUMS = "SHA256SUMS"

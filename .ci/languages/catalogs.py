@@ -22,7 +22,7 @@ from typing import Any
 
 from extract_texts import source_texts
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = "bl_ext.user_default.mocap_assist"
 INSTALL = """
 import os, sys

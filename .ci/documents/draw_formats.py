@@ -14,7 +14,7 @@ from solvers.motion import JointRecording
 from solvers.pictures import StickFigureSettings, ViewDirection, draw_stick_figures
 from solvers.recordings import read_recording
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "docs" / "pictures" / "formats"
 SAMPLES = {
     "bvh": ("mocap/cmu_walk/07_01.bvh", "side"),

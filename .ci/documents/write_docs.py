@@ -19,7 +19,7 @@ from typing import Any
 from solvers.presets import PRESETS
 from solvers.settings import label_of
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 ENDLESS = 1e6
 SETTINGS = re.compile(r"(<!-- settings ([\w.]+)\.(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)

@@ -1,6 +1,6 @@
 """Draw what Retarget makes of a clip on rigs of several families, as Blender evaluates them.
 
-    PYTHONPATH=.:tests/fixtures python .ci/draw_rigs.py CLIP.bvh OUTPUT_FOLDER
+    PYTHONPATH=.:tests/fixtures python .ci/documents/draw_rigs.py CLIP.bvh OUTPUT_FOLDER
 
 Above the recording, below the rig, at the same moments. Of Rigify's rig the bones are drawn
 that its deform bones follow, after all constraints.
@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 FIGURES = 7
 
 

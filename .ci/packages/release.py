@@ -1,8 +1,8 @@
 """Prepare a release; nothing is uploaded, and no tag is made.
 
-    python .ci/release.py version 0.2.0      write the version, and the date of the CHANGELOG
-    python .ci/release.py check --tested     stop unless this commit can be released
-    python .ci/release.py collect            gather zips and wheel, checksums and notes
+    python .ci/packages/release.py version 0.2.0   write version and date of the CHANGELOG
+    python .ci/packages/release.py check --tested  stop unless this commit can be released
+    python .ci/packages/release.py collect         gather zips and wheel, checksums and notes
 
 `make version NUMBER=0.2.0` runs the first, `make release TESTED=yes` builds between the others.
 """
@@ -19,7 +19,7 @@ from pathlib import Path
 import build_extension
 import build_repository
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 UNRELEASED = "## [Unreleased]"
 NOTES = "NOTES.md"
 NUMBER = re.compile(r"\d+\.\d+\.\d+")

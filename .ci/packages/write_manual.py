@@ -1,8 +1,8 @@
 """Write the documents as HTML pages with a search, for the zip: they need no network.
 
-    python .ci/write_manual.py build/manual
+    python .ci/packages/write_manual.py build/manual
 
-`.ci/build_extension.py` puts them into the zip, below `mocap_assist/ui/pages`.
+`.ci/packages/build_extension.py` puts them into the zip, below `mocap_assist/ui/pages`.
 """
 
 import json
@@ -16,7 +16,7 @@ from urllib.parse import urlsplit
 
 from markdown import sections, to_html
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 FOLDERS = ("formats", "manual", "origins", "rigs", "start", "technical")
 """Folders of docs that have pages for people who use Mocap Assist."""
