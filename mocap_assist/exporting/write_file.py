@@ -48,7 +48,7 @@ SAMPLED, BUILT = 0.6, 0.7
 """Fractions of the work that are done then."""
 NO_SCALE = "Bones that change their size keep the size of their rest pose."
 NO_DRIVERS = "Drivers of the rig with Python code did not run."
-NO_PROPS = "BVH has the body alone: {names} are left out."
+NO_PROPS = "BVH holds only the body; {names} are left out."
 
 
 def write_take(folder: Path, request: ExportRequest, progress: Progress) -> WrittenTake:

@@ -12,7 +12,7 @@ from ..retarget.button_settings import RetargetBundle, RetargetChoices
 from ..retarget.retargeting import read_retarget, write_retargeted
 from ..runtime.subject import Subject
 
-POINTS = "Not retargeted: points without a skeleton have no pose to give."
+POINTS = "Not retargeted: points have no skeleton, so there is no pose to transfer."
 
 
 def retargeted(here: Subject, rig: str, report: dict[str, Any]) -> Steps[dict[str, Any]]:

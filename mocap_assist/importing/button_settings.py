@@ -46,7 +46,7 @@ class ImportChoices(FloorPlacementSettings, ReadingSettings):
     )
     body: str = setting(
         "",
-        "Body to import by name, number or all; leave empty for the person in most frames",
+        "Name or number of the body to import, or all; empty for the person in most frames",
         label="Body",
     )
     global_scale: float = setting(

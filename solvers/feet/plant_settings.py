@@ -16,7 +16,7 @@ class PlantSettings(Settings):
     )  # fmt: skip
     hold: float = setting(
         10.0,
-        "Longest time a sliding foot stays fixed before it may creep; higher is stricter",
+        "Longest time a sliding foot stays fixed before it may slide on; higher is stricter",
         unit="s",
         minimum=0.5,
         maximum=1000.0,
@@ -39,7 +39,7 @@ class PlantSettings(Settings):
         minimum=0.0, maximum=0.2, advanced=True, label="Leg Stretch Limit",
     )  # fmt: skip
     spare_knees: bool = setting(
-        True, "Let hips and heels give way so that knees bend smoothly",
+        True, "Shift hips and heels slightly so that knees bend smoothly",
         label="Protect Knees",
     )  # fmt: skip
     move_root: bool = setting(

@@ -137,7 +137,7 @@ def _valid(path: Path | str, read: Callable[..., Result], progress: Progress) ->
 
 
 def _unknown_format(path: Path | str) -> InvalidFileError:
-    """Return why a file or folder of no known format has no motion."""
+    """Return why a file or folder of unknown format has no motion."""
     if detect_depth_format(path) is not None:
         return InvalidFileError(
             f"{path} has depth images but no motion yet. Track the actor in it first."
@@ -147,7 +147,7 @@ def _unknown_format(path: Path | str) -> InvalidFileError:
             f"{path} is a folder without depth images. Choose a file in it."
         )
     return InvalidFileError(
-        f"{path} is of no known format. Export it as BVH, FBX, GLB, C3D, TRC or a table of"
+        f"{path} has an unknown format. Export it as BVH, FBX, GLB, C3D, TRC or a table of"
         " joints."
     )
 

@@ -10,7 +10,7 @@ from ..settings import Choice, Settings, setting
 class Axis(Choice):
     """An axis of a file."""
 
-    AUTO = "auto", "Judge the axis from the file and from the body in it", "Auto"
+    AUTO = "auto", "Determine the axis from the file and from the body in it", "Auto"
     X = "x", "Use the file's +X axis", "X"
     Y = "y", "Use the file's +Y axis", "Y"
     Z = "z", "Use the file's +Z axis", "Z"

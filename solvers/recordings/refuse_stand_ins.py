@@ -108,7 +108,7 @@ STAND_INS = (
     Refusal(
         "Git LFS pointer",
         lambda head: head.startswith(b"version https://git-lfs"),
-        "{path} is a note of Git LFS where the file should be. Get the file with git lfs pull,"
+        "{path} is a Git LFS pointer, not the file itself. Get the file with git lfs pull,"
         " or download it.",
     ),
 )

@@ -48,7 +48,7 @@ def _check_limb(skeleton: Skeleton, joints: Joints, roles: list[str]) -> None:
     root, hips = roles[0], joints["hips"]
     if root in joints and hips not in skeleton.ancestors(joints[root]):
         raise InvalidMotionError(
-            f"{skeleton.names[joints[root]]} ({root}) does not hang below"
+            f"{skeleton.names[joints[root]]} ({root}) is not a descendant of"
             f" {skeleton.names[hips]} (hips) and would not follow it. Map bones of one tree,"
             " such as a rig's controls."
         )
@@ -56,7 +56,7 @@ def _check_limb(skeleton: Skeleton, joints: Joints, roles: list[str]) -> None:
     for upper, lower in pairwise(present):
         if joints[upper] not in skeleton.ancestors(joints[lower]):
             raise InvalidMotionError(
-                f"{skeleton.names[joints[lower]]} ({lower}) does not hang below"
+                f"{skeleton.names[joints[lower]]} ({lower}) is not a descendant of"
                 f" {skeleton.names[joints[upper]]} ({upper}) and would not follow it. Map one"
                 " chain of bones, from the body outwards, or leave this limb without roles."
             )
@@ -68,8 +68,9 @@ def _check_head(skeleton: Skeleton, joints: Joints, whose: str) -> None:
     for role in ("neck", "head"):
         if joints.get(role) in skeleton.ancestors(hips):
             raise InvalidMotionError(
-                f"{skeleton.names[hips]} (hips) hangs below {skeleton.names[joints[role]]}"
-                f" ({role}) in the {whose}. Choose other joints in the map."
+                f"{skeleton.names[hips]} (hips) is a descendant of"
+                f" {skeleton.names[joints[role]]} ({role}) in the {whose}. Choose"
+                " other joints in the map."
             )
     feet = [joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in joints]
     if len(feet) < len(SIDES):

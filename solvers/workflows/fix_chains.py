@@ -250,7 +250,7 @@ def _planted(planting_result: PlantingResult) -> list[str]:
         return remarks
     if not planted.contacts.any():
         return ["No foot stands in this take, so Plant Feet changed nothing.", *remarks]
-    return ["Plant Feet holds standing feet in place by legs and hips.", *remarks]
+    return ["Plant Feet keeps planted feet in place by moving legs and hips.", *remarks]
 
 
 def _unswapped(n_swaps: int) -> list[str]:

@@ -53,7 +53,7 @@ class FixSettings(Settings):
         True, "Keep planted feet from sliding by moving legs and hips slightly"
     )
     physics: bool = setting(
-        False, "At the end, let a body with weight and muscles make the motion; takes longer"
+        False, "Finish with a simulated body with weight and muscles; takes longer"
     )
 
 
@@ -105,10 +105,8 @@ class FixedTake:
         if self.chain.denoised is None or not n_left:
             return []
         if n_left == 1:
-            return ["1 spike is left that Clean takes for fast movement; Check lists where."]
-        return [
-            f"{n_left} spikes are left that Clean takes for fast movement; Check lists where."
-        ]
+            return ["1 spike is left, classified as fast movement; Check lists it."]
+        return [f"{n_left} spikes are left, classified as fast movement; Check lists them."]
 
     def figures(self) -> dict[str, Any]:
         """Return the report as JSON-ready values."""

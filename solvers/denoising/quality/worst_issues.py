@@ -46,7 +46,7 @@ class IssueSettings(Settings):
     )
     shake_ratio: float = setting(
         3.0,
-        "Shaking of a joint in multiples of the take's noise; higher shows fewer issues",
+        "Jitter of a joint in multiples of the take's noise; higher shows fewer issues",
         minimum=1.0,
         maximum=100.0,
         label="Jitter Ratio",
@@ -199,7 +199,7 @@ def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[I
                     stop,
                     "jitter",
                     level / threshold,
-                    f"{signal.joint} shakes by {amount}.",
+                    f"{signal.joint} jitters by {amount}.",
                 )
 
 

@@ -139,7 +139,7 @@ def load_body_model(path: Path | str) -> BodyModel:
     arrays = LAYOUT.read(path)
     expected = {"length_names": LENGTHS, "capsule_names": CAPSULES}
     if any(tuple(arrays[name].tolist()) != names for name, names in expected.items()):
-        raise InvalidFileError(f"{path} holds a body of other parts. Calibrate it again.")
+        raise InvalidFileError(f"{path} holds a body with other parts. Calibrate it again.")
     try:
         return BodyModel(arrays["lengths"], arrays["radii"])
     except InvalidMotionError as error:

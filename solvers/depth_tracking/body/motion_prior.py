@@ -77,7 +77,7 @@ def load_motion_prior(path: Path | str = SHIPPED) -> MotionPrior:
     """
     arrays = LAYOUT.read(path)
     if tuple(arrays["coordinates"].tolist()) != COORDINATES[N_ROOT:]:
-        raise InvalidFileError(f"{path} holds a prior of other parts. Learn it again.")
+        raise InvalidFileError(f"{path} holds a prior for other body parts. Learn it again.")
     poses, clips = arrays["poses"], arrays["clips"].astype(np.intp)
     if not len(poses) or (np.diff(clips) < 0).any():
         raise LAYOUT.damaged(path, "its clips are not in ascending order")

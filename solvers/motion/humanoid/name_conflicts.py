@@ -154,7 +154,7 @@ def _lineage(skeleton: Skeleton, name: str) -> set[str]:
 
 
 def _is_chain(skeleton: Skeleton, names: Sequence[str]) -> bool:
-    """Whether each of these joints hangs below the one before."""
+    """Whether each of these joints is a descendant of the one before."""
     return all(
         upper != lower and upper in _lineage(skeleton, lower)
         for upper, lower in pairwise(names)

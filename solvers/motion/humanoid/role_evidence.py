@@ -175,8 +175,7 @@ def describe_low_confidence(humanoid: HumanoidMap, evidence: Mapping[str, RoleEv
     ]
     sentences = [
         f"Bones with low confidence: {_listed(marked)}." * bool(marked),
-        (f"Names disagree with the lengths of the bones, which decided: {_listed(overruled)}.")
-        * bool(overruled),
+        f"Bone lengths overruled these names: {_listed(overruled)}." * bool(overruled),
     ]
     return " ".join(filter(None, sentences))
 

@@ -185,7 +185,7 @@ def _with_lowest_hips(skeleton: Skeleton, joints: Mapping[str, str]) -> Mapping[
 
 
 def _fingers_below_hands(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]:
-    """Return the map without fingers that do not hang below the hand of their side."""
+    """Return the map without fingers that do not descend from the hand of their side."""
     below = {
         side: {skeleton.names[joint] for joint in skeleton.subtree(skeleton.index(hand))}
         for side in ("left", "right")

@@ -152,7 +152,7 @@ def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]
 
     Returns
     -------
-    dict of role to clause, such as "it does not hang below LeftUpLeg"; empty without faults
+    dict of role to clause, such as "it is not a descendant of LeftUpLeg"; empty without faults
     """
     indices = {name: index for index, name in enumerate(skeleton.names)}
     roles = {role: indices[name] for role, name in joints.items()}
@@ -161,7 +161,7 @@ def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]
     for upper, lower in _links(roles):
         name = skeleton.names[upper]
         if upper not in skeleton.ancestors(lower):
-            faults[role_of[lower]] = f"it does not hang below {name}"
+            faults[role_of[lower]] = f"it is not a descendant of {name}"
         elif (left := _joint_between(skeleton, set(role_of), upper, lower)) is not None:
             for joint in (upper, lower):
                 faults[role_of[joint]] = f"{skeleton.names[left]} lies between two parts"

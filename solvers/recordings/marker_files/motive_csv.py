@@ -138,7 +138,7 @@ def _points(
             f"{path} has no positions of markers, rigid bodies or bones. Export it with them."
         )
     if RIGID_BODY in kinds:
-        progress(0.8, Remark("Of rigid bodies the origins are read, not the rotations"))
+        progress(0.8, Remark("The origins of rigid bodies are read, not their rotations"))
     points = _positions(items, rows)
     mark_missing(points, path)
     points, rate = _resampled(header, points, rows, path)

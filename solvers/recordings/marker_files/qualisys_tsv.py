@@ -116,7 +116,7 @@ def _points(
             " Export it again."
         )
     if key == BODIES:
-        progress(0.8, Remark("Of rigid bodies the origins are read, not the rotations"))
+        progress(0.8, Remark("The origins of rigid bodies are read, not their rotations"))
     first = n_stamps + step * np.arange(len(labels))
     points = rows[:, first[:, None] + np.arange(3)]
     mark_missing(points, path)

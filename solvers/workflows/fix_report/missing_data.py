@@ -61,7 +61,7 @@ def describe_empty_frames(take: Take) -> str:
     n_frames, longest = int(empty.sum()), max(stop - start for start, stop in runs)
     rate = take.motion.frame_rate if isinstance(take, MotionFromJoints) else take.frame_rate
     if n_frames == 1:
-        return "1 frame has no data at all, it is filled from the frames before and after."
+        return "1 frame has no data at all; it is filled from the frames before and after."
     return (
         f"{n_frames} frames have no data at all, up to {longest / rate:.1f} s in a row; they"
         " are filled from the frames before and after."

@@ -52,7 +52,8 @@ def test_a_file_of_another_kind_is_no_damaged_recording_when_it_is_named(tmp_pat
     (tmp_path / "odd").write_bytes(content)
 
     with pytest.raises(
-        InvalidFileError, match=r"is (of no known format|a web page|compressed|empty|a video)"
+        InvalidFileError,
+        match=r"has an unknown format|is (a web page|compressed|empty|a video)",
     ):
         read_recording(tmp_path / "odd")
 

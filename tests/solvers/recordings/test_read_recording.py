@@ -94,7 +94,7 @@ def test_joints_of_a_camera_serve_as_points(recordings):
     ("content", "sentence"),
     [
         (b":version 1.10\n:name VICON\n:units\n", r"skeleton without motion.* \.amc"),
-        (b"a letter", "no known format. Export it as BVH, FBX"),
+        (b"a letter", "unknown format. Export it as BVH, FBX"),
         (b"Kaydara FBX Binary", "read by Blender's own importers"),
         (b"glTF\2\0\0\0", "read by Blender's own importers"),
         (b"", "is empty"),
@@ -134,7 +134,7 @@ def test_a_pelvis_alone_does_not_make_a_table_azures(tmp_path):
         "Frame,Time,Pelvis.x,Pelvis.y,Pelvis.z,Neck.x,Neck.y,Neck.z\n1,0,0,0,1,0,0,2\n"
     )
 
-    with pytest.raises(InvalidFileError, match="no known format"):
+    with pytest.raises(InvalidFileError, match="unknown format"):
         read_recording(table)
 
 

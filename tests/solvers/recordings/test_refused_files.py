@@ -72,11 +72,11 @@ def object_array() -> bytes:
         ('//Maya ASCII 2026 scene\nrequires maya "2026";\n', "as FBX"),
         ("%YAML 1.1\n%TAG !u! tag:unity3d.com,2011:\n", "FBX Exporter"),
         ("[Header]\n# of a\n\n#b\nFileType htr\nFileVersion 1\n", "BVH, FBX or C3D"),
-        (f"[Header]\n{'#' * 60}\na note on the take", "no known format"),
+        (f"[Header]\n{'#' * 60}\na note on the take", "unknown format"),
         (b"\x89HDF\r\n\x1a\n" + bytes(60), "with numpy.save"),
         (b"PK\x03\x04" + bytes(26) + b"[Content_Types].xml" + bytes(60), "as CSV"),
         (b"PK\x03\x04" + bytes(26) + b"take.usdc" + bytes(60), "Import it in Blender"),
-        ("a note on the take", "no known format. Export it as BVH, FBX, GLB"),
+        ("a note on the take", "unknown format. Export it as BVH, FBX, GLB"),
         ("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "git lfs pull"),
     ],
 )

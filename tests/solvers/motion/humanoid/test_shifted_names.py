@@ -73,5 +73,5 @@ def test_map_decided_by_lengths_is_reported():
     assert evidence["leftUpperLeg"].text == "names disagree with the tree: structure decides"
     assert evidence["rightUpperArm"].text == "by name and structure"
     sentence = describe_low_confidence(humanoid, evidence)
-    assert "Names disagree with the lengths of the bones, which decided:" in sentence
+    assert "Bone lengths overruled these names:" in sentence
     assert "left_knee as leftUpperLeg" in sentence

@@ -166,7 +166,7 @@ def test_rigid_bodies_become_points_with_a_report(read_any, collected_messages):
 
     assert tracks.names == ("Head", "Bat")
     assert_allclose(tracks.positions, POINTS[:, :2] / 1000.0, atol=1e-6)
-    assert "Of rigid bodies the origins are read, not the rotations" in collected_messages[0]
+    assert "The origins of rigid bodies are read, not their rotations" in collected_messages[0]
 
 
 def test_expected_markers_are_read_only_without_measured_ones(read_any):
