@@ -35,6 +35,18 @@ LINKED = re.compile(r"!?\[[^]]*\]\([^)]*\)")
 COMMAND = re.compile(r"^ *python -m solvers ([\w-]+)(.*)$", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
 ANCHOR = re.compile(r"\]\(([^):#\s]*)#([^)\s]+)\)")
+LABEL = re.compile(r"(?<![*\w])\*([A-Z][^*\n]+)\*(?![*\w])")
+MESSAGE = re.compile(r'^msgid "(.*)"$', re.MULTILINE)
+OTHER_LABELS = {
+    "Animation", "Bake Action", "Combine", "Export", "Extreme", "Generated", "Influence", "Key",
+    "Limit Rotation", "Motion Capture", "New Preset", "Pose", "Relationship Lines",
+    "Heavy", "Light", "Mocap", "Normal", "Optical", "Suit", "Video AI",
+    "Best Matches of ...", "Issue", "No good match", "Use Best Matches in",
+    "Afterwards", "Before", "Carrying", "Deepest", "Dropped", "During", "Help", "Impossible",
+    "Published", "Slide", "Speed",
+}  # fmt: skip
+"""In italics in the manual, in this order: labels of Blender, presets and the tab, texts with a
+name or number in them, and columns of tables."""
 README_LINES = 130
 MAX_LINE_CHARACTERS = 160
 
@@ -141,6 +153,36 @@ def test_buttons_in_bold_exist(document, write_docs):
     labels = {label for label, _ in write_docs.buttons().values()}
 
     assert set(re.findall(r"\*\*(.+?)\*\*", text)) <= labels
+
+
+def test_labels_in_italics_exist():
+    """A label that was renamed in the window is renamed in the manual, too."""
+    catalog = ROOT / "mocap_assist" / "languages" / "de_DE.po"
+    labels = OTHER_LABELS | set(MESSAGE.findall(catalog.read_text(encoding="utf-8")))
+    named = {
+        (document.name, part)
+        for document in sorted((ROOT / "docs" / "manual").glob("*.md"))
+        for text in LABEL.findall(CODE.sub("", document.read_text(encoding="utf-8")))
+        for part in re.split(r" > |: ?|, ", text)
+        if part
+    }
+
+    assert len(named) > 100
+    assert not [(page, part) for page, part in sorted(named) if part not in labels]
+
+
+def test_links_lead_from_the_index_to_every_page():
+    found, open_pages = set(), [ROOT / "docs" / "README.md"]
+    while open_pages:
+        page = open_pages.pop()
+        found.add(page)
+        text = page.read_text(encoding="utf-8")
+        linked = {(page.parent / link).resolve() for link in LINK.findall(text)}
+        open_pages += [
+            each for each in linked - found if each.suffix == ".md" and each.exists()
+        ]
+
+    assert not [name_of(page) for page in PROSE if page not in found]
 
 
 @pytest.mark.parametrize("page", ORIGINS, ids=name_of)

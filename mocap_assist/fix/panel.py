@@ -23,6 +23,7 @@ MAX_ROWS = 6
 """Rows of the list of takes; more scroll. Chosen by hand for a default sidebar."""
 LAST_STEPS = ("plant_feet", "physics")
 DETAILS = "mocap_assist_fix_details"
+CONTINUE = "Continue"
 UNDO = "To revert, undo: the markers are as they were recorded."
 
 
@@ -89,7 +90,7 @@ def _draw_queue(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     rows = min(len(queue.takes), MAX_ROWS)
     body.template_list("MOCAP_UL_takes", "", queue, "takes", queue, "active_take", rows=rows)
     if context.window_manager.mocap_assist_job.running:
-        text, icon = ("Continue", "PLAY") if queue.paused else ("Pause", "PAUSE")
+        text, icon = (CONTINUE, "PLAY") if queue.paused else ("Pause", "PAUSE")
         body.prop(queue, "paused", text=text, icon=icon, toggle=True)
     if note := queue.takes[min(queue.active_take, len(queue.takes) - 1)].note:
         draw_sentence(body, context, note)
