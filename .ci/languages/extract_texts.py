@@ -32,7 +32,7 @@ LABELED = {
     "mocap_assist/fix/fixing.py": {"SUMMARY"},
     "mocap_assist/fix/panel.py": {"CONTINUE", "_draw_card"},
     "mocap_assist/importing/bind_meshes.py": {"UNFITTING", "_count"},
-    "mocap_assist/importing/body_choice.py": {"BEST", "EVERY", "body_items"},
+    "mocap_assist/importing/body_choice.py": {"BEST", "EVERY", "ONLY_THIS"},
     "mocap_assist/importing/depth_objects.py": {"make_preview"},
     "mocap_assist/importing/import_menu.py": {"ENTRY"},
     "mocap_assist/importing/marker_objects.py": {"make_markers"},

@@ -22,7 +22,6 @@ from .shot_boundaries import (
 from .skeleton import MIN_BONE_M, Skeleton
 from .still_joints import still_joints
 from .tracks import Tracks
-from .velocities import linear_velocities
 from .warping import Alignment, warp
 
 __all__ = [
@@ -57,7 +56,6 @@ __all__ = [
     "forward_kinematics",
     "is_short_shot",
     "joint_parents",
-    "linear_velocities",
     "local_rotations",
     "reach",
     "resample",

@@ -20,11 +20,11 @@ def _both_sides(
     }
 
 
-def _chains(parent: str, count: int) -> dict[str, str]:
+def _chains(count: int) -> dict[str, str]:
     """Return the joints of five fingers, numbered from 1, on the hand."""
     chains = {}
     for finger in FINGERS:
-        above = parent
+        above = "Hand"
         for number in range(1, count + 1):
             chains[f"{finger}{number}"] = above
             above = f"{finger}{number}"
@@ -38,7 +38,7 @@ MOTIVE_TRUNK = {
 MOTIVE = MOTIVE_TRUNK | _both_sides(
     {
         "Shoulder": "Chest", "UArm": "Shoulder", "FArm": "UArm", "Hand": "FArm",
-        "Thigh": "Hip", "Shin": "Thigh", "Foot": "Shin", "Toe": "Foot", **_chains("Hand", 3),
+        "Thigh": "Hip", "Shin": "Thigh", "Foot": "Shin", "Toe": "Foot", **_chains(3),
     },
     tuple(MOTIVE_TRUNK), "L", "R",
 )  # fmt: skip
@@ -54,7 +54,7 @@ HUMAN_IK = HUMAN_IK_TRUNK | _both_sides(
         "ForeArmRoll": "ForeArm", "Hand": "ForeArmRoll", "UpLeg": "Hips", "UpLegRoll": "UpLeg",
         "Leg": "UpLegRoll", "LegRoll": "Leg", "Foot": "LegRoll", "ToeBase": "Foot",
         **{f"Hand{name}": parent if parent == "Hand" else f"Hand{parent}"
-           for name, parent in _chains("Hand", 4).items()},
+           for name, parent in _chains(4).items()},
     },
     tuple(HUMAN_IK_TRUNK), "Left", "Right",
 )  # fmt: skip
