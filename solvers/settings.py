@@ -18,7 +18,7 @@ SMALL_WORDS = {"a", "an", "and", "as", "at", "by", "for", "from", "in", "of", "o
 
 @dataclass(frozen=True)
 class Described:
-    """Metadata of a setting besides its name and default value."""
+    """Metadata of a setting in addition to its name and default value."""
 
     help: str
     unit: str = ""

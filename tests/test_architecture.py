@@ -141,6 +141,25 @@ def test_no_file_is_longer_than_the_limit():
             assert n_lines <= MAX_FILE_LINES, f"{module} has {n_lines} lines"
 
 
+def test_each_class_has_a_name_of_its_own():
+    """Also a private one: a name read in one module must not mean another thing in the next."""
+    names = Counter(
+        node.name
+        for layer in MAY_IMPORT
+        for module in modules(layer)
+        for node in ast.walk(tree(module))
+        if isinstance(node, ast.ClassDef)
+    )
+
+    assert not [name for name, count in names.items() if count > 1]
+
+
+def test_no_module_is_called_as_another_next_to_it_with_an_s():
+    """`operators` aside: there a button for one take and one for several are both right."""
+    for module in [*modules("solvers"), *modules("mocap_assist")]:
+        assert not module.with_name(f"{module.stem}s.py").exists(), module
+
+
 def test_foreign_json_is_parsed_by_one_function():
     """`parse_json` refuses what is nested too deeply."""
     for layer in MAY_IMPORT:

@@ -26,7 +26,7 @@ def rotation_property(mode: str) -> tuple[str, int]:
 def quaternions_from_channels(channels: Array, mode: str) -> Array:
     """Return rotations, shape (n_frames, 4), from channels, (n_frames, 3 or 4), radians.
 
-    As Blender does, quaternions and axes of any length are taken for their direction, and
+    As Blender does, quaternions and axes of any length count by their direction, and
     those without one for no rotation at all. A channel that is no number makes the rotation
     missing: NaN.
     """

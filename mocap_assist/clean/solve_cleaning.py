@@ -56,7 +56,7 @@ class Problem:
     learn_limits: bool = False
     """Whether joint limits are learned from the examples too."""
     unswap: bool = False
-    """Whether labels of markers are put right first."""
+    """Whether labels of markers are corrected first."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -91,7 +91,7 @@ class Solution:
     limits: JointLimits | None
     """Joint limits of the examples."""
     recordings: Recordings
-    """As they were, but for labels that were put right."""
+    """As they were, except for corrected labels."""
     swaps: tuple[Swap, ...] = ()
 
 

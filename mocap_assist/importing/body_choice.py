@@ -18,7 +18,7 @@ _items: dict[tuple[Body, ...], list[Item]] = {}
 def bodies_to_choose(paths: list[Path]) -> tuple[Body, ...]:
     """Return the bodies of the first file with several.
 
-    Known are files that were read lately, as the dialog reads small ones.
+    Files that were read recently are known: the dialog reads small ones.
     """
     return next(filter(None, map(bodies_of, paths)), ())
 

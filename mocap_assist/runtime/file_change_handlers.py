@@ -1,4 +1,4 @@
-"""End work that runs beside Blender before the file that it belongs to is replaced."""
+"""End work that runs in the background before the file that it belongs to is replaced."""
 
 from collections.abc import Callable, Sequence
 from typing import Any

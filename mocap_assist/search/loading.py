@@ -99,7 +99,7 @@ def first_frame(search: Search, found: Found) -> float:
 
 
 def time_scale(search: Search, found: Found) -> float:
-    """Return how many times as long the query takes for what the clip does."""
+    """Return the duration of the query relative to that of the matched part of the clip."""
     (query_first, clip_first), (query_last, clip_last) = found.pairs[[0, -1]]
     query = (query_last - query_first) / search.finding.stage.frame_rate
     clip = (clip_last - clip_first) / found.entry.frame_rate

@@ -67,7 +67,7 @@ def clip_tags(action: bpy.types.Action) -> list[str]:
 
 
 def catalog_number(catalog: str) -> str:
-    """Return the number of a catalog beside the open file, which is made; empty for none.
+    """Return the number of a catalog next to the open file, which is made; empty for none.
 
     Raises
     ------

@@ -130,7 +130,7 @@ def _both_in_contact(contact: Flags) -> Flags:
 
 
 def _flatness(rotations: Array, contact: Flags, load: Array, rate: float) -> Array:
-    """Return 1 for steps in which a foot rests flat, towards 0 where it rolls.
+    """Return 1 for steps in which a foot rests flat, toward 0 where it rolls.
 
     It rests flat in contact if heel and ball share the load and it rotates slowly.
     """
@@ -159,7 +159,7 @@ def _median_contact_heights(height: Array, contact: Flags) -> Array:
 
 
 def _plausibility(displacements: Array, rate: float, size: float) -> Array:
-    """Return 1 for steps in which the sole follows the ankle, towards 0 at high speeds.
+    """Return 1 for steps in which the sole follows the ankle, toward 0 at high speeds.
 
     No foot in contact swings its sole about the ankle at such a speed. Its rotation is wrong,
     and an ankle that compensated for it would jump in turn.
@@ -169,6 +169,6 @@ def _plausibility(displacements: Array, rate: float, size: float) -> Array:
 
 
 def _on_floor(rise: Array, size: float) -> Array:
-    """Return 1 for steps on the floor, towards 0 where the entire sole lifts off it."""
+    """Return 1 for steps on the floor, toward 0 where the entire sole lifts off it."""
     rise = np.maximum(rise[1:], rise[:-1])
     return np.asarray(np.clip(2.0 - rise / (MIN_LIFT_M * size), 0.0, 1.0))

@@ -113,7 +113,7 @@ class HandEstimator:
         return float(np.median(self._lengths))
 
     def _update_heading(self, joints: dict[int, Array], elapsed: float) -> bool:
-        """Filter the heading towards the shoulders'; return whether there is one."""
+        """Filter the heading toward the shoulders'; return whether there is one."""
         across = (joints[RIGHT[0]] - joints[LEFT[0]])[:2]
         gain = 1.0 if not self._across.any() else 1.0 - np.exp(-elapsed / HEADING_TIME_S)
         self._across = self._across + gain * (across - self._across)

@@ -1,4 +1,4 @@
-"""Drive a simulated body by bounded proportional-derivative control towards a target."""
+"""Drive a simulated body by bounded proportional-derivative control toward a target."""
 
 from dataclasses import dataclass
 from types import ModuleType

@@ -89,7 +89,7 @@ def simulate(
 
     The skeleton becomes a body of capsules with a human's masses [2]_ on level ground, under
     gravity, in the engine MuJoCo. Bounded proportional-derivative control, equations 16 and 17
-    of [1]_, pulls its joints towards the captured rotations. So segments keep their lengths,
+    of [1]_, pulls its joints toward the captured rotations. So segments keep their lengths,
     nothing sinks into the ground, friction holds standing feet, and nothing moves faster than
     muscles can move it.
 

@@ -54,7 +54,7 @@ class GaitSettings(Settings):
 
 
 def walking_gait(settings: GaitSettings = GaitSettings()) -> Motion:
-    """Return a person who walks towards -Y in gentle curves, from the first frame on.
+    """Return a person who walks toward -Y in gentle curves, from the first frame on.
 
     Steps vary in time, position and size as a person's do. The same seed gives the same walk at
     every frame rate. While a foot stands flat its ankle is fixed, and the joint of its toes

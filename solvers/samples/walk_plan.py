@@ -34,7 +34,7 @@ class WalkPlan:
     ground : shape (n_frames, 3), meters
         The point on the floor below the body.
     heading : shape (n_frames,), radians
-        Direction of walking about Z; 0 is towards -Y.
+        Direction of walking about Z; 0 is toward -Y.
     feet : pair of FootTrajectory
         Left and right.
     span : pair of float

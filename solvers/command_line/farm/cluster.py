@@ -131,7 +131,7 @@ def cluster_workers(address: str, paths: Sequence[Path]) -> Iterator[WorkerClust
 
 
 async def _try_connection(address: str) -> None:
-    """Raise an OSError or ValueError at once where a client would wait for ever."""
+    """Raise an OSError or ValueError at once where a client would wait forever."""
     from distributed import Security
     from distributed.comm import connect
 

@@ -55,7 +55,7 @@ def predict_limbs(
     from the line on the deviations of the observed joints. The regression is a Gaussian
     posterior: it starts from the relation of other people and adapts to the take, where the
     same joints are hidden for as long. These trials also weigh it against the straight line and
-    tell the variance of its error. The result is averaged with the estimate. Observed samples
+    show the variance of its error. The result is averaged with the estimate. Observed samples
     do not change. A gap at either end of the take, of the hips, or of a rig that is no humanoid
     keeps its estimate.
 

@@ -55,7 +55,7 @@ def estimate_channels(
     """Alternate between outlier weights, the posterior of all windows, and their statistics.
 
     Each round has three steps (expectation maximization). Every sample gets its probability of
-    being no outlier, and moves towards the estimate by the probability of being one. Every
+    being no outlier, and moves toward the estimate by the probability of being one. Every
     window takes its posterior mean given its neighbors in time and all other channels. The
     noise of each channel, the fraction of outliers and the covariance are estimated again.
 
@@ -136,7 +136,7 @@ class _PosteriorState:
         self.total_weight = sum_window_weights(self.patterns, windows)
 
     def update_outliers(self, step: float = 1.0) -> None:
-        """Move the weights by this step towards the probability of being no outlier."""
+        """Move the weights by this step toward the probability of being no outlier."""
         error = self.samples - self.estimate
         prediction_error = error * (self.weight * self.leave_one_out_ratio + 1.0 - self.weight)
         variance = self.noise**2 + self.variance * self.leave_one_out_ratio

@@ -61,7 +61,7 @@ def contradicted_roles(
 
     A limb is contradicted as a whole if its bones as named are far less human than those by
     structure; the trunk, if a part above the hips carries the legs, or the hips do not. Names
-    stand where lengths cannot tell.
+    stand where lengths do not decide.
 
     Parameters
     ----------

@@ -164,7 +164,7 @@ def _is_folded(skeleton: Skeleton, limbs: MirroredLimbs, height: float) -> bool:
 def _count_other_limbs(
     skeleton: Skeleton, match: _BestLimbs, pairs: Sequence[MirroredLimbs]
 ) -> int:
-    """Return how many pairs of long limbs the trunk has beside legs and arms."""
+    """Return how many pairs of long limbs the trunk has in addition to legs and arms."""
     used = match.legs.joints(skeleton)
     trunk = {match.legs.branch}
     if match.arms:

@@ -1,6 +1,6 @@
 """List the numeric arrays of a MATLAB 5 file without reading their values.
 
-SciPy's reader is not used: it reads complete arrays, and it trusts the sizes in a damaged
+SciPy's reader is not used: it reads complete arrays, and it accepts the sizes in a damaged
 file.
 """
 

@@ -185,7 +185,7 @@ def stand_upright(
 
 
 def describe_guessed_axis(axis: UpAxisName) -> str:
-    """Say which axis is taken for up where the evidence disagrees."""
+    """Report which axis is interpreted as up where the evidence disagrees."""
     return (
         f"{axis} is interpreted as up, but the take does not show it clearly; set Up if the"
         " actor lies on its side"

@@ -54,7 +54,7 @@ def read_bvh(
 
     A `Motion` has bones of fixed length, so position channels of joints other than the root
     are approximated. In an unbranched chain below the root they move the root. Their median
-    replaces the OFFSET of the joint, and a joint with a single child is rotated towards it.
+    replaces the OFFSET of the joint, and a joint with a single child is rotated toward it.
     Channels that would shrink the skeleton to a point are added to the OFFSET instead. Of
     several ROOTs the first body is read (`open_bvh`).
 

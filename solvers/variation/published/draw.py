@@ -5,7 +5,7 @@ in every frame causes jerk, and limbs drawn independently lose their coordinatio
 coregionalized form each variant therefore follows one draw of all functions (Wilson et al.
 2020, Efficiently sampling functions from Gaussian process posteriors, on the sparse basis).
 Residuals come from the examples' own, mixed with slowly changing weights. Each step stays
-within the examples' range at that time and is pulled a little towards their mixture.
+within the examples' range at that time and is pulled a little toward their mixture.
 """
 
 from typing import TYPE_CHECKING
