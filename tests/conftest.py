@@ -15,8 +15,8 @@ from solvers.rotations.representations import quaternion_from_rotation_vector
 pytest_plugins = ("common_fixtures",)
 
 # The same examples every time, and no clock: a busy machine must not fail a test.
-settings.register_profile("steady", deadline=None, derandomize=True, database=None)
-settings.load_profile("steady")
+settings.register_profile("repeatable", deadline=None, derandomize=True, database=None)
+settings.load_profile("repeatable")
 
 ON_ONE_PYTHON = {
     "command_line/farm": (3, 11),

@@ -1,4 +1,4 @@
-"""The measure of calibration tells a true confidence from a boastful and a modest one."""
+"""The measure of calibration distinguishes true confidence from too high and too low."""
 
 from dataclasses import replace
 from pathlib import Path

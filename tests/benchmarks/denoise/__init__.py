@@ -1,1 +1,1 @@
-"""Clean and feet, beside filters and the published method."""
+"""Clean and feet, compared with filters and the published method."""

@@ -25,7 +25,7 @@ LENGTHS = (300, 3000, 36_000)
 TAKE, STEP = "walk_front", 4
 CHEAP = CaptureSettings(backward=False, refine=False, check_every=600, patience=60)
 MEGABYTE = 1024.0
-"""Linux tells the peak in kilobytes."""
+"""Linux reports the peak in kilobytes."""
 
 
 def memory(lengths: Sequence[int] = LENGTHS) -> list[str]:

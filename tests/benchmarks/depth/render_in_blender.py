@@ -1,7 +1,7 @@
 """Blender moves a skinned body and renders its depth: run by `blender_depth.py`.
 
 `python render_in_blender.py SCENE.npz OUT.npz`. Bones get local rotations, the mesh follows by
-vertex groups, and Cycles tells how far each pixel sees; nothing of ours is called.
+vertex groups, and Cycles returns how far each pixel sees; nothing of ours is called.
 """
 
 import os

@@ -1,4 +1,4 @@
-"""How well reliability tells wrong joints: areas under curves, calibration, device's flags.
+"""How well reliability indicates wrong joints: areas under curves, calibration, device's flags.
 
     make bench-reliability                     # some minutes
     make bench-reliability ARGUMENTS=--docs    # into docs/technical/reliability.md

@@ -18,7 +18,7 @@ from .kinect_folds import observed_postures
 from .kinect_pairs import Pair
 
 LIMBS = {"arm": (4, 5, 6), "leg": (12, 13, 14, 15), "both arms": (4, 5, 6, 8, 9, 10)}
-"""Numbers of `POSTURE_JOINTS`; this sensor tells no ends of hands."""
+"""Numbers of `POSTURE_JOINTS`; this sensor measures no ends of hands."""
 COUNTS = (1, 2, 4, 8)
 SECONDS = (0.5, 1.0, 2.0)
 MIN_OBSERVED_FRAMES = 4

@@ -130,7 +130,7 @@ def _memory(learn: Callable[[Array], Predict], subject: str) -> Predict:
 
 
 def _tracked(features: Array) -> NDArray[np.intp]:
-    """Which joints this sensor tells; the hips come first."""
+    """Which joints this sensor measures; the hips come first."""
     return np.flatnonzero(np.isfinite(features).all(axis=(0, 2)))
 
 
@@ -180,7 +180,7 @@ def by_reconstruct(
 ) -> Reconstruction:
     """Ours, with the offsets of the sensor that the prior knows.
 
-    `confident`: and with what leaving out each of the others tells of its confidence.
+    `confident`: and with what leaving out each of the others shows of its confidence.
     """
     return reconstruct(
         pair.kinect,

@@ -1,4 +1,4 @@
-"""What reaches Blender by default: the motion of an armature, beside peers, on UI-PRMD.
+"""What reaches Blender by default: the motion of an armature, compared with peers, on UI-PRMD.
 
 Joints of every method are fitted with a skeleton of constant bone lengths in the same way. Lost
 joints are split by whether they truly rested.

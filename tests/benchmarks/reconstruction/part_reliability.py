@@ -1,4 +1,4 @@
-"""How well reliability tells wrong joints: on UI-PRMD, where an optical system saw them too."""
+"""How well reliability indicates wrong joints: on UI-PRMD, next to an optical system."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass

@@ -60,7 +60,7 @@ SIGNS = {
 }
 BINS = (0.0, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 WITHIN = 0.05
-"""Metres; what confidence tells the chance of."""
+"""Meters: distance of which confidence is the probability."""
 
 
 def terms(n_repetitions: int) -> list[str]:

@@ -68,7 +68,7 @@ def read_utd(path: Path) -> Stream:
 
 
 def ours(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent, ...]:
-    """Return what our recognizer tells."""
+    """Return what our recognizer detects."""
     return recognize_gestures(stream.times, stream.positions, stream.confidence, settings)
 
 

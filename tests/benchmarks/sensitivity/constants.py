@@ -125,7 +125,7 @@ class Constant:
     name: str
     value: Any
     text: str
-    """Docstring or comment beside it."""
+    """Docstring or comment next to it."""
     line: int
 
     @property

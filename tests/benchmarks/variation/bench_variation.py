@@ -46,7 +46,7 @@ OURS = "mixture (default)"
 ENOUGH = 9
 """Examples that a set needs for one part of them to be held out."""
 EXCUSED = ("published", "Lau et al., from its description")
-"""Methods that a classifier always tells from captures."""
+"""Methods that a classifier always distinguishes from captures."""
 PARTS = ("figures", "sets", "examples", "discriminator", "pictures")
 FEET = ("slide of examples", "slide drawn", "slide", "stands of examples %", "stands %")
 SECONDS, LEARNING = "s per s", "s to learn"

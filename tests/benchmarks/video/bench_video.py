@@ -103,7 +103,7 @@ def compare_faults(captures: Mapping[str, Motion]) -> str:
 
 
 def compare_real() -> str:
-    """Return a table of real exports, whose truth nobody knows."""
+    """Return a table of real exports, whose truth is unknown."""
     rows: dict[str, list[str]] = {}
     for file in REAL:
         taken = read_recording(DATA / file)

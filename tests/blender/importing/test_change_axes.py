@@ -126,7 +126,7 @@ def test_the_button_is_gray_without_an_import(blank):
 
 
 def test_a_unit_counts_for_files_of_other_programs(recordings, bring, shown, blank):
-    """The file says centimeters; somebody knows better."""
+    """The file says centimeters; the user knows better."""
     path = recordings / "corpus/fbx/mixamo_web/Idle.fbx"
     before = np.ptp(shown(bring(path))[..., 2])
 

@@ -1,4 +1,4 @@
-"""A .blend file from somebody else shows a depth recording only when the animator asks."""
+"""A .blend file of another user shows a depth recording only when the animator asks."""
 
 import json
 

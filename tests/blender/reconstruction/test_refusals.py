@@ -35,7 +35,7 @@ def refused(blank):
 
 
 def test_armature_in_millimeters_is_accepted(load, truth, import_joints, blank):
-    """Blender has no unit of its own: the size of the body tells it."""
+    """Blender has no unit of its own: the size of the body shows it."""
     names = load("solvers.motion").SENSOR_JOINTS[load("solvers.motion").Sensor.KINECT_V1]
     armature = import_joints(names, truth, global_scale=1000.0)
     hips = armature.pose.bones["HipCenter"]

@@ -1,4 +1,4 @@
-"""The file that a take was imported from tells more than its bones; used while they agree."""
+"""The imported file of a take contains more than its bones; used if they agree."""
 
 import numpy as np
 import pytest

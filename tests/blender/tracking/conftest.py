@@ -31,7 +31,7 @@ def n_frames():
 
 @pytest.fixture
 def truth(recordings, n_frames):
-    """The first frames of a walk towards the camera: pictures, joints, camera."""
+    """The first frames of a walk toward the camera: pictures, joints, camera."""
     with np.load(recordings / "depth" / "truth" / "walk_front.npz") as archive:
         return {
             name: archive[name][:n_frames] if archive[name].ndim > 2 else archive[name]

@@ -1,4 +1,4 @@
-"""How the joints of a body move together: learned from both sides alike, kept in a file."""
+"""How the joints of a body move together: learned from both sides, kept in a file."""
 
 import numpy as np
 import pytest

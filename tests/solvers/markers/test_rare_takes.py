@@ -33,7 +33,7 @@ def test_reflection_does_not_get_the_label_of_a_missing_marker():
 
 @pytest.mark.parametrize(("slow", "fast"), [(0.03, 0.15), (0.00005, 0.008)])
 def test_fast_pass_of_two_markers_and_back_is_no_swap(slow, fast):
-    """Their relative steps, in meters; nothing else tells them apart."""
+    """Their relative steps, in meters; nothing else distinguishes them."""
     steps = np.full(60, slow)
     steps[48:52] = fast
     apart = np.cumsum(steps)

@@ -1,4 +1,4 @@
-"""Where a file of joints does not say its unit, the size of the body tells it."""
+"""Where a file of joints does not say its unit, the size of the body shows it."""
 
 import re
 

@@ -16,7 +16,7 @@ OFFSETS = Y_UP_OFFSETS @ np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])
 
 
 def body(height: float = 1.75, *, root=(1.0, 0.0, 0.0, 0.0), hips=None) -> Motion:
-    """Return a take on the spot of somebody whose left arm rises; standing unless turned."""
+    """Return a take on the spot of an actor whose left arm rises; standing unless turned."""
     rotations = np.zeros((F, len(NAMES), 4))
     rotations[..., 0] = 1.0
     rising = np.zeros((F, 3))
@@ -109,7 +109,7 @@ def test_a_handstand_stays_one(tmp_path):
 
 
 def test_a_handstand_is_put_on_its_hands(tmp_path):
-    """Arms beside the head: the hands are lowest, and the feet are no floor."""
+    """Arms next to the head: the hands are lowest, and the feet are no floor."""
     upside_down = body(root=turn(180.0), hips=(0.0, 0.0, 3.0))
     for side, sign in (("left", 1.0), ("right", -1.0)):
         rotations = quaternion_from_euler(np.radians([[0.0, -90.0 * sign, 0.0]]), "XYZ")

@@ -1,4 +1,4 @@
-"""Stamps with a stated rate beside them, as markers have: rounded, uneven or with holes."""
+"""Stamps with a stated rate next to them, as markers have: rounded, uneven or with holes."""
 
 import numpy as np
 import pytest

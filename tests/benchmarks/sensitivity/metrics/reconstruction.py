@@ -64,8 +64,8 @@ def measure(
         found = result.tracks.positions[:, joints]
         figures[f"{name}: wrong joints mm"] = point_error(found, truth, wrong)
         figures[f"{name}: others mm"] = point_error(found, truth, ~wrong)
-        doubted = result.reliability.combined[:, joints] < 0.5
-        figures[f"{name}: wrong joints found %"] = missed_or_false(doubted, wrong)
+        flagged = result.reliability.combined[:, joints] < 0.5
+        figures[f"{name}: wrong joints found %"] = missed_or_false(flagged, wrong)
         jerk = np.diff(found, n=3, axis=0) * recording.frame_rate**3
         figures[f"{name}: jerk m/s3"] = float(np.linalg.norm(jerk, axis=-1).mean())
         fitted = forward_kinematics(result.motion).positions

@@ -28,7 +28,7 @@ def depth() -> np.ndarray:
 
 @pytest.fixture
 def folder(tmp_path, depth):
-    """A recording laid out as TUM RGB-D, and a picture beside its folder."""
+    """A recording laid out as TUM RGB-D, and an image next to its folder."""
     save_png(tmp_path / "secret.png", depth[0])
     save_png(tmp_path / "secret_rgb.png", colors_of(depth[0]))
     return tum(tmp_path / "take", depth, np.arange(9) / 30.0)
@@ -166,7 +166,7 @@ def test_color_in_a_video_is_bounded_by_its_track(tmp_path, monkeypatch):
 
 
 def announced(width: int, height: int, kind: int = 2, bits: int = 8) -> bytes:
-    """A PNG whose header tells a size, and that holds next to nothing."""
+    """A PNG whose header states a size, and that holds next to nothing."""
 
     def chunk(name: bytes, content: bytes) -> bytes:
         checksum = zlib.crc32(name + content)

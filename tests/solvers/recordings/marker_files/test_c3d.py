@@ -213,7 +213,7 @@ def test_more_names_than_fit_are_refused_and_nothing_is_written(tmp_path):
 
 @pytest.fixture
 def tracks(rng) -> Tracks:
-    """Five points, some of them unseen now and then; more than one block of data."""
+    """Five points, some of them missing in some frames; more than one block of data."""
     positions = rng.normal(scale=2.0, size=(40, 5, 3))
     positions[3:9, 1] = np.nan
     positions[0, 4] = np.nan

@@ -23,7 +23,7 @@ def test_a_screen_that_hangs_the_actor_below_the_floor_is_not_obeyed(recordings)
 
 
 def standing(rng, n_markers=12):
-    """Return markers between 5 cm and 1.7 m above the floor, of somebody who walks."""
+    """Return markers between 5 cm and 1.7 m above the floor, of an actor who walks."""
     body = rng.uniform((-0.3, -0.2, 0.05), (0.3, 0.2, 1.7), (n_markers, 3))
     body[:2, 2] = 0.05, 1.7
     walk = np.linspace((-1.0, -0.5, 0.0), (1.0, 0.5, 0.0), 20)

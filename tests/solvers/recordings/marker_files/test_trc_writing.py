@@ -1,4 +1,4 @@
-"""What is written as TRC is what was measured, to the last digit, and blank where unseen."""
+"""What is written as TRC is what was measured, to the last digit, and blank where missing."""
 
 import numpy as np
 from hypothesis import given, settings

@@ -63,7 +63,7 @@ UNIT = 0.0254 / 0.45
 
 @pytest.fixture
 def read(tmp_path):
-    """Read a recording of this text, with a skeleton of that text beside it."""
+    """Read a recording of this text, with a skeleton of that text next to it."""
 
     def read_text(motion: str = MOTION, skeleton: str = SKELETON, **options):
         (tmp_path / "actor.asf").write_text(skeleton)

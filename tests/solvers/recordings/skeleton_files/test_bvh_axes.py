@@ -53,7 +53,7 @@ def test_an_axis_that_is_given_is_taken(walk, tmp_path, axis):
 
 
 def test_a_lying_actor_is_left_lying_and_reported(walk, tmp_path):
-    """Asleep beside the origin, 10 cm above the floor, with a rest pose that stands."""
+    """Asleep next to the origin, 10 cm above the floor, with a rest pose that stands."""
     turn = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
     rotations = walk.rotations.copy()
     rotations[:, 0] = multiply(turn, rotations[:1, 0])
