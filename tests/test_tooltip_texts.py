@@ -13,7 +13,11 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 CODE = ("operators", "mocap_assist", "solvers")
+CATALOG = ROOT / "mocap_assist" / "languages" / "de_DE.po"
 MAX_TOOLTIP = 90
+MAX_MESSAGE = 180
+"""Characters of a message without its names and figures: the status bar of a window of 1920
+pixels shows about 230."""
 TWO_SENTENCES = re.compile(r"[.!?] [A-Z]")
 
 
@@ -77,6 +81,13 @@ def test_tooltips_are_one_sentence_without_a_period():
         if TWO_SENTENCES.search(text) or text.endswith(".")
     ]
     assert not wrong
+
+
+def test_messages_fit_the_status_bar():
+    messages = re.findall(r'^msgid "(.*)"$', CATALOG.read_text(encoding="utf-8"), re.MULTILINE)
+
+    assert len(messages) > 1000
+    assert not [text for text in messages if len(text) > MAX_MESSAGE]
 
 
 @pytest.mark.parametrize(
