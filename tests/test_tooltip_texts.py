@@ -16,8 +16,8 @@ CODE = ("operators", "mocap_assist", "solvers")
 CATALOG = ROOT / "mocap_assist" / "languages" / "de_DE.po"
 MAX_TOOLTIP = 90
 MAX_MESSAGE = 180
-"""Characters of a message without its names and figures: the status bar of a window of 1920
-pixels shows about 230."""
+"""Characters of a message with placeholders for its names and figures. Chosen by hand: the
+longest has 174; a status bar is one line."""
 TWO_SENTENCES = re.compile(r"[.!?] [A-Z]")
 
 
