@@ -33,6 +33,7 @@ KINDS = {
     "foot slide": "Foot Slide",
     "limit": "Joint Limit",
     "cut": "Cut",
+    "low confidence": "Low Confidence",
 }
 KIND_COLUMN, BONE_COLUMN = 0.36, 0.74  # of the list's width, and of the rest of it
 STALE = 'Results are for "{action}". Run Check again.'

@@ -28,7 +28,7 @@ def list_low_confidence(
     shown.checked, shown.report = action.name, report
     for interval in ranges[:MAX_LISTED]:
         item = shown.issues.add()
-        item.name, item.kind = interval.joint, "doubtful"
+        item.name, item.kind = interval.joint, "low confidence"
         item.start, item.stop = np.round(frames[[interval.first, interval.last]], 2)
         item.severity = float(interval.last - interval.first + 1)
         item.sentence = (

@@ -86,7 +86,7 @@ class BvhChannels:
             displacement = self._relative_positions(joint, self.offset_added) - offsets[joint]
             root = root + rotate(rotation, z_up_from_y_up(displacement))
             rotation = multiply(rotation, rotations[:, joint])
-        self._rotate_towards_only_children(rotations, offsets)
+        self._rotate_toward_only_children(rotations, offsets)
         return BvhPoses(offsets, rotations, root, self.offset_added)
 
     @cached_property
@@ -160,7 +160,7 @@ class BvhChannels:
             progress(min(1.0, block.stop / len(self.rows)), "Reading")
         return rotations
 
-    def _rotate_towards_only_children(
+    def _rotate_toward_only_children(
         self, rotations: NDArray[np.float64], offsets: NDArray[np.float64]
     ) -> None:
         """Change rotations so that joints with recorded positions keep their direction.
