@@ -24,9 +24,6 @@ Chosen by hand: x0.5 gains 0.4 %, x2 costs nothing."""
 MIN_LIFT_M = 0.01
 """Meters, for a leg of 0.9 m: a planted sole this far above its contact height may rise. Chosen
 by hand: x0.5 gains 1.2 %, x2 costs 1.1 %."""
-MAX_SOLE_SPEED = 1.0
-"""Meters per second, for a leg of 0.9 m, above which a loaded sole no longer follows its ankle.
-Chosen by hand: x0.5 costs 0.8 %, x2 costs 0.2 %."""
 MAX_FLAT_RATE = 0.6
 """Radians per second: a foot that rotates faster is rolling, not resting. Chosen by hand: x0.5
 costs 3.0 %, x2 gains 1.7 %."""
@@ -43,7 +40,7 @@ class FootContact:
         Length of the leg over that of an adult, 0.9 m.
     contact : bool, shape (n_frames,)
     points : sequence of BonePoint
-        Of the sole.
+        Heel, ball, tip of the toes if the rig has one, and ankle.
     load : shape (n_frames, n_points)
         Fraction of the load on each point.
     standing_heights : shape (n_points,), meters
@@ -51,7 +48,7 @@ class FootContact:
     floor : float, meters
         Median height of the ball in contact.
     steps : shape (n_frames - 1, 3), 0 to 1
-        How certainly the loaded sole rests from each frame to the next, by direction.
+        How certainly the loaded point rests from each frame to the next, by direction.
     on_floor : shape (n_frames,), 0 to 1
         How certainly it is at the height of the floor.
     flat : shape (n_frames - 1,), 0 to 1
@@ -101,17 +98,13 @@ def find_foot_contact(
     contact : bool, shape (n_frames,)
     """
     rate, size = motion.frame_rate, leg.length(motion.skeleton) / HUMAN_LEG_LENGTH_M
-    points = sole_points(motion.skeleton, leg)
+    points = (*sole_points(motion.skeleton, leg), BonePoint(leg.ankle, np.zeros(3)))
     positions = np.stack([point.position(poses) for point in points], axis=1)
     standing = measure_standing_heights(positions, contact, rate)
-    load = estimate_loads(positions[..., 2] - standing, rate, size)
+    load = estimate_loads(positions, standing, rate, size)
     height = np.sum(load * (positions[..., 2] - standing), axis=1)
     contact_height = _median_contact_heights(height, contact)
-    about_ankle = _loaded_displacements(positions, load) - np.diff(
-        poses.positions[:, leg.ankle], axis=0
-    )
-    certain = _both_in_contact(contact) * _plausibility(about_ankle, rate, size)
-    steps = np.repeat(certain[:, None], 3, axis=1)
+    steps = np.repeat(_both_in_contact(contact)[:, None].astype(np.float64), 3, axis=1)
     steps[:, 2] *= _on_floor(np.abs(height - contact_height), size)
     floor, on_floor = 0.0, np.zeros(motion.n_frames)
     if contact.any():
@@ -156,16 +149,6 @@ def _median_contact_heights(height: Array, contact: Flags) -> Array:
     for start, stop in find_runs(contact):
         contact_height[start:stop] = np.median(height[start:stop])
     return contact_height
-
-
-def _plausibility(displacements: Array, rate: float, size: float) -> Array:
-    """Return 1 for steps in which the sole follows the ankle, toward 0 at high speeds.
-
-    No foot in contact swings its sole about the ankle at such a speed. Its rotation is wrong,
-    and an ankle that compensated for it would jump in turn.
-    """
-    speed = np.linalg.norm(displacements, axis=1) * rate
-    return np.asarray(np.clip(2.0 - speed / (MAX_SOLE_SPEED * size), 0.0, 1.0))
 
 
 def _on_floor(rise: Array, size: float) -> Array:

@@ -1,4 +1,4 @@
-"""Estimate which points of a foot, heel, ball or toe tip, carry the load on the floor."""
+"""Estimate which point of a foot rests while in contact: heel, ball, toe tip or ankle."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +15,15 @@ hand: x0.5 gains 0.6 %, x2 costs 1.5 %."""
 LOAD_FALLOFF_M = 0.007
 """Meters, for a leg of 0.9 m: a point this far above the lowest carries 1/e of its load. Chosen
 by hand: x0.5 costs nothing, x2 gains 0.1 %."""
-TIP_HEIGHT_M = 0.012
-"""Meters, for a leg of 0.9 m, between ball and tip when both carry the same load. Captured toes
-jitter, and a jittering tip should not carry a resting foot. Chosen by hand: x0.5 gains
-0.2 %, x2 gains 0.1 %."""
+SPEED_FALLOFF = 0.1
+"""Meters per second, for a leg of 0.9 m: a point this much faster than the slowest carries 1/e
+of its load. Chosen by hand: x0.5 costs nothing, x1.5 makes the worst knee of squats whose feet
+were captured badly jerk 1.5 times as much."""
+MIN_RISE_M = 0.012
+"""Meters, for a leg of 0.9 m, by which heel and ball are higher than the tip (or than the ankle
+above its own height at rest) when all carry the same load. Captured toes jitter, and a
+jittering tip should not carry a resting foot. Chosen by hand: x0.5 gains 0.2 %, x2 gains
+0.1 %."""
 MAX_REST_SPEED = 0.15
 """Meters per second below which the entire foot rests on the floor. Chosen by hand: x0.5 gains
 2.8 %, x2 gains 0.3 %."""
@@ -55,34 +60,42 @@ def measure_standing_heights(
     """
     level = np.zeros(points.shape[1])
     if len(points) > 1:
-        speeds = np.linalg.norm(np.gradient(points, axis=0), axis=-1) * frame_rate
-        speeds = gaussian_filter1d(speeds, SMOOTHING_S * frame_rate, axis=0)
-        rests = contact & (speeds < MAX_REST_SPEED).all(axis=1)
+        rests = contact & (_speeds(points, frame_rate) < MAX_REST_SPEED).all(axis=1)
         if rests.any():
             level = np.median((points - points[:, 1:2])[rests, :, 2], axis=0)
     return level
 
 
-def estimate_loads(heights: Array, frame_rate: float, size: float) -> Array:
+def estimate_loads(points: Array, standing: Array, frame_rate: float, size: float) -> Array:
     """Return the fraction of the load on each point, (n_frames, n_points), summing to 1.
 
-    The lowest points carry it. As the foot rolls, the load moves smoothly from heel to ball to
-    tip.
+    The lowest and slowest points carry it. As the foot rolls, the load moves smoothly from heel
+    to ball to tip. Where all three swing about an ankle that stands, the rotation of the foot
+    was captured badly, and the ankle carries it.
 
     Parameters
     ----------
-    heights : shape (n_frames, n_points), meters
-        Above the floor on which the foot rests.
+    points : shape (n_frames, n_points, 3), meters
+        Heel, ball, tip if the rig has one, and ankle.
+    standing : shape (n_points,), meters
+        Their heights while the foot rests, as `measure_standing_heights` returns them.
     frame_rate : float, hertz
     size : float
         Of the body, 1 for a leg of 0.9 m.
     """
-    smoothed = gaussian_filter1d(heights, SMOOTHING_S * frame_rate, axis=0)
-    smoothed[:, 2:] += TIP_HEIGHT_M * size
-    fractions = np.exp(
-        (smoothed.min(axis=1, keepdims=True) - smoothed) / (LOAD_FALLOFF_M * size)
-    )
+    heights = gaussian_filter1d(points[..., 2] - standing, SMOOTHING_S * frame_rate, axis=0)
+    heights[:, 2:] += MIN_RISE_M * size
+    log_load = -heights / (LOAD_FALLOFF_M * size)
+    if len(points) > 1:
+        log_load -= _speeds(points, frame_rate) / (SPEED_FALLOFF * size)
+    fractions = np.exp(log_load - log_load.max(axis=1, keepdims=True))
     return np.asarray(fractions / fractions.sum(axis=1, keepdims=True))
+
+
+def _speeds(points: Array, frame_rate: float) -> Array:
+    """Return the smoothed speeds of points in meters per second, (n_frames, n_points)."""
+    speeds = np.linalg.norm(np.gradient(points, axis=0), axis=-1) * frame_rate
+    return np.asarray(gaussian_filter1d(speeds, SMOOTHING_S * frame_rate, axis=0))
 
 
 def _first_child(skeleton: Skeleton, joint: int) -> int:

@@ -125,7 +125,7 @@ def test_wrong_foot_rotation_does_not_move_its_leg(walk, contacts):
     before, after = (
         forward_kinematics(motion).positions[:, leg.ankle] for motion in (broken, planted)
     )
-    assert np.linalg.norm(after - before, axis=1).max() < 0.06
+    assert np.linalg.norm(after - before, axis=1).max() < 0.015
 
 
 def test_no_contact_is_no_change(walk):

@@ -51,12 +51,23 @@ def test_height_of_a_resting_heel_is_measured():
     assert_allclose(heights, [0.03, 0.0, -0.01], atol=1e-9)
 
 
+def resting_loads(heights, n_frames: int = 30) -> np.ndarray:
+    """Return the loads of points at constant heights, none of which moves."""
+    points = np.zeros((n_frames, len(heights), 3))
+    points[..., 2] = heights
+    return estimate_loads(points, np.zeros(len(heights)), 60.0, 1.0)
+
+
 @pytest.mark.parametrize(
     ("heights", "carries"),
-    [((0.0, 0.06, 0.08), 0), ((0.06, 0.0, 0.0), 1), ((0.1, 0.05, 0.0), 2)],
+    [
+        ((0.0, 0.06, 0.08, 0.0), 0),
+        ((0.06, 0.0, 0.0, 0.06), 1),
+        ((0.1, 0.05, 0.0, 0.1), 2),
+    ],
 )
 def test_lowest_point_carries_the_load(heights, carries):
-    load = estimate_loads(np.tile(np.array(heights), (10, 1)), 60.0, 1.0)
+    load = resting_loads(heights)
 
     assert_allclose(load.sum(axis=1), 1.0)
     assert (load.argmax(axis=1) == carries).all()
@@ -64,7 +75,25 @@ def test_lowest_point_carries_the_load(heights, carries):
 
 
 def test_level_foot_rests_on_heel_and_ball_instead_of_jittering_toes():
-    load = estimate_loads(np.zeros((10, 3)), 60.0, 1.0)
+    load = resting_loads((0.0, 0.0, 0.0, 0.0))
 
     assert_allclose(load[:, 0], load[:, 1])
-    assert load[0, 2] < 0.1
+    assert load[0, 2:].max() < 0.1
+
+
+def test_slow_point_carries_the_load_of_fast_ones_at_the_same_height():
+    """The ball rolls away from a heel that stands."""
+    points = np.zeros((30, 4, 3))
+    points[:, 1:, 1] = -np.linspace(0.0, 0.5, 30)[:, None]  # 1 m/s at 60 Hz
+
+    assert estimate_loads(points, np.zeros(4), 60.0, 1.0)[:, 0].min() > 0.99
+
+
+def test_sliding_foot_is_loaded_as_one_that_stands():
+    points = np.zeros((30, 4, 3))
+    points[..., 2] = [0.0, 0.005, 0.02, 0.0]
+    sliding = points + np.linspace(0.0, 0.5, 30)[:, None, None] * [1.0, 0.0, 0.0]
+
+    loads = [estimate_loads(each, np.zeros(4), 60.0, 1.0) for each in (points, sliding)]
+
+    assert_allclose(loads[0], loads[1], atol=1e-12)
