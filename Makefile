@@ -163,6 +163,9 @@ bench-live: .venv-4.5/ready  ## measure how long a live frame takes, from joints
 bench-press: .venv-4.5/ready  ## measure presses with and without a solver that waits
 	$(PYTHON_4.5) -m tests.benchmarks.press.bench_press $(ARGUMENTS)
 
+bench-stalls: .venv-4.5/ready  ## measure how long the window stands still on a long take
+	$(PYTHON_4.5) -m tests.benchmarks.press.bench_stalls $(ARGUMENTS)
+
 bench-scene: .venv-4.5/ready  ## measure reading and writing of actions of 120 bones
 	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_scene_io $(ARGUMENTS)
 

@@ -2,6 +2,8 @@
 
 import re
 from collections.abc import Collection, Mapping
+from contextlib import suppress
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -11,7 +13,9 @@ from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
 from ..blender import compat
+from ..blender.block_references import BlockReference, SourceReference
 from ..blender.compat import Source
+from ..blender.time_slices import Sliced, Steps, in_thread, should_yield
 from ..scene import history
 from .bone_channels import (
     animated_curves,
@@ -43,6 +47,7 @@ class Output(Choice):
     NLA_TRACK = "NLA track", "Put the result on a new NLA track above the original"
 
 
+@Sliced
 def write_take(
     armature: bpy.types.Object,
     source: Source,
@@ -52,7 +57,7 @@ def write_take(
     *,
     suffix: str = SUFFIX,
     recorded: RecordedChannels | None = None,
-) -> Source:
+) -> Steps[Source]:
     """Copy an action and replace the rotation and location keys of some of its bones.
 
     Parameters
@@ -75,28 +80,66 @@ def write_take(
     action, slot
         Named like the source with the suffix, and kept by a fake user.
     """
-    action = copy_of(source[0], suffix)
-    slot = same_slot(action, source[1])
-    curves = animated_curves(action, slot)
-    rotations, locations = take.bone_rotations(), take.bone_locations()
-    unchanged = UnchangedSamples(recorded, take) if recorded else None
-    for index, name in enumerate(take.rig.bones):
-        if name not in bones:
-            continue
-        bone, types = armature.pose.bones[name], key_types.get(name)
-        if take.channels[index].rotation_keyed and index in rotations:
-            rotation_channels = rotation_curves(bone, curves)
-            near = sampled_rotation(bone, rotation_channels, take.frames[:1])
-            values = channels_from_quaternions(rotations[index], bone.rotation_mode, near)
-            if unchanged is not None:
-                values = unchanged.rotations(bone, index, values)
-            _write(rotation_channels, take.frames, values, types)
-        if take.channels[index].location_keyed and index in locations:
-            values = locations[index]
-            if unchanged is not None:
-                values = unchanged.locations(bone, index, values)
-            _write(location_curves(bone, curves), take.frames, values, types)
-    return action, slot
+    here, origin = BlockReference.of(armature), SourceReference.of(source)
+    poses = yield from in_thread.steps(take.bone_poses)
+    unchanged = None
+    if recorded is not None:
+        before = yield from in_thread.steps(recorded.take.bone_poses)
+        unchanged = UnchangedSamples(recorded, before, poses)
+    original = origin.find()
+    action = copy_of(original[0], suffix)
+    made = SourceReference.of((action, same_slot(action, original[1])))
+    indices = [index for index, name in enumerate(take.rig.bones) if name in bones]
+    try:
+        curves, bones_now = animated_curves(*made.find()), here.find().pose.bones
+        for number, index in enumerate(indices):
+            name = take.rig.bones[index]
+            keyed = take.channels[index]
+            writer = _BoneWriter(bones_now[name], curves, take.frames, key_types.get(name))
+            if keyed.rotation_keyed and index in poses.rotations:
+                writer.write_rotations(index, poses.rotations[index], unchanged)
+            if keyed.location_keyed and index in poses.locations:
+                writer.write_locations(index, poses.locations[index], unchanged)
+            if should_yield():
+                yield number / len(indices)
+                curves, bones_now = animated_curves(*made.find()), here.find().pose.bones
+                if unchanged:
+                    unchanged.find_again()
+    except BaseException:  # cancelled, or a data-block was deleted between two time slices
+        with suppress(InvalidMotionError):
+            bpy.data.actions.remove(made.action.find())
+        raise
+    return made.find()
+
+
+class _BoneWriter(NamedTuple):
+    """Writes the keys of one bone."""
+
+    bone: bpy.types.PoseBone
+    curves: Mapping[tuple[str, int], Channel]
+    frames: Array
+    types: NDArray[np.uint8] | None
+
+    def write_rotations(
+        self, index: int, rotations: Array, unchanged: UnchangedSamples | None
+    ) -> None:
+        channels = rotation_curves(self.bone, self.curves)
+        near = sampled_rotation(self.bone, channels, self.frames[:1])
+        values = channels_from_quaternions(rotations, self.bone.rotation_mode, near)
+        if unchanged is not None:
+            values = unchanged.rotations(self.bone, index, values)
+        self._write(channels, values)
+
+    def write_locations(
+        self, index: int, values: Array, unchanged: UnchangedSamples | None
+    ) -> None:
+        if unchanged is not None:
+            values = unchanged.locations(self.bone, index, values)
+        self._write(location_curves(self.bone, self.curves), values)
+
+    def _write(self, channels: Mapping[int, Channel], values: Array) -> None:
+        for index, channel in channels.items():
+            write_values(channel.curve, self.frames, values[:, index], self.types)
 
 
 def count_modified(source: Source, bones: Collection[str]) -> int:
@@ -205,13 +248,3 @@ def copy_of(original: bpy.types.Action, suffix: str = SUFFIX) -> bpy.types.Actio
 def same_slot(copy: bpy.types.Action, slot: bpy.types.ActionSlot) -> bpy.types.ActionSlot:
     """Return the slot of a copied action that was `slot` of the original."""
     return next(each for each in copy.slots if each.handle == slot.handle)
-
-
-def _write(
-    channels: Mapping[int, Channel],
-    frames: Array,
-    values: Array,
-    types: NDArray[np.uint8] | None,
-) -> None:
-    for index, channel in channels.items():
-        write_values(channel.curve, frames, values[:, index], types)

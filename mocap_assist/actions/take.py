@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -82,6 +83,10 @@ class ArmatureTake:
         offsets = [each for each in recordings if isinstance(each, Tracks)]
         return replace(self, parts=parts, offsets=None if self.offsets is None else offsets[0])
 
+    def bone_poses(self) -> "BonePoses":
+        """Return the rotations and locations of all bones that have them."""
+        return BonePoses(self.bone_rotations(), self.bone_locations())
+
     def bone_rotations(self) -> dict[int, Array]:
         """Return the pose-bone rotation, shape (n_frames, 4), of every bone in a part."""
         found: dict[int, Array] = {}
@@ -101,6 +106,15 @@ class ArmatureTake:
                 shift = self.offsets.positions[:, index] / self.rest.scale
                 found[bone] = rotate(inverse(axes), shift)
         return found
+
+
+class BonePoses(NamedTuple):
+    """Pose-bone channels at each frame, by index of the bone in the rig."""
+
+    rotations: dict[int, Array]
+    """Quaternions, shape (n_frames, 4)."""
+    locations: dict[int, Array]
+    """Shape (n_frames, 3), in units of the rig."""
 
 
 @Sliced

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...solvers.arrays import Array, Flags
 from ...solvers.rotations import angle_between
-from ..blender.compat import Source
+from ..blender.block_references import SourceReference
 from .bone_channels import (
     animated_curves,
     location_curves,
@@ -15,7 +15,7 @@ from .bone_channels import (
     sampled,
     sampled_rotation,
 )
-from .take import ArmatureTake
+from .take import ArmatureTake, BonePoses
 
 MIN_CHANGE = 1e-6
 """Radians or meters below which two samples are the same. It bounds the rounding of a rotation
@@ -26,31 +26,33 @@ class RecordedChannels(NamedTuple):
     """A recorded action, and the take that was read from it."""
 
     take: ArmatureTake
-    source: Source
+    source: SourceReference
 
 
 class UnchangedSamples:
     """The samples of a result that are those of the recording."""
 
-    def __init__(self, recorded: RecordedChannels, result: ArmatureTake) -> None:
-        self._take, self._source = recorded
-        self._curves = animated_curves(*recorded.source)
-        self._rotations = recorded.take.bone_rotations(), result.bone_rotations()
-        self._locations = recorded.take.bone_locations(), result.bone_locations()
+    def __init__(self, recorded: RecordedChannels, before: BonePoses, after: BonePoses) -> None:
+        """`before` are the poses of the recorded take, `after` those of the result."""
+        self._frames, self._before, self._after = recorded.take.frames, before, after
+        self._source = recorded.source
+        self.find_again()
+
+    def find_again(self) -> None:
+        """Look the recorded curves up: pointers are stale after a time slice."""
+        self._curves = animated_curves(*self._source.find())
 
     def rotations(self, bone: bpy.types.PoseBone, index: int, values: Array) -> Array:
         """Return rotation channels of a bone, with recorded values where nothing changed."""
-        before, after = (each[index] for each in self._rotations)
+        before, after = self._before.rotations[index], self._after.rotations[index]
         channels = rotation_curves(bone, self._curves)
-        recorded = sampled_rotation(bone, channels, self._take.frames)
+        recorded = sampled_rotation(bone, channels, self._frames)
         return _restored(values, recorded, np.abs(angle_between(before, after)) < MIN_CHANGE)
 
     def locations(self, bone: bpy.types.PoseBone, index: int, values: Array) -> Array:
         """Return location channels of a bone, with recorded values where nothing changed."""
-        before, after = (each[index] for each in self._locations)
-        recorded = sampled(
-            location_curves(bone, self._curves), bone.location, self._take.frames
-        )
+        before, after = self._before.locations[index], self._after.locations[index]
+        recorded = sampled(location_curves(bone, self._curves), bone.location, self._frames)
         return _restored(values, recorded, (np.abs(after - before) < MIN_CHANGE).all(axis=1))
 
 

@@ -1,6 +1,7 @@
 """Run long work in time slices of the main thread, so that the window stays responsive."""
 
 from collections.abc import Callable, Generator
+from concurrent.futures import ThreadPoolExecutor, wait
 from functools import update_wrapper
 from math import inf
 from time import monotonic
@@ -36,6 +37,24 @@ class Sliced(Generic[Parameters, Result]):
 
     def __call__(self, *arguments: Parameters.args, **named: Parameters.kwargs) -> Result:
         return _finished(self.steps(*arguments, **named), inf)
+
+
+@Sliced
+def in_thread(function: Callable[[], Result], fraction: float = 1.0) -> Steps[Result]:
+    """Call a function that needs nothing of Blender, while Blender's window works.
+
+    It helps only where Python's lock is released: in NumPy, in hashes and with files.
+    """
+    with ThreadPoolExecutor(1) as pool:
+        future = pool.submit(function)
+        while True:
+            left = None if _deadline[0] == inf else max(_deadline[0] - monotonic(), 0.0)
+            if wait([future], left).done:
+                break
+            yield fraction
+    if should_yield():
+        yield fraction
+    return future.result()
 
 
 class Work(Generic[Result]):

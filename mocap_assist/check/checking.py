@@ -55,7 +55,8 @@ def show_checked(
     here = Subject.of(scene, subject)
     take = yield from read_played.steps(scene, subject)
     scene, subject = here.find()
-    check_unchanged(subject, solved_digest, take.recordings[0])
+    yield from check_unchanged.steps(subject, solved_digest, take.recordings[0])
+    scene, subject = here.find()
     list_issues(scene, subject, take.frames, checked.issues, checked.quality.report())
     return " ".join(filter(None, [_summary(checked), checked.low_confidence]))
 

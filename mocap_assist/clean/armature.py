@@ -1,5 +1,6 @@
 """Read an armature for Clean, and write the result."""
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import bpy
@@ -20,8 +21,9 @@ from ..actions.delta_layer import lay_delta, write_delta
 from ..actions.limits import read_limits
 from ..actions.take import ArmatureTake
 from ..actions.unchanged_samples import RecordedChannels
+from ..blender.block_references import SourceReference
 from ..blender.compat import Source
-from ..blender.time_slices import Steps
+from ..blender.time_slices import Steps, in_thread
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject
 from ..scene import history
@@ -48,6 +50,11 @@ class ArmatureReading(NamedTuple):
         here = Subject.of(scene, armature)
         recorded = history.cleaned_from(played_source(armature))
         raw = yield from read_take.steps(armature, scene, choices.frame_range, recorded)
+        return cls._found(here, raw)
+
+    @classmethod
+    def _found(cls, here: Subject, raw: ArmatureTake) -> "ArmatureReading":
+        """Look everything up: pointers to Blender's data are stale after a time slice."""
         scene, armature = here.find()
         played = played_source(armature)
         return cls(scene, armature, history.cleaned_from(played), played, raw)
@@ -81,27 +88,28 @@ class ArmatureReading(NamedTuple):
         cleaned: Cleaned,
         types: dict[str, NDArray[np.uint8]],
         entry: dict[str, Any],
-    ) -> tuple[str, int]:
+    ) -> Steps[tuple[str, int]]:
         """Write a new action and play it; return its name and how many curves were modified."""
-        take = self.raw.with_recordings(cleaned.recordings)
-        n_modified = count_modified(self.played, cleaned.moved)
-        action, slot = write_take(
-            self.armature,
-            self.played,
+        here = Subject.of(self.scene, self.armature)
+        take = yield from in_thread.steps(partial(self.raw.with_recordings, cleaned.recordings))
+        now = self._found(here, self.raw)
+        n_modified = count_modified(now.played, cleaned.moved)
+        action, slot = yield from write_take.steps(
+            now.armature,
+            now.played,
             take,
             cleaned.moved,
             types,
-            recorded=RecordedChannels(self.raw, self.recorded),
+            recorded=RecordedChannels(self.raw, SourceReference.of(now.recorded)),
         )
+        now = self._found(here, self.raw)
         if cleaned.planted is not None:
-            contacts, detected = cleaned.planted.contacts, self.contacts() is None
-            write_contacts(
-                self.armature, action, slot, take.frames, contacts, detected=detected
-            )
-        history.record(action, self.played, entry)
+            contacts, detected = cleaned.planted.contacts, now.contacts() is None
+            write_contacts(now.armature, action, slot, take.frames, contacts, detected=detected)
+        history.record(action, now.played, entry)
         if choices.result_as is CleanOutput.DELTA_LAYER:
-            delta = write_delta(self.armature, self.recorded, (action, slot))
-            lay_delta(self.armature, self.recorded, delta)
+            delta = write_delta(now.armature, now.recorded, (action, slot))
+            lay_delta(now.armature, now.recorded, delta)
         else:
-            put_to_use(self.armature, action, slot, Output[choices.result_as.name])
+            put_to_use(now.armature, action, slot, Output[choices.result_as.name])
         return action.name, n_modified

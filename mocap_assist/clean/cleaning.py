@@ -13,7 +13,7 @@ from ..actions.curves import GENERATED, MEASURED
 from ..actions.frames import Grid
 from ..actions.marker_take import MarkerTake
 from ..actions.take import ArmatureTake
-from ..blender.time_slices import Sliced, Steps
+from ..blender.time_slices import Sliced, Steps, in_thread
 from ..jobs.job import ShortSolve
 from ..library.library_prior import library_prior
 from ..runtime import redo
@@ -62,7 +62,7 @@ def read_cleaning(
         planting=settings.planting if plants else None,
         contacts=contacts,
     )
-    solution = redo.recall(problem)
+    solution = yield from redo.recall.steps(problem)
     return (partial if solution is None else ShortSolve)(clean, problem, finish, solution)
 
 
@@ -81,11 +81,13 @@ def write_cleaned(
     here = Subject.of(scene, subject)
     examples, found = yield from _read(here, settings.choices)
     problem = _problem(found.raw, settings, examples)
-    check_unchanged(here.find()[1], solved_digest, problem)
-    redo.remember(problem, cleaned.solution)
-    types = key_types(cleaned.solution.recordings, cleaned.solution.denoised)
+    yield from check_unchanged.steps(here.find()[1], solved_digest, problem)
+    yield from redo.remember.steps(problem, cleaned.solution)
+    types = yield from in_thread.steps(
+        partial(key_types, cleaned.solution.recordings_of(problem), cleaned.solution.denoised)
+    )
     entry = entry_of("denoise", settings, cleaned)
-    name, n_modified = found.write(settings.choices, cleaned, types, entry)
+    name, n_modified = yield from found.write(settings.choices, cleaned, types, entry)
     return clean_report(len(found.raw.frames), cleaned, name, n_modified)
 
 

@@ -60,9 +60,9 @@ class MarkerReading(NamedTuple):
         cleaned: Cleaned,
         types: dict[str, NDArray[np.uint8]],
         entry: dict[str, Any],
-    ) -> tuple[str, int]:
+    ) -> Steps[tuple[str, int]]:
         """Write a new action and play it; return its name, and that no curve was modified."""
-        played = read_markers(self.holder, self.scene, grid=self.raw.grid)
+        played = yield from read_markers.steps(self.holder, self.scene, grid=self.raw.grid)
         take = played.with_recordings(cleaned.recordings)
         names = set()
         for marker, source, source_new in write_markers(take, cleaned.moved, types):

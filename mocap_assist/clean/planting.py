@@ -51,9 +51,13 @@ def write_planted(
     scene, armature = here.find()
     played, planted = played_source(armature), result.planted
     body, *other_trees = take.recordings
-    check_unchanged(armature, solved_digest, body)
+    yield from check_unchanged.steps(armature, solved_digest, body)
+    scene, armature = here.find()
+    played = played_source(armature)
     take = take.with_recordings((planted.motion, *other_trees))
-    action, slot = write_take(armature, played, take, result.moved, {})
+    action, slot = yield from write_take.steps(armature, played, take, result.moved, {})
+    scene, armature = here.find()
+    played = played_source(armature)
     detected = animators_contacts(played, take.frames) is None
     write_contacts(armature, action, slot, take.frames, planted.contacts, detected=detected)
     entry = {

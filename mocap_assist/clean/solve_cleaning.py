@@ -90,9 +90,14 @@ class Solution:
     denoised: tuple[Denoised, ...]
     limits: JointLimits | None
     """Joint limits of the examples."""
-    recordings: Recordings
-    """As they were, except for corrected labels."""
+    unswapped: Tracks | None = None
+    """The markers, if labels were corrected."""
     swaps: tuple[Swap, ...] = ()
+
+    def recordings_of(self, problem: Problem) -> Recordings:
+        """Return the recordings of the problem, except for corrected labels."""
+        body, *other_trees = problem.recordings
+        return (self.unswapped or body, *other_trees)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,10 +126,10 @@ def names_of(recording: Motion | Tracks) -> tuple[str, ...]:
 def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
     """Denoise the body by what the examples teach, and all else by what the take teaches."""
     body, *other_trees = problem.recordings
-    swaps: tuple[Swap, ...] = ()
+    unswapped = None
     if problem.unswap and isinstance(body, Tracks):
         unswapped = unswap_markers(body, progress=within(progress, 0.0, 0.2))
-        body, swaps = unswapped.tracks, unswapped.swaps
+        body = unswapped.tracks
     learned = problem.examples.learned(body, problem.learn_limits, within(progress, 0.2, 0.3))
     settings = problem.settings.at_full_strength()
     result = denoise(
@@ -143,7 +148,8 @@ def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
         results.append(
             denoise(recording, settings=settings, progress=within(progress, *weight))
         )
-    return Solution(tuple(results), learned.limits, (body, *other_trees), swaps)
+    swapped = (unswapped.tracks, unswapped.swaps) if unswapped and unswapped.swaps else ()
+    return Solution(tuple(results), learned.limits, *swapped)
 
 
 def clean(
@@ -161,10 +167,11 @@ def clean(
     if solution is None:
         solution = solve(problem, progress=within(progress, 0.0, 0.8))
     estimates = [each.recording for each in solution.denoised]
+    recordings = solution.recordings_of(problem)
     body, *other_trees = map(
-        partial(_mixed, finish=finish, part_of=_bone_parts(solution.recordings[0], finish)),
-        solution.recordings,
-        finish.present or solution.recordings,
+        partial(_mixed, finish=finish, part_of=_bone_parts(recordings[0], finish)),
+        recordings,
+        finish.present or recordings,
         estimates,
     )
     moved, planted = finish.chosen, None
@@ -176,6 +183,7 @@ def clean(
             eased = toward(body, planted.motion, finish.ease[:, None])
             moved |= differing(body, eased)
             body = eased
+            planted = replace(planted, motion=body)
     contacts = None if planted is None else planted.contacts
     before, after = (
         measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))

@@ -6,7 +6,6 @@ from typing import Any
 from ...solvers.arrays import Flags
 from ...solvers.denoising import Denoised, Issue, denoise
 from ...solvers.depth_scene import DepthRecording
-from ...solvers.markers import Swap
 from ...solvers.motion import JointLimits, Motion, Tracks
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.workflows import (
@@ -100,7 +99,7 @@ def _take_of(
 
 def _cleaned(problem: Problem, fixed: FixedTake, progress: Progress) -> Cleaned:
     """Clean the other trees of an armature, such as props, too."""
-    body, *other_trees = problem.recordings
+    other_trees = problem.recordings[1:]
     chain = fixed.chain
     assert chain.denoised is not None
     denoised: list[Denoised] = [chain.denoised]
@@ -109,10 +108,11 @@ def _cleaned(problem: Problem, fixed: FixedTake, progress: Progress) -> Cleaned:
         denoised.append(
             denoise(tree, settings=problem.settings, progress=within(progress, start, stop))
         )
-    swaps: tuple[Swap, ...] = ()
+    solution = Solution(tuple(denoised), None)
     if chain.unswapped is not None:
-        body, swaps = chain.unswapped.tracks, chain.unswapped.swaps
-    solution = Solution(tuple(denoised), None, (body, *other_trees), swaps)
+        solution = replace(
+            solution, unswapped=chain.unswapped.tracks, swaps=chain.unswapped.swaps
+        )
     recordings = (fixed.recording, *(each.recording for each in denoised[1:]))
     moved = frozenset(name for each in recordings for name in names_of(each))
     before, after = fixed.before.quality, fixed.after.quality

@@ -3,7 +3,6 @@
 import gc
 import importlib
 import os
-import pickle
 import sys
 import traceback
 from collections.abc import Callable
@@ -47,7 +46,7 @@ def main(folder: Path, extension: str) -> int:
 
 def outcome_of(folder: Path, protocol: ModuleType) -> Any:
     """Return the solver's result in a tuple, or the exception that it raises."""
-    solve = pickle.loads((folder / protocol.REQUEST).read_bytes())
+    solve = protocol.read_value(folder / protocol.REQUEST)
     gc.enable()
     try:
         return (
@@ -63,8 +62,7 @@ def outcome_of(folder: Path, protocol: ModuleType) -> Any:
 def write_outcome(folder: Path, protocol: ModuleType, outcome: Any) -> None:
     """Write the result to the file that job.py reads."""
     partial_path = folder / "part"
-    with partial_path.open("wb") as file:  # writes large arrays without a copy
-        pickle.dump(outcome, file, protocol=pickle.HIGHEST_PROTOCOL)
+    protocol.write_value(partial_path, outcome)
     partial_path.replace(folder / protocol.RESULT)
 
 

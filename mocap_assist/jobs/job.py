@@ -1,9 +1,9 @@
 """Run a solve in a subprocess; independent of Blender."""
 
-import pickle
 import signal
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from time import sleep
@@ -13,7 +13,16 @@ from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
 from ...solvers.files import reason_of
 from ...solvers.progress import Progress, unwatched
 from .child_process import ChildProcess
-from .protocol import REQUEST, RESULT, Ending, last_output, last_progress, read_previews
+from .protocol import (
+    REQUEST,
+    RESULT,
+    Ending,
+    last_output,
+    last_progress,
+    read_previews,
+    read_value,
+    write_value,
+)
 from .waiting_child import take_waiting
 
 Result = TypeVar("Result")
@@ -42,8 +51,9 @@ class ProcessDied(MocapAssistError):
 
 
 MAX_SHORT_SOLVE_FRAMES = 5000
-"""Number of frames up to which feet are planted, or a take retargeted, without another process.
-Chosen by hand: they are solved in 0.5 s, less than a process takes to start."""
+"""Number of frames up to which feet are planted, or a take retargeted, without another process
+if none waits. Chosen by hand: they are solved in 0.5 s to 2.5 s, and a process needs 1 s to
+start."""
 
 
 class ShortSolve(partial[Result]):
@@ -112,12 +122,13 @@ class Job(Generic[Result]):
     ) -> None:
         self.cancelled = False
         self._preview_offset = 0
+        self._reading: Future[Any] | None = None
         is_usual = not program and n_threads == 1
         self._child = (take_waiting() if is_usual else None) or ChildProcess()
         self._path = self._child.path
         try:
             with _convert_memory_errors():
-                (self._path / REQUEST).write_bytes(pickle.dumps(solve))
+                write_value(self._path / REQUEST, solve)
             if not self._child.wake():
                 self._child.start(program, n_threads)
         except OSError as error:
@@ -145,8 +156,17 @@ class Job(Generic[Result]):
         return read_previews(self._path, 0)[0]
 
     def done(self) -> bool:
-        """Return whether the result exists, or the process ended without one."""
-        return (self._path / RESULT).exists() or self._child.process.poll() is not None
+        """Return whether the result has been read, or the process ended without one.
+
+        It is read in a thread, so that Blender's window does not wait for it.
+        """
+        if self._reading is None:
+            if not self._has_ended():
+                return False
+            reader = ThreadPoolExecutor(1)
+            self._reading = reader.submit(self._outcome)
+            reader.shutdown(wait=False)
+        return self._reading.done()
 
     def cancel(self) -> None:
         """End the process at once; `result` then raises SolveCancelled."""
@@ -171,9 +191,9 @@ class Job(Generic[Result]):
         MocapAssistError
             The solver raised it.
         """
-        status = self._end()
         try:
-            outcome = self._outcome(status)
+            reads = self._reading is not None and not self.cancelled
+            outcome = self._reading.result() if self._reading and reads else self._outcome()
         finally:
             self.tidy_up()
         if isinstance(outcome, Exception):
@@ -186,7 +206,7 @@ class Job(Generic[Result]):
 
         A process that wrote its result has finished: the wait for its exit is short.
         """
-        while not self.done():
+        while not self._has_ended():
             sleep(POLL_INTERVAL_S)
         try:
             return self._child.process.wait(EXIT_TIMEOUT_S)
@@ -194,14 +214,18 @@ class Job(Generic[Result]):
             self._child.process.kill()
             return self._child.process.wait()
 
-    def _outcome(self, status: int) -> Any:
+    def _has_ended(self) -> bool:
+        """Return whether the result exists, or the process ended without one."""
+        return (self._path / RESULT).exists() or self._child.process.poll() is not None
+
+    def _outcome(self) -> Any:
         """Return the outcome of the process: an exception, or the result in a tuple."""
-        result = self._path / RESULT
+        status, result = self._end(), self._path / RESULT
         if self.cancelled:
             return SolveCancelled("Cancelled.")
         if result.exists():
-            with _convert_memory_errors(), result.open("rb") as file:
-                return pickle.load(file)
+            with _convert_memory_errors():
+                return read_value(result)
         if status == Ending.OUT_OF_MEMORY:
             return OutOfMemoryError()
         if status == Ending.DISK_FULL:

@@ -14,7 +14,7 @@ REQUEST, RESULT, LOG, PREVIEWS = "request", "result", "log", "previews"
 WAIT = "wait"
 """Argument of child.py: the request is written later."""
 TAIL_BYTES = 4096
-LENGTH_BYTES = 8  # of the length before each pickle
+LENGTH_BYTES = 8  # of the length before each pickle or array
 DISK_FULL = {errno.ENOSPC, errno.EDQUOT}
 PROGRESS = re.compile(r"^@([01]\.\d+) (.*)$")
 
@@ -34,6 +34,27 @@ class Ending(IntEnum):
 
 class PreviewSolve(partial[Result]):
     """A solve that is also called with `show=`, a callback for previews."""
+
+
+def write_value(path: Path, value: Any) -> None:
+    """Write a picklable value; arrays go to the file without a copy in memory."""
+    buffers: list[pickle.PickleBuffer] = []
+    content = pickle.dumps(value, pickle.HIGHEST_PROTOCOL, buffer_callback=buffers.append)
+    with path.open("wb") as file:
+        for block in (memoryview(content), *(buffer.raw() for buffer in buffers)):
+            file.write(block.nbytes.to_bytes(LENGTH_BYTES, "little"))
+            file.write(block)
+
+
+def read_value(path: Path) -> Any:
+    """Return what `write_value` wrote; other threads run while arrays are read."""
+    blocks = []
+    with path.open("rb") as file:
+        while length := file.read(LENGTH_BYTES):
+            block = bytearray(int.from_bytes(length, "little"))
+            file.readinto(block)
+            blocks.append(block)
+    return pickle.loads(blocks[0], buffers=blocks[1:])
 
 
 def append_preview(file: BinaryIO, preview: Any) -> None:

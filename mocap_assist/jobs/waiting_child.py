@@ -16,7 +16,7 @@ _died_unused = [False]
 
 def keep_waiting() -> None:
     """Start a process that waits, unless one does; without room for it nothing happens."""
-    if _waiting and _waiting[0].is_waiting():
+    if is_waiting():
         return
     _died_unused[0] = _died_unused[0] or bool(_waiting)
     end_waiting()
@@ -30,6 +30,11 @@ def keep_waiting() -> None:
             child.abandon()
             raise
         _waiting.append(child)
+
+
+def is_waiting() -> bool:
+    """Return whether a process waits."""
+    return bool(_waiting) and _waiting[0].is_waiting()
 
 
 def take_waiting() -> ChildProcess | None:

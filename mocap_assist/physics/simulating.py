@@ -33,7 +33,7 @@ def read_simulating(
     check_writable(armature)
     read = yield from read_take.steps(armature, scene, source=played_source(armature))
     take = take_of(read.parts[0].motion, settings.simulating)
-    cached = redo.recall(take)
+    cached = yield from redo.recall.steps(take)
     kind = partial if cached is None else ShortSolve
     return kind(simulate_take, take, settings.simulating.strength, cached)
 
@@ -55,10 +55,16 @@ def write_simulated(
     scene, armature = here.find()
     played = played_source(armature)
     take = take_of(read.parts[0].motion, settings.simulating)
-    check_unchanged(armature, solved_digest, take)
-    redo.remember(take, result.simulated)
+    yield from check_unchanged.steps(armature, solved_digest, take)
+    yield from redo.remember.steps(take, result.simulated)
+    armature = here.find()[1]
+    played = played_source(armature)
     read = read.with_recordings((result.body, *read.recordings[1:]))
-    action, slot = write_take(armature, played, read, result.moved, {}, suffix=SUFFIX)
+    action, slot = yield from write_take.steps(
+        armature, played, read, result.moved, {}, suffix=SUFFIX
+    )
+    armature = here.find()[1]
+    played = played_source(armature)
     history.record(action, played, _entry(settings, result))
     put_to_use(armature, action, slot, Output.ACTION)
     return f"{action.name}: {len(result.moved)} bones moved. {result.simulated.message}"

@@ -81,7 +81,7 @@ def read_reconstructing(
         planting=settings.planting if settings.choices.plant_feet else None,
         contacts=animators_contacts(reading.played, reading.take.frames),
     )
-    solution = redo.recall(problem)
+    solution = yield from redo.recall.steps(problem)
     return (partial if solution is None else ShortSolve)(rebuild, problem, finish, solution)
 
 

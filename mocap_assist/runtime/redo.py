@@ -2,22 +2,35 @@
 
 import hashlib
 import pickle
+from functools import partial
 from typing import Any
+
+from ..blender.time_slices import Sliced, Steps, in_thread
 
 _last: dict[str, Any] = {}
 
 
 def fingerprint(problem: Any) -> str:
     """Return a digest of a picklable value; only equal problems have equal digests."""
-    return hashlib.sha256(pickle.dumps(problem)).hexdigest()
+    buffers: list[pickle.PickleBuffer] = []
+    content = pickle.dumps(problem, pickle.HIGHEST_PROTOCOL, buffer_callback=buffers.append)
+    digest = hashlib.sha256(content)
+    for buffer in buffers:  # arrays are not copied
+        digest.update(buffer.raw())
+    return digest.hexdigest()
 
 
-def remember(problem: Any, solution: Any) -> None:
+@Sliced
+def remember(problem: Any, solution: Any) -> Steps[None]:
     """Cache one solution in place of the previous one, so that memory stays bounded."""
+    digest = yield from in_thread.steps(partial(fingerprint, problem))
     _last.clear()
-    _last[fingerprint(problem)] = solution
+    _last[digest] = solution
 
 
-def recall(problem: Any) -> Any:
+@Sliced
+def recall(problem: Any) -> Steps[Any]:
     """Return the cached solution if it solves the same problem, otherwise None."""
-    return _last.get(fingerprint(problem)) if _last else None
+    if not _last:
+        return None
+    return _last.get((yield from in_thread.steps(partial(fingerprint, problem))))

@@ -11,8 +11,9 @@ import bpy
 from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
 from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import SettingsMixin
-from ..blender.time_slices import Work
+from ..blender.time_slices import Work, in_thread
 from ..jobs.job import Job, ShortSolve, run
+from ..jobs.waiting_child import is_waiting
 from ..languages import translated
 from .after_result import result_is_written
 from .navigation import is_in_status_bar, may_pass
@@ -154,21 +155,23 @@ class SolverOperator(SettingsMixin):
 
         SolveCancelled is thrown in when the animator presses Esc.
         """
-        solve = yield from self._in_slices("Reading", type(self).read_scene)
-        problem_digest = fingerprint(solve.args[0])
-        result = (
-            run(solve) if isinstance(solve, ShortSolve) else (yield from self._solve(solve))
+        solve = yield from self._in_slices(
+            "Reading", type(self).read_scene, *self._read_arguments()
         )
+        digest = partial(fingerprint, solve.args[0])
+        problem_digest = yield from self._in_slices("Reading", in_thread, digest)
+        here = isinstance(solve, ShortSolve) and not is_waiting()  # the window stands still
+        result = run(solve) if here else (yield from self._solve(solve))
         message: str = yield from self._in_slices(
-            "Writing", type(self).write_scene, result, problem_digest
+            "Writing", type(self).write_scene, *self._read_arguments(), result, problem_digest
         )
         logger.info("%s took %.1f s", self.bl_idname, monotonic() - self._started)
         return message
 
     def _in_slices(
-        self, title: str, function: Callable[..., Any], *more: Any
+        self, title: str, function: Callable[..., Any], *arguments: Any
     ) -> Generator[tuple[float, str], None, Any]:
-        work = Work(function, *self._read_arguments(), *more)
+        work = Work(function, *arguments)
         try:
             while not work.run_slice(MAX_SLICE_S):
                 yield work.fraction, title

@@ -1,11 +1,13 @@
 """The subject of a solve, independent of later clicks."""
 
+from functools import partial
 from typing import NamedTuple
 
 import bpy
 
 from ...solvers.errors import InvalidMotionError
 from ..blender.block_references import BlockReference
+from ..blender.time_slices import Sliced, Steps, in_thread
 from .redo import fingerprint
 
 
@@ -25,9 +27,10 @@ class Subject(NamedTuple):
         return self.scene.find(), self.target.find()
 
 
+@Sliced
 def check_unchanged(
     target: bpy.types.Object, solved_digest: str | None, current: object
-) -> None:
+) -> Steps[None]:
     """Raise InvalidMotionError if the scene no longer holds the problem that was solved.
 
     Parameters
@@ -36,8 +39,11 @@ def check_unchanged(
     solved_digest : fingerprint of the solved problem; None if it cannot have changed since
     current : the same problem, read again
     """
-    if solved_digest is not None and solved_digest != fingerprint(current):
+    if solved_digest is None:
+        return
+    name = target.name
+    if solved_digest != (yield from in_thread.steps(partial(fingerprint, current))):
         raise InvalidMotionError(
-            f"The action, the rig or the frame range of {target.name} was changed during the"
+            f"The action, the rig or the frame range of {name} was changed during the"
             " solve; nothing was written. Press the button again."
         )

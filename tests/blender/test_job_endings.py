@@ -9,7 +9,8 @@ ANSWER_AND_HANG = """
 import pickle, sys, time
 from pathlib import Path
 part = Path(sys.argv[1], "part")
-part.write_bytes(pickle.dumps(("the answer",)))
+answer = pickle.dumps(("the answer",))
+part.write_bytes(len(answer).to_bytes(8, "little") + answer)
 part.replace(Path(sys.argv[1], "result"))
 time.sleep(60)
 """
@@ -17,7 +18,7 @@ FULL_DISK = """
 import errno, os, pickle, runpy, sys
 def no_room(*_, **__):
     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-pickle.dump = no_room
+pickle.dumps = no_room
 sys.argv = sys.argv[1:]
 runpy.run_path(sys.argv[0], run_name="__main__")
 """

@@ -4,6 +4,7 @@ Of 2,000 bones the solve, which has a process of its own, takes minutes: it is l
 """
 
 import itertools
+import pickle
 
 import numpy as np
 import pytest
@@ -102,3 +103,59 @@ def test_clean_finishes_on_a_long_take(make_armature, animate, blank):
     assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
 
     assert armature.animation_data.action != raw
+
+
+@pytest.fixture
+def writing(load, make_armature, animate, blank, monkeypatch):
+    """Work that writes back what an armature plays, and the looks at the clock."""
+    load("mocap_assist.actions.armature_read")
+    armature = make_armature(bones(60))
+    source = (animate(armature, frames=range(1, 7)), armature.animation_data.action_slot)
+    take = load("mocap_assist.actions.armature_read").read_take(armature, blank.context.scene)
+    time_slices = load("mocap_assist.blender.time_slices")
+    clock = itertools.count()
+    monkeypatch.setattr(time_slices, "monotonic", lambda: next(clock))
+    write = load("mocap_assist.actions.armature_write").write_take
+    return time_slices.Work(write, armature, source, take, take.rig.bones, {}), source[0]
+
+
+def test_bones_are_written_a_few_at_a_time(blank, writing):
+    work, raw = writing
+    n_slices = 1
+    while not work.run_slice(10):
+        n_slices += 1
+
+    assert n_slices >= 60 // 10
+    result, _ = work.result
+    assert result != raw and len(result.layers[0].strips[0].channelbags[0].fcurves) == 243
+
+
+def test_cancelled_writing_leaves_no_action(blank, writing):
+    work, raw = writing
+    while not len(blank.data.actions) > 1:  # until the copy is made
+        assert not work.run_slice(3)
+
+    work.stop()
+
+    assert list(blank.data.actions) == [raw]
+
+
+def test_answer_of_clean_holds_each_motion_once(load):
+    samples, denoising = load("solvers.samples"), load("solvers.denoising")
+    solving = load("mocap_assist.clean.solve_cleaning")
+    walk = samples.noisy_walk()
+    problem = solving.Problem(recordings=(walk,), settings=denoising.DenoiseSettings())
+    finish = solving.Finish(
+        strengths=dict.fromkeys(
+            ["strength", *denoising.PART_STRENGTHS.values()], np.ones(walk.n_frames)
+        ),
+        keyed=(),
+        ease=np.ones(walk.n_frames),
+        chosen=frozenset(walk.skeleton.names),
+        planting=denoising.PlantSettings(),
+    )
+
+    cleaned = solving.clean(problem, finish)
+
+    size = len(pickle.dumps(cleaned)) / len(pickle.dumps(problem))
+    assert size < 3.5  # the estimate, the result, and what the report measures
