@@ -25,6 +25,8 @@ from ..shared.tables import table
 
 REPEATS = 5
 FRAME_RATE = 30.0
+N_CLIPS = 300
+FIND_TITLE = f"Find Similar, 300 frames, {N_CLIPS} clips"
 READY_S = 0.5
 """Seconds without CPU time after which a process waits."""
 
@@ -46,12 +48,14 @@ def main() -> None:
     load_checkout()
     sys.modules["mocap_ext"].register()
     rows, empty = {}, 0.0
-    for name, prepare, press in PRESSES:
-        prepare()
-        cold, ready = map(median, times(press, arguments.repeats))
-        empty = empty or cold
-        cells = (cold, ready, ready / cold, ready / empty)
-        rows[name] = [f"{cell:.2f}" for cell in cells]
+    with TemporaryDirectory() as folder:
+        find = partial(import_with_library, Path(folder))
+        for name, prepare, press in (*PRESSES, (FIND_TITLE, find, find_similar)):
+            prepare()
+            cold, ready = map(median, times(press, arguments.repeats))
+            empty = empty or cold
+            cells = (cold, ready, ready / cold, ready / empty)
+            rows[name] = [f"{cell:.2f}" for cell in cells]
     header = ["press", "s", "s, solver waits", "ratio", "relative to an empty press"]
     title = f"Blender {bpy.app.version_string}, median of {arguments.repeats} presses"
     report = Report(arguments.docs, DOCS / "benchmarks" / "press.md")
@@ -93,6 +97,43 @@ def clean() -> None:
 def check() -> None:
     """Press Check."""
     assert bpy.ops.mocap_assist.measure_quality() == {"FINISHED"}
+
+
+def find_similar() -> None:
+    """Press Find Similar."""
+    assert bpy.ops.mocap_assist.find_similar() == {"FINISHED"}
+
+
+def import_with_library(folder: Path) -> None:
+    """Import a walk into a scene with a library of walks."""
+    import_walk(300)
+    library = folder / "walks.library"
+    if not library.exists():
+        index_walks(library)
+    bpy.context.scene.mocap_assist.library.library_file = str(library)
+
+
+def index_walks(library: Path) -> None:
+    """Index walks of different speeds and cadences."""
+    from mocap_ext.mocap_assist.library import solve_indexing
+    from mocap_ext.solvers.recordings import write_bvh
+    from mocap_ext.solvers.samples import GaitSettings, walking_gait
+
+    clips = library.parent / "clips"
+    clips.mkdir()
+    for number in range(N_CLIPS):
+        gait = GaitSettings(
+            duration=3.0,
+            frame_rate=FRAME_RATE,
+            cadence=80.0 + number % 50,
+            speed=0.6 + 0.08 * (number // 50),
+        )
+        write_bvh(walking_gait(gait), clips / f"walk_{number}.bvh")
+    source = solve_indexing.Source(str(clips), False)
+    blender = solve_indexing.BackgroundBlender("", "")
+    solve_indexing.index_sources(
+        solve_indexing.IndexProblem(str(library), (source,), (), blender)
+    )
 
 
 def import_walk(n_frames: int) -> None:
