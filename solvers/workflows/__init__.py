@@ -16,7 +16,7 @@ from .fix_report import (
 )
 from .fix_take import FixedTake, FixSettings, fix_take
 from .index_files import IndexReport, index_files
-from .live import LiveMotion, LiveSession, LiveTake, LiveTakeSettings
+from .live import LiveMotion, LiveSession, LiveTake, LiveTakeSettings, PoseTake
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
 from .postures_from_clips import posture_library_from_clips
@@ -46,6 +46,7 @@ __all__ = [
     "MarkerMotionSettings",
     "MotionFromJoints",
     "PlantingResult",
+    "PoseTake",
     "RebuiltMotion",
     "ReconstructedMotion",
     "TakeFigures",

@@ -9,7 +9,13 @@ from .joint_csv import is_joint_csv, open_joint_csv, write_joint_csv
 from .joint_json import is_joint_json, open_joint_json, write_joint_json
 from .kinect_csv import is_kinect_csv, read_kinect_csv
 from .mediapipe_csv import is_mediapipe_csv, read_mediapipe_csv
-from .mediapipe_json import is_mediapipe_json, read_mediapipe_json
+from .mediapipe_json import (
+    frame_landmarks,
+    frame_time,
+    is_mediapipe_json,
+    read_mediapipe_json,
+)
+from .mediapipe_landmarks import LANDMARK_JOINTS, MILLISECOND, is_world, with_computed_joints
 from .msr_action3d import is_msr_action3d, read_msr_action3d
 from .ntu_skeleton import is_ntu_skeleton, open_ntu_skeleton
 from .nuitrack import (
@@ -25,7 +31,11 @@ from .unnamed_joints import has_layout
 from .zed_json import is_zed_json, open_zed_json
 
 __all__ = [
+    "LANDMARK_JOINTS",
+    "MILLISECOND",
     "body_of_points",
+    "frame_landmarks",
+    "frame_time",
     "has_layout",
     "is_azure_csv",
     "is_azure_json",
@@ -43,6 +53,7 @@ __all__ = [
     "is_nuitrack_json",
     "is_point_table",
     "is_ui_prmd",
+    "is_world",
     "is_zed_json",
     "open_azure_csv",
     "open_azure_json",
@@ -67,4 +78,5 @@ __all__ = [
     "read_ui_prmd_pair",
     "write_joint_csv",
     "write_joint_json",
+    "with_computed_joints",
 ]

@@ -73,7 +73,7 @@ def read_mediapipe_json(
         if member.key in RATES:
             rate = number(member.value, f"{path}, {member.key}")
         elif isinstance(member.value, Mapping) or member.key in WORLD:
-            found, time = _landmarks(member.value, location), _time(member.value, location)
+            found, time = frame_landmarks(member.value, location), frame_time(member.value, location)
             if found is None and np.isnan(time):
                 continue  # something else, such as a header
             frames.append(np.full((N_POINTS, 4), np.nan) if found is None else found)
@@ -93,7 +93,7 @@ def read_mediapipe_json(
     )
 
 
-def _time(frame: Any, location: str) -> float:
+def frame_time(frame: Any, location: str) -> float:
     """Return the time stamp of a frame in seconds; NaN without one."""
     if not isinstance(frame, Mapping):
         return np.nan
@@ -103,7 +103,7 @@ def _time(frame: Any, location: str) -> float:
     return np.nan
 
 
-def _landmarks(frame: Any, location: str) -> Array | None:
+def frame_landmarks(frame: Any, location: str) -> Array | None:
     """Return x, y, z and visibility of the first body, shape (33, 4); None without one."""
     found = frame
     if isinstance(frame, Mapping):

@@ -13,6 +13,7 @@ from ...progress import Progress, Remark
 from ..conventions import DEFAULT_FRAME_RATE, from_azure_space, joint_recording
 
 N_POINTS = len(BODY_POINTS)
+LANDMARK_JOINTS = (*BODY_POINTS, *COMPUTED_JOINTS)
 HIPS = [BODY_POINTS.index("left_hip"), BODY_POINTS.index("right_hip")]
 MAX_FRAME_S = 2.0
 """Typical step between frames, seconds, above which stamps are milliseconds. Chosen by hand:
@@ -83,16 +84,15 @@ def recording_from_landmarks(
     progress(
         0.9, Remark("MediaPipe keeps the hips at the origin, so the actor does not travel")
     )
-    pairs = [[BODY_POINTS.index(side) for side in sides] for sides in COMPUTED_JOINTS.values()]
     return joint_recording(
         path,
-        (*BODY_POINTS, *COMPUTED_JOINTS),
-        _with_means(from_azure_space(points), pairs),
+        LANDMARK_JOINTS,
+        with_computed_joints(from_azure_space(points)),
         Sensor.MEDIAPIPE,
         confidence=(
             None
             if np.isnan(visibility).all()
-            else _with_means(np.nan_to_num(visibility), pairs)
+            else with_computed_joints(np.nan_to_num(visibility))
         ),
         times=times,
         frame_rate=frame_rate or DEFAULT_FRAME_RATE,
@@ -102,7 +102,18 @@ def recording_from_landmarks(
     )
 
 
-def _with_means(values: Array, groups: Sequence[Sequence[int]]) -> Array:
-    """Add the mean of each group of points, missing where any of them is."""
+def with_computed_joints(values: Array) -> Array:
+    """Add the mean of the landmarks next to each computed joint, missing where one of them is.
+
+    Parameters
+    ----------
+    values : shape (n_frames, 33, ...)
+
+    Returns
+    -------
+    Array, shape (n_frames, n_joints, ...)
+        Those of `LANDMARK_JOINTS`.
+    """
+    groups = [[BODY_POINTS.index(side) for side in sides] for sides in COMPUTED_JOINTS.values()]
     means = [values[:, group].mean(axis=1) for group in groups]
     return np.concatenate([values, np.stack(means, axis=1)], axis=1)

@@ -1,15 +1,18 @@
 """Select the frames of one body from a live stream, and build a recording from them."""
 
+from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
-from ...errors import InvalidFileError, InvalidMotionError
+from ...errors import InvalidFileError, MocapAssistError
 from ...motion import JointRecording
 from ...progress import unwatched
 from ..conventions import joint_recording
 from .frames import LiveFrame, decode_frame
+from .pose_frames import PoseFrame
 
 NEW_STREAM_S = 2.0
 """Minimum backward jump in time that starts a new stream, seconds."""
@@ -19,7 +22,42 @@ MAX_LINES = 128
 """Maximum number of lines to read at a time: two seconds of two bodies, about 35 ms."""
 BODY_TIMEOUT_S = 1.0
 """Duration in seconds without the followed body after which another one is followed."""
+N_RATE_STEPS = 30
+"""Number of steps between frames from which the rate is measured: a second at 30 Hz."""
 PERFORMANCE = "The performance"
+
+StreamFrame = LiveFrame | PoseFrame
+
+
+class FrameDecoder(Protocol):
+    """Decodes the datagrams of a protocol; see `JointLines`."""
+
+    @property
+    def max_parts(self) -> int:
+        """Maximum number of parts to decode at a time."""
+
+    def parts(self, datagram: bytes) -> list[bytes]:
+        """Return what is decoded by itself."""
+
+    def decode(self, part: bytes, arrived: float) -> Iterable[StreamFrame]:
+        """Return the frames that a part completes, or raise MocapAssistError.
+
+        Streams without a clock have the time at which the part arrived, in seconds.
+        """
+
+
+class JointLines:
+    """Decodes this project's own lines of JSON."""
+
+    max_parts = MAX_LINES
+
+    def parts(self, datagram: bytes) -> list[bytes]:
+        """Return the lines."""
+        return datagram.splitlines()
+
+    def decode(self, part: bytes, arrived: float) -> list[LiveFrame]:
+        """Return the frame of a line."""
+        return [decode_frame(part)]
 
 
 @dataclass
@@ -52,51 +90,61 @@ class StreamReader:
     ascending order.
     """
 
-    def __init__(self) -> None:
-        self.counts = StreamCounts()
+    def __init__(self, decoder: FrameDecoder | None = None) -> None:
+        self.heard = StreamCounts()
+        self._decoder = decoder or JointLines()
         self._body: int | None = None
         self._time = float("-inf")
         self._late: list[float] = []
+        self._steps = deque[float](maxlen=N_RATE_STEPS)
 
-    def read(self, *datagrams: bytes) -> Iterator[LiveFrame]:
+    @property
+    def rate(self) -> float:
+        """Mean rate of the last frames, hertz; 0 before there are two."""
+        return 1.0 / float(np.mean(self._steps)) if self._steps else 0.0
+
+    def read(self, *datagrams: bytes, arrived: float = 0.0) -> Iterator[StreamFrame]:
         """Yield the valid frames of datagrams that arrived together, in their order.
 
-        Lines after the first `MAX_LINES` are counted as skipped, which limits the time that
-        invalid input takes.
+        Parts after the first `max_parts` of the decoder are counted as skipped, which limits
+        the time that invalid input takes.
         """
-        n_remaining = MAX_LINES
+        n_remaining = self._decoder.max_parts
         for datagram in datagrams:
-            if not n_remaining:
-                self.counts.skipped += max(datagram.count(b"\n"), 1)
+            if n_remaining <= 0:
+                self.heard.skipped += max(datagram.count(b"\n"), 1)
                 continue
-            lines = datagram.splitlines()
-            self.counts.skipped += max(len(lines) - n_remaining, 0)
-            yield from self._frames(lines[:n_remaining])
-            n_remaining = max(n_remaining - len(lines), 0)
+            parts = self._decoder.parts(datagram)
+            self.heard.skipped += max(len(parts) - n_remaining, 0)
+            yield from self._frames(parts[:n_remaining], arrived)
+            n_remaining = max(n_remaining - len(parts), 0)
 
-    def _frames(self, lines: Iterable[bytes]) -> Iterator[LiveFrame]:
-        for line in filter(bytes.strip, lines):
+    def _frames(self, parts: Iterable[bytes], arrived: float) -> Iterator[StreamFrame]:
+        for part in filter(bytes.strip, parts):
             try:
-                frame = decode_frame(line)
-            except InvalidMotionError as error:
-                self.counts.unreadable += 1
-                self.counts.why = str(error)
+                frames = list(self._decoder.decode(part, arrived))
+            except MocapAssistError as error:
+                self.heard.unreadable += 1
+                self.heard.why = str(error)
                 continue
-            if self._accepts(frame):
-                yield frame
+            for frame in frames:
+                if self._accepts(frame):
+                    yield frame
 
-    def _accepts(self, frame: LiveFrame) -> bool:
+    def _accepts(self, frame: StreamFrame) -> bool:
         elapsed = frame.time - self._time
         starts_stream = elapsed > BODY_TIMEOUT_S or elapsed <= -NEW_STREAM_S
         if frame.body != self._body and not starts_stream:
-            self.counts.others += 1
+            self.heard.others += 1
             return False
         if not (starts_stream or elapsed > 0.0 or self._restarts(frame.time)):
-            self.counts.late += 1
+            self.heard.late += 1
             return False
+        if 0.0 < elapsed <= BODY_TIMEOUT_S:
+            self._steps.append(elapsed)
         self._body, self._time = frame.body, frame.time
         self._late.clear()
-        self.counts.frames += 1
+        self.heard.frames += 1
         return True
 
     def _restarts(self, time: float) -> bool:

@@ -11,7 +11,15 @@ from ...errors import InvalidFileError
 from ...gestures import Gesture, GestureEvent, GestureRecognizer, GestureSettings, Mode
 from ...motion import JointRecording
 from ...motion.humanoid import POSTURE_JOINTS, posture_joint_indices
-from ...recordings.live import LiveFrame, StreamCounts, StreamReader, recording_from_frames
+from ...recordings.live import (
+    LiveFrame,
+    PoseFrame,
+    StreamCounts,
+    StreamFrame,
+    StreamReader,
+    joints_from_pose,
+    recording_from_frames,
+)
 
 GESTURE_SETTINGS = GestureSettings()
 MIN_PERFORMANCE_S = 0.5
@@ -64,10 +72,15 @@ class LiveSession:
         return self._stream.counts
 
     def receive(self, datagrams: Iterable[bytes]) -> SessionUpdate:
-        """Process datagrams; return the new frame, events and query."""
+        """Process datagrams of joints; return the new frame, events and query."""
+        return self.add(self._stream.read(*datagrams))
+
+    def add(self, frames: Iterable[StreamFrame]) -> SessionUpdate:
+        """Process frames of one body; return the new frame, events and query."""
         update = SessionUpdate(None, (), None, "")
-        for frame in self._stream.read(*datagrams):
-            update = self._add_frame(update, frame)
+        for frame in frames:
+            joints = joints_from_pose(frame) if isinstance(frame, PoseFrame) else frame
+            update = self._add_frame(update, joints)
         return update
 
     def _add_frame(self, update: SessionUpdate, frame: LiveFrame) -> SessionUpdate:

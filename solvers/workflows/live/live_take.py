@@ -1,8 +1,7 @@
 """Turn a live stream of joints into poses of a skeleton, and keep what was shown."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,8 +17,9 @@ from ...reconstruction import (
     reconstruct,
 )
 from ...reconstruction.joint_rotations import motion_from_positions
-from ...recordings.live import LiveFrame, recording_from_frames
-from ...settings import Settings, setting
+from ...recordings.live import LiveFrame, StreamFrame, recording_from_frames
+from .live_motion import LiveMotion, LiveTakeSettings
+from .time_slots import TimeSlots, is_continued
 
 MAX_WAITING = 2
 """Number of frames that may wait to be reconstructed; older ones are skipped. It bounds the
@@ -27,40 +27,6 @@ delay when frames arrive faster than they are reconstructed."""
 N_WARM_UP_FRAMES = 10
 """Number of frames of the calibration with which the filters begin. It guards the first poses
 against a jump, and bounds the time in which the stream waits."""
-MAX_GAP_S = 0.5
-"""Seconds without data after which the actor is measured from the start, or the filters begin
-again. It guards filters, whose frames follow each other, and lengths from a few frames."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class LiveTakeSettings(Settings):
-    """Settings of `LiveTake`."""
-
-    calibration_s: float = setting(
-        3.0, "Time at the start in which the actor is measured; move arms and legs", unit="s",
-        minimum=1.0, maximum=30.0, label="Calibration",
-    )  # fmt: skip
-    smoothing: float = setting(
-        0.05, "Remove jitter shorter than about this; higher is smoother but later",
-        unit="s", minimum=0.0, maximum=1.0,
-    )  # fmt: skip
-
-
-class LiveMotion(NamedTuple):
-    """One frame of the actor.
-
-    Attributes
-    ----------
-    frame : int
-        Time slot after calibration, at the rate of the stream; slots without data are left out.
-    motion : Motion
-        One frame, without gaps.
-    joints : LivePose
-    """
-
-    frame: int
-    motion: Motion
-    joints: LivePose
 
 
 class LiveTake:
@@ -96,15 +62,15 @@ class LiveTake:
         elapsed = self._first_frames[-1].time - self._first_frames[0].time
         return min(elapsed / self._settings.calibration_s, 1.0)
 
-    def add(self, frames: Iterable[LiveFrame]) -> list[LiveMotion]:
-        """Reconstruct frames that arrived together, in their order.
+    def add(self, frames: Iterable[StreamFrame]) -> list[LiveMotion]:
+        """Reconstruct frames that arrived together, in their order; those of bones are left out.
 
         Raises
         ------
         InvalidMotionError
             The joints are not those of a body, or the actor was hardly observed.
         """
-        arrived = list(frames)
+        arrived = [frame for frame in frames if isinstance(frame, LiveFrame)]
         if self._started is None:
             self._calibrate(arrived)
             return []
@@ -146,7 +112,8 @@ class _StartedTake:
         for frame in _observed_frames(recording, recording.n_frames - n_warm_up):
             self._reconstructor.update(frame)
         self._pose = _complete_pose(self.calibration, self.calibration.n_frames - 1)
-        self._last, self._start, self._slot = last, last.time, 0
+        self._last = last
+        self._slots = TimeSlots(last.time, recording.frame_rate)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -163,13 +130,10 @@ class _StartedTake:
             return None
         if not _continues(self._last, frame):
             self._reconstructor = LiveReconstructor(actor)
-        if frame.time <= self._last.time:
-            self._start = frame.time - (self._slot + 1) / actor.frame_rate
-        slot = round((frame.time - self._start) * actor.frame_rate)
+        slot = self._slots.next(frame.time)
         self._last = frame
-        if slot <= self._slot:
+        if slot is None:
             return None
-        self._slot = slot
         observed = ObservedFrame(frame.positions, frame.states, frame.confidence)
         return LiveMotion(slot, *self._reconstruct(observed))
 
@@ -189,7 +153,7 @@ class _StartedTake:
 
 def _continues(last: LiveFrame, frame: LiveFrame) -> bool:
     """Return whether a frame shows the same body soon after the last one."""
-    return frame.body == last.body and 0.0 < frame.time - last.time <= MAX_GAP_S
+    return frame.body == last.body and is_continued(frame.time - last.time)
 
 
 def _observed_frames(recording: JointRecording, first: int) -> Iterable[ObservedFrame]:

@@ -1,0 +1,120 @@
+"""Listen to the stream of one sender: receive, recognize, decode, and report what comes."""
+
+from collections.abc import Callable, Sequence
+from ipaddress import IPv4Network
+from time import monotonic
+from typing import NamedTuple, Self
+
+from ..live import Receiver, StreamCounts, StreamFrame, StreamReader
+from .protocols import StreamDecoder, StreamProtocol
+
+MAX_USELESS_S = 3.0
+"""Seconds without a valid frame after which another sender is followed. It guards against
+programs that send something else to the port."""
+SILENCE_S = 1.0
+"""Seconds without a frame after which the stream is reported as silent. By definition those
+after which another sender is followed."""
+
+
+class ListenerState(NamedTuple):
+    """What is known of a stream; see `StreamListener`."""
+
+    sender: str
+    """Its address and port; empty before one came."""
+    protocol: StreamProtocol | None
+    rate: float
+    """Hertz."""
+    counts: StreamCounts
+    n_others: int
+    """Number of datagrams of other senders."""
+    other: str
+    """Address and port of the last other sender."""
+    n_refused: int
+    """Number of datagrams from addresses that are not allowed."""
+    is_silent: bool
+    """Whether frames came, but none in the last second."""
+
+
+class StreamListener:
+    """Receives the frames of one body of one sender, whatever comes.
+
+    Parameters
+    ----------
+    port : int
+    protocol : StreamProtocol
+    networks : sequence of IPv4Network
+        Networks that may send, next to this machine.
+    now : callable
+        Returns seconds.
+
+    Raises
+    ------
+    InvalidSettingError
+        The port is invalid or in use.
+    """
+
+    def __init__(
+        self,
+        port: int,
+        protocol: StreamProtocol = StreamProtocol.AUTO,
+        networks: Sequence[IPv4Network] = (),
+        *,
+        now: Callable[[], float] = monotonic,
+    ) -> None:
+        self.receiver = Receiver(port, networks, now=now)
+        self._now = now
+        self._decoder = StreamDecoder(protocol)
+        self._reader = StreamReader(self._decoder)
+        self._sender: tuple[str, int] | None = None
+        self._useful_at = now()
+        self._has_frames = False
+
+    @property
+    def counts(self) -> StreamCounts:
+        """Number of received frames, and why others were dropped."""
+        return self._reader.heard
+
+    @property
+    def state(self) -> ListenerState:
+        """What is known of the stream now."""
+        receiver = self.receiver
+        return ListenerState(
+            _text(receiver.sender),
+            self._decoder.protocol,
+            self._reader.rate,
+            self.counts,
+            receiver.n_others,
+            _text(receiver.other),
+            receiver.n_refused,
+            self._has_frames and self._now() - self._useful_at > SILENCE_S,
+        )
+
+    def poll(self) -> list[StreamFrame]:
+        """Return the frames that came since the last poll, in their order."""
+        datagrams = self.receiver.poll()
+        if not datagrams:
+            return []
+        now = self._now()
+        if self.receiver.sender != self._sender:
+            self._sender, self._useful_at = self.receiver.sender, now
+            self._decoder.restart()
+        frames = list(self._reader.read(*datagrams, arrived=now))
+        if frames:
+            self._useful_at, self._has_frames = now, True
+        elif now - self._useful_at > MAX_USELESS_S:
+            self.receiver.release()
+        return frames
+
+    def close(self) -> None:
+        """Close the socket; may be repeated."""
+        self.receiver.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _text(address: tuple[str, int] | None) -> str:
+    return "" if address is None else f"{address[0]}:{address[1]}"

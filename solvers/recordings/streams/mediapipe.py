@@ -1,0 +1,138 @@
+"""Landmarks of MediaPipe and FreeMoCap, a frame of JSON in each line.
+
+There is no standard: read is what the reader of files reads, 33 world landmarks of a body.
+"""
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import NoReturn
+
+import numpy as np
+
+from ...errors import InvalidFileError, InvalidMotionError
+from ...json_text import parse_json
+from ...motion import Sensor
+from ..conventions import from_azure_space
+from ..joint_files import (
+    LANDMARK_JOINTS,
+    MILLISECOND,
+    frame_landmarks,
+    frame_time,
+    is_world,
+    with_computed_joints,
+)
+from ..live import LiveFrame
+from .axes import checked_positions
+
+MAX_LINE_BYTES = 32_768
+"""Maximum size of a line in bytes; 33 landmarks take about 4,000."""
+N_LANDMARKS = 33
+MARKS = (b'andmark', b'"keypoints3D"')
+"""What the keys of landmarks have in common."""
+MAX_STEP_S = 2.0
+"""Step between two frames in seconds from which stamps are milliseconds. By definition that of
+the reader of files."""
+ROLE_OF_LANDMARK = {
+    "shoulder": "UpperArm", "elbow": "LowerArm", "wrist": "Hand", "pinky": "Hand",
+    "index": "Hand", "thumb": "Hand", "hip": "UpperLeg", "knee": "LowerLeg", "ankle": "Foot",
+    "heel": "Foot", "foot_index": "Toes",
+}  # fmt: skip
+"""Humanoid role of the joint at or next to a landmark of a side; those of the face are next to
+the head."""
+
+
+def is_mediapipe(packet: bytes) -> bool:
+    """Return whether a packet is of this protocol."""
+    return any(mark in packet for mark in MARKS)
+
+
+class MediaPipeDecoder:
+    """Decodes lines of JSON."""
+
+    max_parts = 128
+    """Number of lines to read at a time: four seconds."""
+
+    def __init__(self) -> None:
+        self._last_stamp = float("nan")
+        self._unit = 1.0
+
+    def parts(self, datagram: bytes) -> list[bytes]:
+        """Return the lines."""
+        return datagram.splitlines()
+
+    def decode(self, part: bytes, arrived: float) -> Iterator[LiveFrame]:
+        """Yield the frame of a line; none if it has no body.
+
+        Raises
+        ------
+        InvalidFileError, InvalidMotionError
+            The line is damaged, has image landmarks, or an invalid value.
+        """
+        if len(part) > MAX_LINE_BYTES:
+            raise InvalidMotionError(f"A frame of {len(part)} bytes is too long.")
+        try:
+            fields = parse_json(part, parse_constant=_refuse)
+        except ValueError:
+            raise InvalidMotionError("A frame is not readable as JSON.") from None
+        landmarks = frame_landmarks(fields, "A frame")
+        if landmarks is None:
+            return
+        points = landmarks[None, :, :3]
+        if not is_world(points):
+            raise InvalidFileError(
+                "A frame has image landmarks, without true depth. Send MediaPipe's"
+                " pose_world_landmarks."
+            )
+        visibility = np.nan_to_num(np.clip(landmarks[None, :, 3], 0.0, 1.0), nan=1.0)
+        yield LiveFrame(
+            self._seconds(frame_time(fields, "A frame"), arrived),
+            0,
+            LANDMARK_JOINTS,
+            with_computed_joints(from_azure_space(checked_positions(points)))[0],
+            with_computed_joints(visibility)[0],
+            None,
+            Sensor.MEDIAPIPE,
+        )
+
+    def _seconds(self, stamp: float, arrived: float) -> float:
+        """Return a time stamp in seconds; that of arrival where there is none."""
+        if not np.isfinite(stamp):
+            return arrived
+        if stamp - self._last_stamp > MAX_STEP_S and self._last_stamp > 0.0:
+            self._unit = MILLISECOND
+        self._last_stamp = stamp
+        return self._unit * stamp
+
+
+def encode_mediapipe(frame: LiveFrame, roles: Mapping[str, int]) -> bytes:
+    """Return a line of JSON, whose landmarks are the joints, or those next to them.
+
+    Parameters
+    ----------
+    frame : LiveFrame
+    roles : mapping of humanoid roles to joints
+        With both upper legs.
+    """
+    hips = [frame.positions[roles[f"{side}UpperLeg"]] for side in ("left", "right")]
+    center = np.mean(hips, axis=0)
+    landmarks = []
+    for name in LANDMARK_JOINTS[:N_LANDMARKS]:
+        joint = roles.get(_role(name))
+        point = np.full(3, np.nan) if joint is None else frame.positions[joint] - center
+        is_visible = joint is not None and np.isfinite(point).all()
+        x, y, z = np.nan_to_num(point).round(5).tolist()
+        visibility = float(frame.confidence[joint]) if is_visible else 0.0
+        landmarks.append({"x": x, "y": -z, "z": y, "visibility": round(visibility, 4)})
+    fields = {"timestamp": round(frame.time, 6), "pose_world_landmarks": landmarks}
+    return json.dumps(fields, separators=(",", ":"), allow_nan=False).encode() + b"\n"
+
+
+def _role(landmark: str) -> str:
+    side, _, part = landmark.partition("_")
+    role = ROLE_OF_LANDMARK.get(part)
+    return f"{side}{role}" if role else "head"
+
+
+def _refuse(word: str) -> NoReturn:
+    """Refuse NaN and Infinity, which are not JSON."""
+    raise ValueError(word)

@@ -1,0 +1,109 @@
+"""Take a live stream of posed skeletons as it is, frame after frame."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ...errors import InvalidFileError, InvalidMotionError
+from ...motion import Motion, find_humanoid_map
+from ...motion.humanoid import ESSENTIAL_ROLES
+from ...recordings.live import PoseFrame, StreamFrame, measured_rate, motion_from_poses
+from .live_motion import LiveMotion, LiveTakeSettings
+from .time_slots import TimeSlots, is_continued
+
+MAX_WAITING = 12
+"""Number of frames that may wait to be taken; older ones are skipped. It bounds the delay when
+frames arrive faster than they are taken: a tenth of a second."""
+MAX_FIRST_FRAMES = 8192
+"""Number of frames of the calibration that are kept. It bounds the memory of the fastest
+streams."""
+
+
+class PoseTake:
+    """Measures a skeleton in the first seconds of a stream, and then takes each frame.
+
+    Parameters
+    ----------
+    settings : LiveTakeSettings
+    """
+
+    names: tuple[str, ...] = ()
+    """None: a stream of rotations says nothing of confidence."""
+
+    def __init__(self, settings: LiveTakeSettings = LiveTakeSettings()) -> None:
+        self._settings = settings
+        self._first_frames: list[PoseFrame] = []
+        self._slots: TimeSlots | None = None
+        self.calibration: Motion | None = None
+        """The motion in which the skeleton was measured; None as long as that lasts."""
+        self.n_skipped = 0
+        """Number of frames that came faster than they were taken."""
+        self.n_other_bones = 0
+        """Number of frames whose bones are not those of the calibration."""
+
+    @property
+    def calibrated_fraction(self) -> float:
+        """Fraction of the calibration that is done, 0 to 1."""
+        if self.calibration is not None or not self._first_frames:
+            return float(self.calibration is not None)
+        elapsed = self._first_frames[-1].time - self._first_frames[0].time
+        return min(elapsed / self._settings.calibration_s, 1.0)
+
+    def add(self, frames: Iterable[StreamFrame]) -> list[LiveMotion]:
+        """Take frames that arrived together, in their order; those of joints are left out.
+
+        Raises
+        ------
+        InvalidMotionError
+            The bones are not those of a body.
+        """
+        arrived = [frame for frame in frames if isinstance(frame, PoseFrame)]
+        if self.calibration is None:
+            self._calibrate(arrived)
+            return []
+        self.n_skipped += max(len(arrived) - MAX_WAITING, 0)
+        poses = [self._take(frame) for frame in arrived[-MAX_WAITING:]]
+        return [pose for pose in poses if pose is not None]
+
+    def _calibrate(self, frames: list[PoseFrame]) -> None:
+        for frame in frames:
+            last = self._first_frames[-1] if self._first_frames else frame
+            is_same = frame.body == last.body and frame.skeleton is last.skeleton
+            if last is not frame and not (is_same and is_continued(frame.time - last.time)):
+                self._first_frames.clear()
+            self._first_frames.append(frame)
+        del self._first_frames[:-MAX_FIRST_FRAMES]
+        if self.calibrated_fraction < 1.0:
+            return
+        try:
+            rate = measured_rate(self._first_frames)
+        except InvalidFileError:  # the clock of the sender stands still
+            self._first_frames.clear()
+            return
+        calibration = motion_from_poses(self._first_frames, rate)
+        roles = find_humanoid_map(calibration.skeleton)
+        if missing := [role for role in ESSENTIAL_ROLES if role not in roles.joints]:
+            raise InvalidMotionError(
+                f"The stream has no bones for {', '.join(missing[:4])}. Send the complete body."
+            )
+        self._slots = TimeSlots(self._first_frames[-1].time, rate)
+        self.calibration = calibration
+        self._first_frames.clear()
+
+    def _take(self, frame: PoseFrame) -> LiveMotion | None:
+        """Return the pose of a frame; None if it has other bones, or shares its time slot."""
+        assert self.calibration is not None and self._slots is not None
+        skeleton = self.calibration.skeleton
+        if frame.names != skeleton.names:
+            self.n_other_bones += 1
+            return None
+        slot = self._slots.next(frame.time)
+        if slot is None:
+            return None
+        motion = Motion(
+            skeleton,
+            np.array(frame.rotations[None]),
+            np.array(frame.root_position[None]),
+            self.calibration.frame_rate,
+        )
+        return LiveMotion(slot, motion, None)
