@@ -6,6 +6,7 @@ from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.languages import translated
 from ..mocap_assist.live.live_take import (
     ESC_ENDS,
+    LOOK_INTERVAL_S,
     NO_DURATION,
     LiveBundle,
     keep_on_esc,
@@ -26,6 +27,7 @@ class MOCAP_OT_record_live(WatchedOperator, bpy.types.Operator):
         "Let the armature follow the joints that a tracker streams, and record them; Esc ends"
     )
     settings_group = "live"
+    look_interval_s = LOOK_INTERVAL_S
     selected, why_not = selected_armature, why_not_record
     read_scene, write_scene = read_live, write_live
     open_view, rescue = watch_live, keep_on_esc

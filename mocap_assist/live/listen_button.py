@@ -5,10 +5,12 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.errors import MocapAssistError
+from ...solvers.recordings.streams import StreamProtocol
 from ..blender.mixins import OperatorMixin
 from ..languages import translated
 from ..panels.preference_values import preferred
 from . import listening
+from .stream_preferences import allowed_addresses
 
 NO_WINDOW = "Listening needs Blender's window."
 
@@ -34,6 +36,8 @@ class ListenButton(OperatorMixin):
             self._listening = listening.Listening(
                 context,
                 preferred("live_port"),
+                StreamProtocol[context.scene.mocap_assist.live.live_protocol],
+                allowed_addresses(),
                 tuple(preferred("clean_color")),
                 preferred("line_width"),
             )

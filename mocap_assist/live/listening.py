@@ -7,13 +7,15 @@ import bpy
 from bpy.app import handlers
 
 from ...solvers.gestures import Mode
-from ...solvers.recordings.live import Receiver, StreamCounts
-from ...solvers.workflows import LiveSession
+from ...solvers.recordings.live import allowed_networks
+from ...solvers.recordings.streams import ListenerState, StreamListener, StreamProtocol
+from ...solvers.workflows import LiveSession, SessionUpdate
 from ..drawing.live_figure import LiveFigure
 from ..drawing.overlay_drawing import Color
 from ..drawing.view_drawing import redraw
 from ..languages import translated
 from .commands import obey_all, search_for
+from .stream_state import issue_text
 
 logger = logging.getLogger(__name__)
 
@@ -39,11 +41,18 @@ class Listening:
     """
 
     def __init__(
-        self, context: bpy.types.Context, port: int, color: Color, width: float
+        self,
+        context: bpy.types.Context,
+        port: int,
+        protocol: StreamProtocol,
+        allowed: str,
+        color: Color,
+        width: float,
     ) -> None:
-        self.receiver = Receiver(port)
+        self.listener = StreamListener(port, protocol, allowed_networks(allowed))
         self.session = LiveSession()
         self.message = ""
+        self._shown_texts: list[str] = []
         self.figure = LiveFigure(color, width)
         manager = context.window_manager
         self._timer = manager.event_timer_add(TIMER_INTERVAL_S, window=context.window)
@@ -56,45 +65,52 @@ class Listening:
         return self in _on
 
     @property
-    def counts(self) -> StreamCounts:
-        """Return a text with the numbers of received and dropped frames."""
-        return self.session.counts
+    def heard(self) -> ListenerState:
+        """What is known of the stream."""
+        return self.listener.state
 
     def state(self) -> str:
         """Return the available commands in a few words."""
-        return MODES[self.session.mode] if self.counts.frames else WAITING
+        return MODES[self.session.mode] if self.heard.counts.frames else WAITING
 
     def poll(self, context: bpy.types.Context) -> None:
         """Receive new frames, execute their commands, and show the result."""
-        came = self.receiver.poll()
-        if not came:
-            return
-        news = self.session.receive(came)
+        frames = self.listener.poll()
+        if frames:
+            self._perform(context, self.session.add(frames))
+        if frames or self._texts() != self._shown_texts:
+            self._show(context)
+
+    def _perform(self, context: bpy.types.Context, news: SessionUpdate) -> None:
+        """Show the actor, and execute the commands of gestures."""
         if news.frame is not None:
             self.figure.show(news.frame)
         message = obey_all(context, news.events)
         if news.query is not None:
             message = search_for(context, news.query)
         self.message = news.message or message or self.message
-        self._show(context)
 
     def end(self, context: bpy.types.Context) -> None:
         """Stop listening; a second call has no effect."""
         if not self.is_on:
             return
         _on.remove(self)
-        self.receiver.close()
+        counts = self.listener.counts
+        self.listener.close()
         self.figure.remove()
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
-        logger.info(
-            "Listened to %d frames, dropped %d", self.counts.frames, self.counts.dropped
-        )
+        logger.info("Listened to %d frames, dropped %d", counts.frames, counts.dropped)
         redraw(context, "VIEW_3D")
 
+    def _texts(self) -> list[str]:
+        """Return what the status bar shows."""
+        texts = (self.message, self.state(), issue_text(self.heard))
+        return [text for text in texts if text]
+
     def _show(self, context: bpy.types.Context) -> None:
-        texts = [self.message] * bool(self.message) + [self.state()]
-        shown = [*map(translated, texts), translated("Esc: stop listening")]
+        self._shown_texts = self._texts()
+        shown = [*map(translated, self._shown_texts), translated("Esc: stop listening")]
         context.workspace.status_text_set("   ".join(shown))
         redraw(context, "VIEW_3D")
 

@@ -8,7 +8,7 @@ import bpy
 from mathutils import Matrix, Quaternion
 
 from ...solvers.errors import InvalidMotionError
-from ...solvers.recordings.live import PORT
+from ...solvers.recordings.streams import StreamProtocol
 from ...solvers.settings import Settings, setting
 from ...solvers.version import version
 from ...solvers.workflows import LiveTakeSettings
@@ -18,18 +18,22 @@ from ..actions.reliability_curves import write_reliability
 from ..blender import compat
 from ..blender.block_references import BlockReference
 from ..blender.stored_json import store_json
+from ..drawing.view_drawing import redraw
 from ..jobs.protocol import PreviewSolve
-from ..panels.preference_values import preferences, preferred
 from ..rigs.control_plan import Limbs
 from ..rigs.target_read import find_roles, read_target
 from ..runtime.selection import selected_armature
 from ..scene import history
 from ..scene.controls import BoneKeys
 from ..scene.scene_rate import scene_rate
+from .stream_preferences import allowed_addresses, live_port
 from .solve_live_take import LiveBones, LiveProblem, RecordedTake, record_live, recorded_take
 
 NO_DURATION = "Set the duration of the recording: scripts and repeated presses have no Esc."
 ESC_ENDS = "Esc ends the recording"
+LOOK_INTERVAL_S = 1.0 / 120.0
+"""Seconds between two looks at the poses that were solved. It bounds the delay of the rig; a
+shorter one takes more of Blender's time."""
 RECORDED_LIVE = "mocap_assist_recorded_live"
 """Custom property of the action: its origin as JSON. Clean treats it as raw."""
 
@@ -42,6 +46,9 @@ class LiveChoices(Settings):
         0.0, "Time to record after the actor was measured; 0 records until Esc", unit="s",
         minimum=0.0, maximum=3600.0,
     )  # fmt: skip
+    live_protocol: StreamProtocol = setting(
+        StreamProtocol.AUTO, "Protocol of the tracker that streams", label="Protocol"
+    )
     live_limbs: Limbs = setting(
         Limbs.FK,
         "Controls of arms and legs to key, where the rig has FK and IK",
@@ -70,9 +77,15 @@ def read_live(
     choices = settings.choices
     check_writable(armature)
     rig, _ = read_target(scene, armature, find_roles(armature), choices.live_limbs, False)
-    port = preferred("live_port") if preferences() is not None else PORT
-    first_frame = scene.frame_current_final
-    problem = LiveProblem(port, rig, settings.taking, choices.duration, first_frame)
+    problem = LiveProblem(
+        live_port(),
+        choices.live_protocol,
+        allowed_addresses(),
+        rig,
+        settings.taking,
+        choices.duration,
+        scene.frame_current_final,
+    )
     return PreviewSolve(record_live, problem)
 
 
@@ -147,6 +160,7 @@ class LivePoses:
         for name, channels in newest.keys(self._bones).items():
             _pose(target.pose.bones[name], channels)
         target.update_tag()
+        redraw(bpy.context, "VIEW_3D")
 
     def close(self) -> None:
         """Give the rig its former pose."""

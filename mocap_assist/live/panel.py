@@ -10,13 +10,14 @@ from ..panels.preference_values import preferences
 from ..panels.visibility import shows_take
 from ..runtime.selection import selected_armature
 from .listening import current
+from .stream_state import issue_text, sender_text
 
 LISTEN = "mocap_assist.listen"
 RECORD = "mocap_assist.record_live"
 
 
 class PerformPanel(PanelMixin):
-    """The buttons Listen and Record Live, the port, and what was received."""
+    """The buttons Listen and Record Live, the port, and what is heard."""
 
     bl_label = "Perform"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}
@@ -33,6 +34,7 @@ class PerformPanel(PanelMixin):
             layout.operator(LISTEN, icon="OUTLINER_OB_ARMATURE")
             if preferences() is not None:
                 layout.prop(preferences(), "live_port")
+            layout.prop(context.scene.mocap_assist.live, "live_protocol")
             if exists(RECORD) and selected_armature(context) is not None:
                 column = settings_column(layout, context, "live")
                 live = context.scene.mocap_assist.live
@@ -44,7 +46,8 @@ class PerformPanel(PanelMixin):
         draw_sentence(layout, context, listening.state())
         if listening.message:
             draw_sentence(layout, context, listening.message, icon="INFO")
-        counts = listening.counts
-        draw_sentence(layout, context, f"{counts.frames} frames, {counts.dropped} dropped")
-        if counts.why:
-            draw_sentence(layout, context, counts.why, icon="ERROR")
+        stream = listening.heard
+        if sender := sender_text(stream):
+            draw_sentence(layout, context, sender)
+        if issue := issue_text(stream):
+            draw_sentence(layout, context, issue, icon="ERROR")

@@ -11,10 +11,12 @@ from ...solvers.arrays import Array, Single
 from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion import HumanoidMap, Motion, find_humanoid_map, forward_kinematics
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings.live import Receiver, StreamReader
+from ...solvers.recordings.live import PoseFrame, StreamFrame, allowed_networks
+from ...solvers.recordings.streams import ListenerState, StreamListener, StreamProtocol
 from ...solvers.retargeting import LiveRetargeting, RetargetSettings
 from ...solvers.rotations import IDENTITY
-from ...solvers.workflows import LiveMotion, LiveTake, LiveTakeSettings
+from ...solvers.workflows import LiveMotion, LiveTake, LiveTakeSettings, PoseTake
+from .stream_state import state_text
 from ..scene.controls import BoneKeys, Carried, TargetRig, keys_of
 from ..track.pose_previews import Show, no_preview
 
@@ -30,6 +32,9 @@ class LiveProblem:
     """All that Record Live depends on."""
 
     port: int
+    protocol: StreamProtocol
+    allowed: str
+    """Addresses of other machines that may send; empty: none."""
     target: TargetRig
     settings: LiveTakeSettings
     duration_s: float
@@ -115,32 +120,37 @@ def record_live(
 
 
 def _record(problem: LiveProblem, progress: Progress, keep: Show) -> None:
-    take, stream = LiveTake(problem.settings), StreamReader()
+    take: LiveTake | PoseTake | None = None
     rig: _LiveRig | None = None
     n_frames, last_pose = 0, monotonic()
-    with Receiver(problem.port) as receiver:
+    networks = allowed_networks(problem.allowed)
+    with StreamListener(problem.port, problem.protocol, networks) as listener:
         while not problem.duration_s or n_frames < problem.duration_s * (
             rig.frame_rate if rig else np.inf
         ):
-            frames = list(stream.read(*receiver.poll()))
-            progress(*_state(take, stream.counts.frames))
-            poses = take.add(frames)
-            if take.calibration is not None and rig is None:
+            frames = listener.poll()
+            if take is None and frames:
+                take = _take_for(frames[0], problem.settings)
+            poses = take.add(frames) if take else []
+            progress(*_state(take, listener.state))
+            if take and take.calibration is not None and rig is None:
                 rig = _LiveRig(problem, take.calibration, take.names)
                 keep(rig.bones)
-            if rig is not None:
+            if take and rig:
                 for pose in poses:
                     keep(rig.keys(pose, take.n_skipped))
                     n_frames = pose.frame
-            if poses or (rig is None and take.calibrated_fraction > 0.0 and frames):
+            if poses or (rig is None and take and take.calibrated_fraction > 0.0 and frames):
                 last_pose = monotonic()
             elif problem.duration_s and monotonic() - last_pose > MAX_SILENCE_S:
-                raise InvalidMotionError(
-                    f"No actor was seen on port {problem.port} for {MAX_SILENCE_S:.0f} seconds."
-                    " Start the tracker, and check the port."
-                )
+                raise InvalidMotionError(_silence_text(problem.port, listener.state))
             if not frames:
                 sleep(POLL_INTERVAL_S)
+
+
+def _take_for(frame: StreamFrame, settings: LiveTakeSettings) -> LiveTake | PoseTake:
+    """Return what takes a stream of such frames."""
+    return PoseTake(settings) if isinstance(frame, PoseFrame) else LiveTake(settings)
 
 
 def recorded_take(previews: Iterable[Any]) -> RecordedTake:
@@ -207,8 +217,13 @@ class _LiveRig:
             n_skipped,
             np.array(rotations, dtype=np.float32).reshape(-1, 4),
             np.array(locations, dtype=np.float32).reshape(-1, 3),
-            live.joints.confidence[list(self._sources.values())].astype(np.float32),
+            self._confidence(live),
         )
+
+    def _confidence(self, live: LiveMotion) -> Single:
+        if live.joints is None:
+            return np.zeros(0, dtype=np.float32)
+        return live.joints.confidence[list(self._sources.values())].astype(np.float32)
 
 
 def _sources(target: TargetRig, roles: HumanoidMap, names: tuple[str, ...]) -> dict[str, int]:
@@ -227,10 +242,22 @@ def _moved(motion: Motion, offset: Array) -> Motion:
     return motion.with_poses(motion.rotations, motion.root_positions + offset)
 
 
-def _state(take: LiveTake, n_frames: int) -> tuple[float, str]:
+def _state(take: LiveTake | PoseTake | None, state: ListenerState) -> tuple[float, str]:
     """Return fraction and message of the progress."""
-    if not n_frames:
-        return 0.0, "Waiting for the tracker"
+    if take is None:
+        return 0.0, state_text("Waiting for the tracker", state)
     if take.calibration is None:
-        return take.calibrated_fraction, "Measuring the actor: move arms and legs"
-    return 1.0, "Recording"
+        return take.calibrated_fraction, state_text(
+            "Measuring the actor: move arms and legs", state
+        )
+    return 1.0, state_text("Recording", state)
+
+
+def _silence_text(port: int, state: ListenerState) -> str:
+    """Return why nothing was recorded for a while."""
+    if state.counts.why and not state.counts.frames:
+        return state.counts.why
+    return (
+        f"No actor was seen on port {port} for {MAX_SILENCE_S:.0f} seconds."
+        " Start the tracker, and check the port."
+    )

@@ -20,7 +20,7 @@ from .navigation import is_in_status_bar, may_pass
 from .redo import fingerprint
 from .selection import selected_subject
 from .subject import Subject
-from .watch import Watch, why_busy
+from .watch import TIMER_INTERVAL_S, Watch, why_busy
 
 logger = logging.getLogger(__name__)
 
@@ -48,6 +48,8 @@ class SolverOperator(SettingsMixin):
     _is_solving = False
     settings_group: ClassVar[str]
     """Property of `scene.mocap_assist` with the settings of the sidebar."""
+    look_interval_s: ClassVar[float] = TIMER_INTERVAL_S
+    """Seconds between two looks at the solve, and its previews."""
     selected: ClassVar[Callable[..., bpy.types.Object | None]] = selected_subject
     """Return the subject of the button from the context."""
     why_not: ClassVar[Callable[[bpy.types.Context], str]]
@@ -104,7 +106,9 @@ class SolverOperator(SettingsMixin):
         except BaseException as error:
             note_press(self, error)
             raise
-        self._watch = Watch(context, self.settings_group, self._acts.close)
+        self._watch = Watch(
+            context, self.settings_group, self._acts.close, type(self).look_interval_s
+        )
         self._watch.show(context, *progress)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}

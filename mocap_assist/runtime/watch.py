@@ -10,6 +10,7 @@ from ..languages import translated
 from .file_change_handlers import ends_with_file
 
 TIMER_INTERVAL_S = 0.05
+"""Seconds between two looks at a solve, and between two displays of its progress."""
 CANCEL = "mocap_assist.cancel_solve"
 MIN_FRACTION = 0.05
 """Fraction of a solve from which the time left is shown. It guards estimates from a few
@@ -35,18 +36,26 @@ class Watch:
         Name of the panel that shows the progress too.
     stop : callable
         Discards the work before another file is loaded.
+    interval_s : float, seconds
+        Between two looks at the solve. The progress is displayed less often.
     """
 
     def __init__(
-        self, context: bpy.types.Context, owner: str, stop: Callable[[], None]
+        self,
+        context: bpy.types.Context,
+        owner: str,
+        stop: Callable[[], None],
+        interval_s: float = TIMER_INTERVAL_S,
     ) -> None:
         self._stop = stop
         self._began = monotonic()
+        self._shown_at = float("-inf")
+        self._display_s = TIMER_INTERVAL_S if interval_s < TIMER_INTERVAL_S else 0.0
         self.is_cancelled = False
         self.ending = "Esc cancels"
         manager = context.window_manager
         manager.mocap_assist_job.owner = owner
-        self._timer = manager.event_timer_add(TIMER_INTERVAL_S, window=context.window)
+        self._timer = manager.event_timer_add(interval_s, window=context.window)
         _on.append(self)
 
     @property
@@ -55,7 +64,10 @@ class Watch:
         return self in _on
 
     def show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
-        """Show the progress."""
+        """Show the progress; a solve that is looked at often is shown less often."""
+        if monotonic() - self._shown_at < self._display_s:
+            return
+        self._shown_at = monotonic()
         state = context.window_manager.mocap_assist_job
         if not state.running or fraction < state.fraction:  # a new phase, or take
             self._began = monotonic()

@@ -12,10 +12,14 @@ from ..check.raw_key import draw_keys
 from ..drawing import overlay_drawing
 from ..languages import translated
 from ..library.auto_update_list import auto_updated_libraries, stop_keeping
+from ..panels.drawing import draw_sentence
 from ..panels.manual_page import start_page
 from ..panels.preference_values import EXTENSION, preferences, preferred
 from .diagnostics import COPY
 
+NETWORK_WARNING = (
+    "Whoever sends from an allowed address moves your rig. Use it in a network that you know."
+)
 STOP = "mocap_assist.stop_keeping"
 
 
@@ -62,6 +66,16 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         min=1024,
         max=65535,
     )
+    live_network: bpy.props.BoolProperty(
+        name="Receive from Other Machines",
+        description="Receive live streams from the allowed addresses, not only from this machine",
+        default=False,
+    )
+    live_addresses: bpy.props.StringProperty(
+        name="Allowed Addresses",
+        description="IPv4 addresses or networks of your trackers, with commas between",
+        default="",
+    )
     keep_solver_ready: bpy.props.BoolProperty(
         name="Keep Solver Ready",
         description="Start the next solver ahead, so that a press answers faster (0.13 GB)",
@@ -101,8 +115,9 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("tab", "result_as", "show_research", "live_port", "keep_solver_ready"):
+        for name in ("tab", "result_as", "show_research", "keep_solver_ready", "live_port"):
             layout.prop(self, name)
+        _draw_network(layout, context, self)
         overlay = layout.column(heading="Overlay")
         for name in ("raw_color", "clean_color", "line_width"):
             overlay.prop(self, name)
@@ -117,6 +132,16 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         row.operator("mocap_assist.reset_preferences", icon="LOOP_BACK")
         row.operator(COPY, icon="COPYDOWN")
         _draw_kept(layout)
+
+
+def _draw_network(
+    layout: bpy.types.UILayout, context: bpy.types.Context, ours: MOCAP_AP_preferences
+) -> None:
+    """Draw who may send live streams, with a warning."""
+    layout.prop(ours, "live_network")
+    if ours.live_network:
+        layout.prop(ours, "live_addresses")
+        draw_sentence(layout, context, NETWORK_WARNING, icon="ERROR")
 
 
 def _draw_kept(layout: bpy.types.UILayout) -> None:

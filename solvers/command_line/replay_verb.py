@@ -1,17 +1,15 @@
 """`replay`: send a recording as a live stream, like the tracker of a camera."""
 
 import argparse
-import itertools
 import socket
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator
 
-from ..errors import InvalidMotionError, InvalidSettingError
-from ..motion import SENSOR_JOINTS, JointRecording, Motion, Sensor, Tracks
-from ..motion.humanoid import postures_from_motion
+from ..errors import InvalidSettingError
+from ..motion import JointRecording, Motion, Tracks, resample
 from ..progress import Progress, within
-from ..recordings.live import MAX_JOINTS, PORT, LiveFrame, encode_frame, frames_from_recording
+from ..recordings.live import PORT
+from ..recordings.streams import Packets, StreamProtocol, encode_recording
 from .files import add_reading_options, read_recorded
 from .verb_description import Outcome, Task
 
@@ -23,6 +21,15 @@ MAX_PORT = 65535
 def add_replay_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `replay`."""
     add_reading_options(parser)
+    protocols = [each.value for each in StreamProtocol if each is not StreamProtocol.AUTO]
+    parser.add_argument(
+        "--as", dest="protocol", choices=protocols, default=StreamProtocol.JSON.value,
+        help="Protocol of the stream [default json]",
+    )  # fmt: skip
+    parser.add_argument(
+        "--rate", type=float, metavar="HZ",
+        help="Frames per second of the stream [default: that of the recording]",
+    )  # fmt: skip
     parser.add_argument(
         "--port", type=int, default=PORT, metavar="N",
         help=f"UDP port of this machine to send to [1 to {MAX_PORT}, default {PORT}]",
@@ -46,62 +53,55 @@ def perform_replay(task: Task, prepared: None, progress: Progress) -> Outcome:
             f"speed is {arguments.speed:g}; it must be above 0 and at most {MAX_SPEED:g}."
         )
     recording = read_recorded(task.source, arguments, within(progress, 0.0, 0.1))
-    joints = _joints(recording)
-    if joints.n_joints > MAX_JOINTS:
-        raise InvalidMotionError(
-            f"{task.source} has {joints.n_joints} points; a live stream has at most"
-            f" {MAX_JOINTS}. Choose a recording of joints or of a skeleton."
-        )
-    frames = loop_frames(joints) if arguments.loop else frames_from_recording(joints)
+    if arguments.rate is not None:
+        recording = _resampled(recording, arguments.rate)
+    packets = encode_recording(
+        recording, StreamProtocol(arguments.protocol), is_repeated=arguments.loop
+    )
     report = within(progress, 0.1, 1.0)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         sender.connect((LOOPBACK, arguments.port))
         sent = 0
-        for line in pace_frames(frames, arguments.speed):
-            send(sender, line)
+        for datagrams in pace_packets(packets, arguments.speed):
+            for datagram in datagrams:
+                send(sender, datagram)
             sent += 1
-            report(sent % joints.n_frames / joints.n_frames, "Sending")
-    message = f"Sent {sent} frames at {joints.frame_rate:g} Hz to {LOOPBACK}:{arguments.port}."
+            report(sent % recording.n_frames / recording.n_frames, "Sending")
+    message = (
+        f"Sent {sent} frames as {arguments.protocol} at {recording.frame_rate:g} Hz to"
+        f" {LOOPBACK}:{arguments.port}."
+    )
     return Outcome(message, {"n_frames": sent, "port": arguments.port})
 
 
-def loop_frames(recording: JointRecording) -> Iterator[LiveFrame]:
-    """Yield the frames of a recording in an endless loop, with increasing time."""
-    duration = recording.n_frames / recording.frame_rate
-    for cycle in itertools.count():
-        for frame in frames_from_recording(recording):
-            yield replace(frame, time=frame.time + cycle * duration)
+def _resampled(
+    recording: Motion | Tracks | JointRecording, frame_rate: float
+) -> Motion | Tracks | JointRecording:
+    """Return a recording at another rate; joints of sensors lose their tracking states."""
+    if isinstance(recording, JointRecording):
+        tracks = resample(recording.tracks, frame_rate)
+        return JointRecording(tracks, None, recording.sensor)
+    return resample(recording, frame_rate)
 
 
-def pace_frames(
-    frames: Iterator[LiveFrame],
+def pace_packets(
+    packets: Iterable[Packets],
     speed: float,
     now: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], None] = time.sleep,
-) -> Iterator[bytes]:
-    """Yield the line of each frame when it is due, without drift."""
+) -> Iterator[list[bytes]]:
+    """Yield the datagrams of each frame when it is due, without drift."""
     start = now()
-    for frame in frames:
+    for frame in packets:
         delay = start + frame.time / speed - now()
         if delay > 0.0:
             sleep(delay)
-        yield encode_frame(frame)
+        yield frame.datagrams
 
 
-def send(sender: socket.socket, line: bytes) -> None:
-    """Send one line; without a receiver it is dropped, as with a camera."""
+def send(sender: socket.socket, datagram: bytes) -> None:
+    """Send a datagram; without a receiver it is dropped, as with a camera."""
     try:
-        sender.send(line)
+        sender.send(datagram)
     except ConnectionRefusedError:
         return
-
-
-def _joints(recording: Motion | Tracks | JointRecording) -> JointRecording:
-    """Return the joints of any recording; of a skeleton, those that the Kinect v1 tracks."""
-    if isinstance(recording, JointRecording):
-        return recording
-    if isinstance(recording, Tracks):
-        return JointRecording(recording, None, Sensor.OTHER)
-    names = SENSOR_JOINTS[Sensor.KINECT_V1]
-    tracks = Tracks(names, postures_from_motion(recording), recording.frame_rate)
-    return JointRecording(tracks, None, Sensor.KINECT_V1)

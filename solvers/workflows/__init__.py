@@ -16,7 +16,14 @@ from .fix_report import (
 )
 from .fix_take import FixedTake, FixSettings, fix_take
 from .index_files import IndexReport, index_files
-from .live import LiveMotion, LiveSession, LiveTake, LiveTakeSettings, PoseTake
+from .live import (
+    LiveMotion,
+    LiveSession,
+    LiveTake,
+    LiveTakeSettings,
+    PoseTake,
+    SessionUpdate,
+)
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
 from .postures_from_clips import posture_library_from_clips
@@ -49,6 +56,7 @@ __all__ = [
     "PoseTake",
     "RebuiltMotion",
     "ReconstructedMotion",
+    "SessionUpdate",
     "TakeFigures",
     "TakeOrigin",
     "Variants",

@@ -9,7 +9,7 @@ from .frames import (
     frames_from_recording,
 )
 from .pose_frames import PoseFrame, joints_from_pose, measured_rate, motion_from_poses
-from .receiver import LOOPBACK, Receiver
+from .receiver import LOOPBACK, Receiver, allowed_networks
 from .stream import (
     FrameDecoder,
     JointLines,
@@ -32,6 +32,7 @@ __all__ = [
     "StreamCounts",
     "StreamFrame",
     "StreamReader",
+    "allowed_networks",
     "encode_frame",
     "frames_from_recording",
     "joints_from_pose",

@@ -1,14 +1,17 @@
 """Encode a recording as the packets of a protocol, frame by frame."""
 
-from collections.abc import Callable, Iterator
+import itertools
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import SENSOR_JOINTS, JointRecording, Motion, Sensor, Tracks, forward_kinematics
 from ...motion.humanoid import posture_joint_indices, postures_from_motion
-from ..live import MAX_JOINTS, PoseFrame, encode_frame, frames_from_recording
-from .layouts import MOCOPI, XSENS, humanoid_layout, motion_in_layout
+from ..live import MAX_JOINTS, LiveFrame, PoseFrame, encode_frame, frames_from_recording
+from .layouts import MOCOPI, XSENS, Layout, humanoid_layout, motion_in_layout
 from .mediapipe import encode_mediapipe
 from .mocopi import encode_frame_packet, encode_skeleton_packet
 from .protocols import StreamProtocol
@@ -19,6 +22,8 @@ from .xsens import encode_xsens
 
 N_SKELETON_FRAMES = 60
 """Number of frames from one skeleton of mocopi to the next: a receiver may start late."""
+Encode = Callable[[int, float], list[bytes]]
+"""Returns the packets of a frame, by its number and time."""
 
 
 class Packets(NamedTuple):
@@ -30,11 +35,15 @@ class Packets(NamedTuple):
 
 
 def encode_recording(
-    recording: Motion | Tracks | JointRecording, protocol: StreamProtocol
+    recording: Motion | Tracks | JointRecording,
+    protocol: StreamProtocol,
+    *,
+    is_repeated: bool = False,
 ) -> Iterator[Packets]:
     """Yield the packets of each frame, as a tracker would send them, starting at time 0.
 
-    Protocols of bones need a motion; those of joints take any recording of a body.
+    Protocols of bones need a motion; those of joints take any recording of a body. A repeated
+    recording has no end, and its time goes on.
 
     Raises
     ------
@@ -47,11 +56,19 @@ def encode_recording(
                 f"{protocol.label} streams rotations of bones, and the recording has points."
                 " Reconstruct it first, or replay it as json or mediapipe."
             )
-        return ENCODERS[protocol](recording)
+        motion = motion_in_layout(recording, LAYOUTS[protocol])
+        encode = ENCODERS[protocol](motion)
+        return _paced(motion.n_frames, motion.dt, is_repeated, encode)
     joints = joints_of(recording)
-    if protocol is StreamProtocol.MEDIAPIPE:
-        return _mediapipe(joints)
-    return (Packets(frame.time, [encode_frame(frame)]) for frame in frames_from_recording(joints))
+    frames = list(frames_from_recording(joints))
+    encode = _mediapipe(frames) if protocol is StreamProtocol.MEDIAPIPE else _json(frames)
+    return _paced(len(frames), joints.tracks.dt, is_repeated, encode)
+
+
+def _paced(n_frames: int, dt: float, is_repeated: bool, encode: Encode) -> Iterator[Packets]:
+    """Yield the packets of frames, which repeat if wanted."""
+    for number in itertools.count() if is_repeated else range(n_frames):
+        yield Packets(number * dt, encode(number % n_frames, number * dt))
 
 
 def joints_of(recording: Motion | Tracks | JointRecording) -> JointRecording:
@@ -79,50 +96,59 @@ def joints_of(recording: Motion | Tracks | JointRecording) -> JointRecording:
     return joints
 
 
-def _mediapipe(joints: JointRecording) -> Iterator[Packets]:
-    roles = posture_joint_indices(joints.names)
+def _json(frames: Sequence[LiveFrame]) -> Encode:
+    return lambda frame, time: [encode_frame(replace(frames[frame], time=time))]
+
+
+def _mediapipe(frames: Sequence[LiveFrame]) -> Encode:
+    roles = posture_joint_indices(frames[0].names)
     if not {"leftUpperLeg", "rightUpperLeg"} <= roles.keys():
         raise InvalidMotionError("The recording has no hips. Choose the recording of a body.")
-    for frame in frames_from_recording(joints):
-        yield Packets(frame.time, [encode_mediapipe(frame, roles)])
+    return lambda frame, time: [encode_mediapipe(replace(frames[frame], time=time), roles)]
 
 
-def _vmc(motion: Motion) -> Iterator[Packets]:
-    for frame in _pose_frames(motion_in_layout(motion)):
-        yield Packets(frame.time, encode_vmc(frame))
+def _vmc(motion: Motion) -> Encode:
+    return lambda frame, time: encode_vmc(_pose(motion, frame, time))
 
 
-def _mocopi(motion: Motion) -> Iterator[Packets]:
-    given = motion_in_layout(motion, MOCOPI)
-    for number, frame in enumerate(_pose_frames(given)):
-        skeleton = [encode_skeleton_packet(given.skeleton)] * (not number % N_SKELETON_FRAMES)
-        yield Packets(frame.time, [*skeleton, encode_frame_packet(frame, number)])
+def _mocopi(motion: Motion) -> Encode:
+    skeleton = encode_skeleton_packet(motion.skeleton)
+
+    def encode(frame: int, time: float) -> list[bytes]:
+        packet = encode_frame_packet(_pose(motion, frame, time), frame)
+        return [packet] if frame % N_SKELETON_FRAMES else [skeleton, packet]
+
+    return encode
 
 
-def _xsens(motion: Motion) -> Iterator[Packets]:
-    given = motion_in_layout(motion, XSENS)
-    poses = forward_kinematics(given)
-    for number, frame in enumerate(_pose_frames(given)):
-        datagram = encode_xsens(frame, number, poses.positions[number], poses.rotations[number])
-        yield Packets(frame.time, [datagram])
+def _xsens(motion: Motion) -> Encode:
+    return _in_world(motion, encode_xsens)
 
 
-def _rokoko(motion: Motion) -> Iterator[Packets]:
-    given = motion_in_layout(motion, partial(humanoid_layout, has_upper_chest=False))
-    poses = forward_kinematics(given)
-    for number, frame in enumerate(_pose_frames(given)):
-        packet = encode_rokoko(frame, poses.positions[number], poses.rotations[number])
-        yield Packets(frame.time, [packet])
+def _rokoko(motion: Motion) -> Encode:
+    return _in_world(motion, encode_rokoko)
 
 
-def _pose_frames(motion: Motion) -> Iterator[PoseFrame]:
-    for frame, (rotations, position) in enumerate(
-        zip(motion.rotations, motion.root_positions, strict=True)
-    ):
-        yield PoseFrame(frame * motion.dt, 0, motion.skeleton, rotations, position)
+def _in_world(motion: Motion, encode: Callable[[PoseFrame, Array, Array], bytes]) -> Encode:
+    """Return the encoder of a protocol with positions and rotations in the world."""
+    poses = forward_kinematics(motion)
+    return lambda frame, time: [
+        encode(_pose(motion, frame, time), poses.positions[frame], poses.rotations[frame])
+    ]
 
 
-ENCODERS: dict[StreamProtocol, Callable[[Motion], Iterator[Packets]]] = {
+def _pose(motion: Motion, frame: int, time: float) -> PoseFrame:
+    rotations, position = motion.rotations[frame], motion.root_positions[frame]
+    return PoseFrame(time, 0, motion.skeleton, rotations, position)
+
+
+LAYOUTS: dict[StreamProtocol, Layout | Callable[[Sequence[str]], Layout]] = {
+    StreamProtocol.VMC: humanoid_layout,
+    StreamProtocol.MOCOPI: MOCOPI,
+    StreamProtocol.XSENS: XSENS,
+    StreamProtocol.ROKOKO: partial(humanoid_layout, has_upper_chest=False),
+}
+ENCODERS: dict[StreamProtocol, Callable[[Motion], Encode]] = {
     StreamProtocol.VMC: _vmc,
     StreamProtocol.MOCOPI: _mocopi,
     StreamProtocol.XSENS: _xsens,

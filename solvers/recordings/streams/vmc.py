@@ -16,9 +16,10 @@ from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Skeleton
 from ...rotations import multiply, rotate
+from ..conventions import MAX_TIME_S
 from ..live import PoseFrame
 from .axes import (
-    checked_positions,
+    MAX_POSITION_M,
     checked_rotations,
     points_from_unity,
     points_to_unity,
@@ -76,6 +77,7 @@ class VmcDecoder:
         self._frame_time = 0.0
         self._frame_root: tuple[float, ...] = STILL
         self._skeleton: Skeleton | None = None
+        self._offsets = np.zeros((0, 3))
 
     def parts(self, datagram: bytes) -> list[bytes]:
         """Return what is decoded by itself."""
@@ -91,7 +93,7 @@ class VmcDecoder:
         """
         for message in read_packet(part):
             if message.address == TIME and message.arguments:
-                self._clock = (_numbers(message.arguments[:1])[0], arrived)
+                self._clock = (_numbers(message.arguments[:1], MAX_TIME_S)[0], arrived)
             elif message.address == ROOT:
                 self._root = _transform(message)[1]
             elif message.address == BONE:
@@ -124,7 +126,7 @@ class VmcDecoder:
             raise InvalidMotionError("A frame has no hips.")
         roles = sorted_roles(self._bones)
         numbers = np.array([self._frame_root, *(self._bones[role] for role in roles)])
-        positions = points_from_unity(checked_positions(numbers[:, :3]))
+        positions = points_from_unity(numbers[:, :3])
         rotations = rotations_from_unity(checked_rotations(numbers[:, [6, 3, 4, 5]]))
         root_position = positions[0] + rotate(rotations[0], positions[1])
         rotations[1] = multiply(rotations[0], rotations[1])
@@ -139,14 +141,16 @@ class VmcDecoder:
         return time + max(arrived - at, 0.0)
 
     def _skeleton_of(self, roles: tuple[str, ...], offsets: Array) -> Skeleton:
-        found = skeleton_from_offsets(dict(zip(roles, offsets, strict=True)))
+        """Return the skeleton of bones; a new one if they are others, or of other lengths."""
         last = self._skeleton
         if (
             last is None
-            or last.names != found.names
-            or np.abs(last.offsets - found.offsets).max() > MAX_CHANGE_M
+            or last.names != roles
+            or np.abs(self._offsets[1:] - offsets[1:]).max(initial=0.0) > MAX_CHANGE_M
         ):
-            self._skeleton = last = found
+            self._offsets = offsets
+            last = skeleton_from_offsets(dict(zip(roles, offsets, strict=True)))
+            self._skeleton = last
         return last
 
 
@@ -155,12 +159,12 @@ def _transform(message: Message) -> tuple[str, tuple[float, ...]]:
     name, *numbers = message.arguments or (None,)
     if not isinstance(name, str) or len(numbers) < N_NUMBERS:
         raise InvalidMotionError("A bone has no name, position and rotation.")
-    return name, _numbers(tuple(numbers[:N_NUMBERS]))
+    return name, _numbers(tuple(numbers[:N_NUMBERS]), MAX_POSITION_M)
 
 
-def _numbers(values: tuple[object, ...]) -> tuple[float, ...]:
-    if not all(isinstance(value, float) and abs(value) < np.inf for value in values):
-        raise InvalidMotionError("A frame's number is not finite.")
+def _numbers(values: tuple[object, ...], limit: float) -> tuple[float, ...]:
+    if not all(isinstance(value, float) and abs(value) <= limit for value in values):
+        raise InvalidMotionError(f"A frame's number is not one up to {limit:g}.")
     return tuple(float(value) for value in values if isinstance(value, float))
 
 

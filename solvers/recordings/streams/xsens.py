@@ -16,7 +16,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import InvalidMotionError
-from ..conventions import guess_unit
+from ..conventions import CENTIMETER, guess_unit
 from ..live import PoseFrame
 from .axes import checked_positions, checked_rotations
 from .segments import SegmentPoses
@@ -39,8 +39,6 @@ NAMES = (
 PARENTS = (-1, 0, 1, 2, 3, 4, 5, 4, 7, 8, 9, 4, 11, 12, 13, 0, 15, 16, 17, 0, 19, 20, 21)
 N_SEGMENTS = len(NAMES)
 MILLISECOND = 1e-3
-MAX_UNIT_PER_METER = 100.0
-"""Centimeters, the largest unit number that streams have, per meter."""
 DAMAGED = "A datagram of Xsens MVN is damaged."
 OTHER_TYPE = (
     "Xsens MVN sends no poses with quaternions. In its Network Streamer switch on the position"
@@ -110,7 +108,7 @@ class XsensDecoder:
             raise InvalidMotionError("A sample of Xsens MVN does not have the 23 segments.")
         rotations = checked_rotations(body["rotation"].astype(np.float64))
         raw = body["position"].astype(np.float64)
-        checked_positions(raw / MAX_UNIT_PER_METER)
+        checked_positions(CENTIMETER * raw)
         if self._unit is None:
             self._unit = guess_unit(PARENTS, raw - raw[list(PARENTS)])
         return self._poses.frame(
@@ -128,25 +126,23 @@ def is_xsens(packet: bytes) -> bool:
     return packet.startswith(MAGIC)
 
 
-def encode_xsens(frame: PoseFrame, sample: int, positions: Array, rotations: Array) -> bytes:
+def encode_xsens(frame: PoseFrame, positions: Array, rotations: Array) -> bytes:
     """Return the datagram of a frame, from its world positions and rotations.
 
     Parameters
     ----------
     frame : PoseFrame
-        Its joints are the 23 segments.
-    sample : int
-        Number of the frame.
+        Its joints are the 23 segments. Its time counts the samples too.
     positions : shape (23, 3), meters
     rotations : shape (23, 4)
     """
     segments = np.zeros(N_SEGMENTS, SEGMENT)
     segments["id"] = np.arange(1, N_SEGMENTS + 1)
-    segments["position"] = _unforward(positions) / 0.01
+    segments["position"] = _unforward(positions) / CENTIMETER
     segments["rotation"] = _unturned(rotations)
-    content = segments.tobytes()
+    content, milliseconds = segments.tobytes(), round(frame.time / MILLISECOND)
     return HEADER.pack(
-        POSE, sample, LAST_DATAGRAM, N_SEGMENTS, round(frame.time / MILLISECOND), frame.body,
+        POSE, milliseconds, LAST_DATAGRAM, N_SEGMENTS, milliseconds, frame.body,
         N_SEGMENTS, 0, 0, 0, len(content),
     ) + content  # fmt: skip
 

@@ -14,9 +14,7 @@ from ...motion.humanoid import POSTURE_JOINTS, posture_joint_indices
 from ...recordings.live import (
     LiveFrame,
     PoseFrame,
-    StreamCounts,
     StreamFrame,
-    StreamReader,
     joints_from_pose,
     recording_from_frames,
 )
@@ -47,7 +45,7 @@ class SessionUpdate:
 
 
 class LiveSession:
-    """Follow one actor through a stream; invalid input is counted and dropped.
+    """Follow one actor through the frames of a stream.
 
     Parameters
     ----------
@@ -56,7 +54,6 @@ class LiveSession:
 
     def __init__(self, settings: GestureSettings = GESTURE_SETTINGS) -> None:
         self._settings = settings
-        self._stream = StreamReader()
         self._recognizer = GestureRecognizer(settings)
         self._performed: list[LiveFrame] = []
         self._last: LiveFrame | None = None
@@ -65,15 +62,6 @@ class LiveSession:
     def mode(self) -> Mode:
         """The current activity of the actor."""
         return self._recognizer.mode
-
-    @property
-    def counts(self) -> StreamCounts:
-        """Number of received frames, and why others were dropped."""
-        return self._stream.counts
-
-    def receive(self, datagrams: Iterable[bytes]) -> SessionUpdate:
-        """Process datagrams of joints; return the new frame, events and query."""
-        return self.add(self._stream.read(*datagrams))
 
     def add(self, frames: Iterable[StreamFrame]) -> SessionUpdate:
         """Process frames of one body; return the new frame, events and query."""

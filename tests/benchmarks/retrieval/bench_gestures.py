@@ -18,6 +18,7 @@ from threadpoolctl import threadpool_limits
 
 from solvers.gestures.events import Gesture, GestureEvent
 from solvers.gestures.settings import GestureSettings
+from solvers.recordings.live import StreamReader
 from solvers.recordings.live.frames import decode_frame, encode_frame, frames_from_recording
 from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.workflows.live.live_session import LiveSession
@@ -225,9 +226,9 @@ def speed() -> str:
     for line in lines:
         decode_frame(line)
     decoded = perf_counter()
-    session = LiveSession()
+    session, reader = LiveSession(), StreamReader()
     for line in lines:
-        session.receive([line])
+        session.add(reader.read(line))
     recognized = perf_counter()
     rows = {
         "decoding a line of 20 joints": [f"{1000 * (decoded - started) / len(lines):.2f}"],

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.command_line.replay_verb import loop_frames, pace_frames
+from solvers.command_line.replay_verb import pace_packets
 from solvers.motion import Tracks
 from solvers.motion.humanoid.posture_joints import postures_from_motion
 from solvers.recordings import write_bvh, write_joints, write_trc
-from solvers.recordings.live.frames import decode_frame, frames_from_recording
+from solvers.recordings.live.frames import decode_frame
+from solvers.recordings.streams import StreamProtocol, encode_recording
 from solvers.samples import (
     GaitSettings,
     PerformanceSettings,
@@ -64,8 +65,8 @@ def test_frames_are_sent_on_time_when_sending_is_slow(wave):
     clock = [100.0]
     sent = []
 
-    for line in pace_frames(
-        frames_from_recording(recording), 2.0, lambda: clock[0],
+    for (line,) in pace_packets(
+        encode_recording(recording, StreamProtocol.JSON), 2.0, lambda: clock[0],
         lambda seconds: clock.__setitem__(0, clock[0] + seconds),
     ):  # fmt: skip
         sent.append((decode_frame(line).time, clock[0] - 100.0))
@@ -77,9 +78,9 @@ def test_frames_are_sent_on_time_when_sending_is_slow(wave):
 
 def test_time_increases_when_the_recording_repeats(wave):
     recording = wave[0].recording()
-    frames = loop_frames(recording)
+    packets = encode_recording(recording, StreamProtocol.JSON, is_repeated=True)
 
-    times = [next(frames).time for _ in range(3 * recording.n_frames)]
+    times = [next(packets).time for _ in range(3 * recording.n_frames)]
 
     assert_allclose(np.diff(times), 1 / recording.frame_rate)
 

@@ -11,6 +11,7 @@ from solvers.gestures.recognition import Mode
 from solvers.gestures.settings import GestureSettings
 from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
+from solvers.recordings.live import StreamReader
 from solvers.recordings.live.frames import LiveFrame, encode_frame, frames_from_recording
 from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.workflows.live.live_session import NO_END, TOO_SHORT, LiveSession, pose_from_frame
@@ -26,7 +27,10 @@ def lines_of(made, body=0, since=0.0, **settings):
 
 def receive(session, lines):
     """All events, queries and messages, as Blender would get them: a few lines at a time."""
-    news = [session.receive(lines[start : start + 3]) for start in range(0, len(lines), 3)]
+    reader = StreamReader()
+    news = [
+        session.add(reader.read(*lines[start : start + 3])) for start in range(0, len(lines), 3)
+    ]
     events = [event.gesture for each in news for event in each.events]
     queries = [each.query for each in news if each.query is not None]
     return events, queries, [each.message for each in news if each.message]
@@ -106,13 +110,10 @@ def test_recorded_frames_are_limited():
     assert len(session._performed) <= 20_000
 
 
-def test_invalid_datagrams_are_counted_and_dropped():
-    session = LiveSession()
-
-    news = session.receive([b"", b"rubbish", b"\x00" * 100, b"{}"])
+def test_without_frames_nothing_happens():
+    news = LiveSession().add([])
 
     assert (news.frame, news.events, news.query, news.message) == (None, (), None, "")
-    assert session.counts.unreadable == 3
 
 
 @pytest.mark.parametrize("names", [("a", "b"), ("Head",), ("hips", "head")])
@@ -122,7 +123,7 @@ def test_frames_without_arms_have_no_gestures(names):
 
     for number in range(60):
         frame = LiveFrame(number / 30, 0, names, indices, np.ones(len(names)))
-        assert session.receive([encode_frame(frame)]).events == ()
+        assert session.add([frame]).events == ()
 
 
 def test_joints_of_every_sensor_are_recognized():

@@ -1,0 +1,31 @@
+"""What the preferences say of live streams."""
+
+from ...solvers.errors import InvalidSettingError
+from ...solvers.recordings.live import PORT
+from ..panels.preference_values import preferences, preferred
+
+NO_ADDRESSES = (
+    "Other machines may send, but no address is allowed. Add those of your trackers in the"
+    " preferences, or switch it off."
+)
+
+
+def live_port() -> int:
+    """Return the UDP port of live streams."""
+    return int(preferred("live_port")) if preferences() is not None else PORT
+
+
+def allowed_addresses() -> str:
+    """Return the addresses of other machines that may send; empty: none.
+
+    Raises
+    ------
+    InvalidSettingError
+        Other machines may send, but no address is listed.
+    """
+    if preferences() is None or not preferred("live_network"):
+        return ""
+    addresses = str(preferred("live_addresses"))
+    if not addresses.strip(" ,"):
+        raise InvalidSettingError(NO_ADDRESSES)
+    return addresses

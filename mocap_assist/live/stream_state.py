@@ -1,0 +1,31 @@
+"""Sentences about a live stream: who sends, in which protocol, and what is wrong."""
+
+from ...solvers.recordings.streams import ListenerState
+
+
+def state_text(doing: str, state: ListenerState) -> str:
+    """Return what a recording does, who sends, and what is wrong."""
+    return " ".join(filter(None, (f"{doing}.", sender_text(state), issue_text(state))))
+
+
+def sender_text(state: ListenerState) -> str:
+    """Return sender, protocol, rate and number of dropped frames; empty before frames came."""
+    if state.protocol is None or not state.counts.frames:
+        return ""
+    protocol, sender, rate = state.protocol.label, state.sender, round(state.rate)
+    return f"{protocol} from {sender}, {rate} Hz, {state.counts.dropped} dropped."
+
+
+def issue_text(state: ListenerState) -> str:
+    """Return the most important issue of a stream; empty without one."""
+    if state.is_silent:
+        return "The stream has stopped."
+    if state.n_others:
+        return f"{state.other} sends too, and is ignored."
+    if state.counts.frames:
+        return ""
+    if state.counts.why:
+        return state.counts.why
+    if state.n_refused:
+        return f"{state.n_refused} packets came from addresses that are not allowed."
+    return ""
