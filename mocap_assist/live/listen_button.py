@@ -10,7 +10,7 @@ from ..blender.mixins import OperatorMixin
 from ..languages import translated
 from ..panels.preference_values import preferred
 from . import listening
-from .stream_preferences import allowed_addresses
+from .stream_preferences import allowed_addresses, live_port
 
 NO_WINDOW = "Listening needs Blender's window."
 
@@ -35,7 +35,7 @@ class ListenButton(OperatorMixin):
         try:
             self._listening = listening.Listening(
                 context,
-                preferred("live_port"),
+                live_port(),
                 StreamProtocol[context.scene.mocap_assist.live.live_protocol],
                 allowed_addresses(),
                 tuple(preferred("clean_color")),

@@ -26,8 +26,8 @@ from ..runtime.selection import selected_armature
 from ..scene import history
 from ..scene.controls import BoneKeys
 from ..scene.scene_rate import scene_rate
-from .stream_preferences import allowed_addresses, live_port
 from .solve_live_take import LiveBones, LiveProblem, RecordedTake, record_live, recorded_take
+from .stream_preferences import allowed_addresses, live_port
 
 NO_DURATION = "Set the duration of the recording: scripts and repeated presses have no Esc."
 ESC_ENDS = "Esc ends the recording"

@@ -1,6 +1,6 @@
 """Solve of the button Record Live: a stream of joints becomes motion of a rig's controls."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from time import monotonic, sleep
 from typing import Any, NamedTuple
@@ -16,9 +16,9 @@ from ...solvers.recordings.streams import ListenerState, StreamListener, StreamP
 from ...solvers.retargeting import LiveRetargeting, RetargetSettings
 from ...solvers.rotations import IDENTITY
 from ...solvers.workflows import LiveMotion, LiveTake, LiveTakeSettings, PoseTake
-from .stream_state import state_text
 from ..scene.controls import BoneKeys, Carried, TargetRig, keys_of
 from ..track.pose_previews import Show, no_preview
+from .stream_state import state_text
 
 POLL_INTERVAL_S = 0.002
 """Seconds between two looks at the socket. It bounds the delay, and the processor's load."""
@@ -120,32 +120,56 @@ def record_live(
 
 
 def _record(problem: LiveProblem, progress: Progress, keep: Show) -> None:
-    take: LiveTake | PoseTake | None = None
-    rig: _LiveRig | None = None
-    n_frames, last_pose = 0, monotonic()
+    last_pose = monotonic()
     networks = allowed_networks(problem.allowed)
     with StreamListener(problem.port, problem.protocol, networks) as listener:
-        while not problem.duration_s or n_frames < problem.duration_s * (
-            rig.frame_rate if rig else np.inf
-        ):
+        recorder = _Recorder(problem, keep)
+        while not recorder.is_done:
             frames = listener.poll()
-            if take is None and frames:
-                take = _take_for(frames[0], problem.settings)
-            poses = take.add(frames) if take else []
-            progress(*_state(take, listener.state))
-            if take and take.calibration is not None and rig is None:
-                rig = _LiveRig(problem, take.calibration, take.names)
-                keep(rig.bones)
-            if take and rig:
-                for pose in poses:
-                    keep(rig.keys(pose, take.n_skipped))
-                    n_frames = pose.frame
-            if poses or (rig is None and take and take.calibrated_fraction > 0.0 and frames):
+            if recorder.add(frames):
                 last_pose = monotonic()
             elif problem.duration_s and monotonic() - last_pose > MAX_SILENCE_S:
                 raise InvalidMotionError(_silence_text(problem.port, listener.state))
+            progress(*_state(recorder.take, listener.state))
             if not frames:
                 sleep(POLL_INTERVAL_S)
+
+
+class _Recorder:
+    """Turns frames of a stream, of joints or of bones, into those of the rig."""
+
+    def __init__(self, problem: LiveProblem, keep: Show) -> None:
+        self.take: LiveTake | PoseTake | None = None
+        self._problem, self._keep = problem, keep
+        self._rig: _LiveRig | None = None
+        self._first: int | None = None
+        self._n_frames = 0
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the duration is over."""
+        if self._rig is None or not self._problem.duration_s:
+            return False
+        return self._n_frames >= self._problem.duration_s * self._rig.frame_rate
+
+    def add(self, frames: Sequence[StreamFrame]) -> bool:
+        """Take frames that came together; return whether they show the actor."""
+        if not frames:
+            return False
+        if self.take is None:
+            self.take = _take_for(frames[0], self._problem.settings)
+        poses = self.take.add(frames)
+        if self.take.calibration is None:
+            return self.take.calibrated_fraction > 0.0
+        if self._rig is None:
+            self._rig = _LiveRig(self._problem, self.take.calibration, self.take.names)
+            self._keep(self._rig.bones)
+            return True
+        for pose in poses:
+            self._keep(self._rig.keys(pose, self.take.n_skipped))
+            self._first = pose.frame if self._first is None else self._first
+            self._n_frames = pose.frame - self._first + 1
+        return bool(poses)
 
 
 def _take_for(frame: StreamFrame, settings: LiveTakeSettings) -> LiveTake | PoseTake:

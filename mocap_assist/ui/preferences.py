@@ -68,7 +68,7 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
     )
     live_network: bpy.props.BoolProperty(
         name="Receive from Other Machines",
-        description="Receive live streams from the allowed addresses, not only from this machine",
+        description="Receive live streams from the allowed addresses too",
         default=False,
     )
     live_addresses: bpy.props.StringProperty(

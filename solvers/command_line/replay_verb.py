@@ -13,6 +13,7 @@ from ..recordings.streams import Packets, StreamProtocol, encode_recording
 from .files import add_reading_options, read_recorded
 from .verb_description import Outcome, Task
 
+PROTOCOLS = {each.value: each for each in StreamProtocol if each is not StreamProtocol.AUTO}
 LOOPBACK = "127.0.0.1"
 MAX_SPEED = 100.0
 MAX_PORT = 65535
@@ -21,9 +22,8 @@ MAX_PORT = 65535
 def add_replay_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `replay`."""
     add_reading_options(parser)
-    protocols = [each.value for each in StreamProtocol if each is not StreamProtocol.AUTO]
     parser.add_argument(
-        "--as", dest="protocol", choices=protocols, default=StreamProtocol.JSON.value,
+        "--as", dest="protocol", choices=PROTOCOLS, default=StreamProtocol.JSON.value,
         help="Protocol of the stream [default json]",
     )  # fmt: skip
     parser.add_argument(
@@ -56,7 +56,7 @@ def perform_replay(task: Task, prepared: None, progress: Progress) -> Outcome:
     if arguments.rate is not None:
         recording = _resampled(recording, arguments.rate)
     packets = encode_recording(
-        recording, StreamProtocol(arguments.protocol), is_repeated=arguments.loop
+        recording, PROTOCOLS[arguments.protocol], is_repeated=arguments.loop
     )
     report = within(progress, 0.1, 1.0)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
@@ -81,7 +81,9 @@ def _resampled(
     if isinstance(recording, JointRecording):
         tracks = resample(recording.tracks, frame_rate)
         return JointRecording(tracks, None, recording.sensor)
-    return resample(recording, frame_rate)
+    if isinstance(recording, Tracks):
+        return resample(recording, frame_rate)
+    return resample(recording, frame_rate)  # for types: of a motion
 
 
 def pace_packets(

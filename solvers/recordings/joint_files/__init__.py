@@ -76,7 +76,7 @@ __all__ = [
     "read_point_table",
     "read_ui_prmd",
     "read_ui_prmd_pair",
+    "with_computed_joints",
     "write_joint_csv",
     "write_joint_json",
-    "with_computed_joints",
 ]

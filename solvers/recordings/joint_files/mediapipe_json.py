@@ -73,7 +73,8 @@ def read_mediapipe_json(
         if member.key in RATES:
             rate = number(member.value, f"{path}, {member.key}")
         elif isinstance(member.value, Mapping) or member.key in WORLD:
-            found, time = frame_landmarks(member.value, location), frame_time(member.value, location)
+            found = frame_landmarks(member.value, location)
+            time = frame_time(member.value, location)
             if found is None and np.isnan(time):
                 continue  # something else, such as a header
             frames.append(np.full((N_POINTS, 4), np.nan) if found is None else found)

@@ -1,6 +1,5 @@
 """Names, axes and the check for flat landmarks for all readers of MediaPipe's landmarks."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np

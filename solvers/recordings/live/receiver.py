@@ -129,7 +129,7 @@ class Receiver:
         return followed
 
     def release(self) -> None:
-        """Follow another sender if there is one: nothing that the followed one sends is of use."""
+        """Follow another sender if there is one: what the followed one sends is of no use."""
         self._released, self.sender, self._heard_at = self.sender, None, float("-inf")
 
     def _receive(self) -> list[tuple[bytes, Address]]:

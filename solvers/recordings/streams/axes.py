@@ -49,7 +49,8 @@ def checked_positions(positions: Array) -> Array:
         One is no number, or too far away.
     """
     if not (np.abs(positions) <= MAX_POSITION_M).all():
-        raise InvalidMotionError(f"A frame's position is not a number up to {MAX_POSITION_M:g}.")
+        limit = f"{MAX_POSITION_M:g}"
+        raise InvalidMotionError(f"A frame's position is not a number up to {limit}.")
     return positions
 
 

@@ -10,9 +10,10 @@ from ...motion import Skeleton
 SIDES = ("left", "right")
 FINGERS = {
     "Thumb": ("Metacarpal", "Proximal", "Distal"),
-    **{finger: ("Proximal", "Intermediate", "Distal")
-       for finger in ("Index", "Middle", "Ring", "Little")},
-}  # fmt: skip
+    **dict.fromkeys(
+        ("Index", "Middle", "Ring", "Little"), ("Proximal", "Intermediate", "Distal")
+    ),
+}
 ARM = ("Shoulder", "UpperArm", "LowerArm", "Hand")
 LEG = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 TRUNK = ("hips", "spine", "chest", "upperChest", "neck", "head")

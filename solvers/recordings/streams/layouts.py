@@ -91,7 +91,8 @@ def motion_in_layout(
     joints = roles.indices(motion.skeleton)
     if missing := sorted(set(ESSENTIAL_ROLES) - joints.keys()):
         raise InvalidMotionError(
-            f"The skeleton has no joint for {', '.join(missing)}. Choose the recording of a body."
+            f"The skeleton has no joint for {', '.join(missing)}. Choose the recording of a"
+            " body."
         )
     if not np.isfinite(motion.rotations).all() or not np.isfinite(motion.root_positions).all():
         raise InvalidMotionError("The motion has gaps. Clean it before it is sent.")

@@ -27,7 +27,7 @@ from .axes import checked_positions
 MAX_LINE_BYTES = 32_768
 """Maximum size of a line in bytes; 33 landmarks take about 4,000."""
 N_LANDMARKS = 33
-MARKS = (b'andmark', b'"keypoints3D"')
+MARKS = (b"andmark", b'"keypoints3D"')
 """What the keys of landmarks have in common."""
 MAX_STEP_S = 2.0
 """Step between two frames in seconds from which stamps are milliseconds. By definition that of

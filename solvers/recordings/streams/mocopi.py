@@ -87,12 +87,10 @@ class MocopiDecoder:
             raise InvalidMotionError(DAMAGED) from None
 
     def _frame(self, boxes: dict[bytes, bytes]) -> PoseFrame:
-        bones = [
-            dict(_boxes(bone, MAX_BOXES)) for _, bone in _boxes(boxes[b"btrs"], MAX_BONES)
-        ]
+        bones = [dict(_boxes(bone, MAX_BOXES)) for _, bone in _boxes(boxes[b"btrs"], MAX_BONES)]
         numbers = [int.from_bytes(bone[b"bnid"], "little") for bone in bones]
         if numbers != list(range(len(self._parents))):
-            raise InvalidMotionError("A frame of mocopi does not have the bones of the skeleton.")
+            raise InvalidMotionError("A frame of mocopi lacks bones of the skeleton.")
         values = np.array([TRANSFORM.unpack(bone[b"tran"]) for bone in bones])
         positions = z_up_from_y_up(checked_positions(values[:, 4:]))
         rotations = rotations_z_up_from_y_up(checked_rotations(values[:, [3, 0, 1, 2]]))
@@ -176,7 +174,8 @@ def encode_frame_packet(frame: PoseFrame, number: int) -> bytes:
     for bone, (position, (w, x, y, z)) in enumerate(zip(positions, rotations, strict=True)):
         transform = TRANSFORM.pack(x, y, z, w, *position)
         bones += _box(b"btdt", _number_box(b"bnid", bone) + _box(b"tran", transform))
-    times = _box(b"fnum", struct.pack("<I", number)) + _box(b"time", struct.pack("<f", frame.time))
+    times = _box(b"fnum", struct.pack("<I", number))
+    times += _box(b"time", struct.pack("<f", frame.time))
     clock = _box(b"uttm", struct.pack("<d", frame.time))
     return _heading() + _box(b"fram", times + clock + _box(b"btrs", bones))
 

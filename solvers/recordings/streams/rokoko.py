@@ -108,7 +108,7 @@ class RokokoDecoder:
         scene = _mapping(_mapping(fields).get("scene", fields))
         actors = scene.get("actors")
         if not isinstance(actors, list) or len(actors) > MAX_ACTORS:
-            raise InvalidMotionError(f"A packet of Rokoko has no list of up to {MAX_ACTORS} actors.")
+            raise InvalidMotionError(f"A packet of Rokoko lacks up to {MAX_ACTORS} actors.")
         time = _number(scene.get("timestamp", arrived))
         for actor in actors:
             yield self._frame(_mapping(actor), time)
@@ -119,7 +119,8 @@ class RokokoDecoder:
             self._actors.clear()
         body, poses = self._actors.setdefault(name, (len(self._actors), SegmentPoses()))
         bones = _mapping(actor.get("body", actor))
-        roles = [role for role in PARENTS if isinstance(bones.get(BONES.get(role, "")), Mapping)]
+        sent = {ROLES[bone] for bone in ROLES if isinstance(bones.get(bone), Mapping)}
+        roles = [role for role in PARENTS if role in sent]
         if roles[:1] != ["hips"]:
             raise InvalidMotionError("An actor of Rokoko has no hip.")
         positions = _vectors(bones, roles, "position", "xyz")

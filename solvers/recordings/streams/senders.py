@@ -19,7 +19,6 @@ from .rokoko import encode_rokoko
 from .vmc import encode_vmc
 from .xsens import encode_xsens
 
-
 N_SKELETON_FRAMES = 60
 """Number of frames from one skeleton of mocopi to the next: a receiver may start late."""
 Encode = Callable[[int, float], list[bytes]]

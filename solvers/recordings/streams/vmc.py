@@ -97,20 +97,25 @@ class VmcDecoder:
             elif message.address == ROOT:
                 self._root = _transform(message)[1]
             elif message.address == BONE:
-                name, numbers = _transform(message)
-                role = ROLES.get(name.lower())
-                if role is None:
-                    continue
-                if role in self._fresh:
-                    yield self._frame()
-                if not self._fresh:
-                    self._frame_time = self._time(arrived)
-                self._bones[role], self._frame_root = numbers, self._root
-                self._fresh.add(role)
+                yield from self._add_bone(*_transform(message), arrived)
         expected = {role for role in self._seen if not self._is_gone(role)}
         if expected and self._fresh >= expected:
             self._frame_root = self._root
             yield self._frame()
+
+    def _add_bone(
+        self, name: str, numbers: tuple[float, ...], arrived: float
+    ) -> Iterator[PoseFrame]:
+        """Add a bone to the frame; yield the frame before if this one begins another."""
+        role = ROLES.get(name.lower())
+        if role is None:
+            return
+        if role in self._fresh:
+            yield self._frame()
+        if not self._fresh:
+            self._frame_time = self._time(arrived)
+        self._bones[role], self._frame_root = numbers, self._root
+        self._fresh.add(role)
 
     def _is_gone(self, role: str) -> bool:
         return self._n_frames - self._seen[role] > MAX_MISSED_FRAMES

@@ -1,4 +1,4 @@
-"""The network stream of Xsens MVN [1]_: segments of a body in the world, in big-endian datagrams.
+"""The network stream of Xsens MVN [1]_: big-endian datagrams of segments in the world.
 
 Read is the pose with quaternions (type 02, Z up). Datagrams of other types are left out: an
 MVN that streams several types is read by this one.
@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...errors import InvalidMotionError
@@ -65,7 +66,7 @@ class XsensDecoder:
 
     def __init__(self) -> None:
         self._sample: tuple[int, int] | None = None
-        self._segments: list[Array] = []
+        self._segments: list[NDArray[np.void]] = []
         self._poses = SegmentPoses()
         self._unit: float | None = None
 
@@ -101,7 +102,7 @@ class XsensDecoder:
             self._sample, self._segments = None, []
             raise InvalidMotionError(DAMAGED)
 
-    def _frame(self, header: _Header, segments: Array) -> PoseFrame:
+    def _frame(self, header: _Header, segments: NDArray[np.void]) -> PoseFrame:
         """Return the frame of a sample; props and fingers come after the body."""
         body = segments[:N_SEGMENTS]
         if body["id"].tolist() != list(range(1, N_SEGMENTS + 1)):

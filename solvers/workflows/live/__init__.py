@@ -5,4 +5,11 @@ from .live_session import LiveSession, SessionUpdate
 from .live_take import LiveTake
 from .pose_take import PoseTake
 
-__all__ = ["LiveMotion", "LiveSession", "LiveTake", "LiveTakeSettings", "PoseTake", "SessionUpdate"]
+__all__ = [
+    "LiveMotion",
+    "LiveSession",
+    "LiveTake",
+    "LiveTakeSettings",
+    "PoseTake",
+    "SessionUpdate",
+]

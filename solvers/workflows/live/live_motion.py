@@ -22,6 +22,9 @@ class LiveTakeSettings(Settings):
     )  # fmt: skip
 
 
+DEFAULT_SETTINGS = LiveTakeSettings()
+
+
 class LiveMotion(NamedTuple):
     """One frame of the actor.
 

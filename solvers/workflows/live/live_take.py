@@ -18,7 +18,7 @@ from ...reconstruction import (
 )
 from ...reconstruction.joint_rotations import motion_from_positions
 from ...recordings.live import LiveFrame, StreamFrame, recording_from_frames
-from .live_motion import LiveMotion, LiveTakeSettings
+from .live_motion import DEFAULT_SETTINGS, LiveMotion, LiveTakeSettings
 from .time_slots import TimeSlots, is_continued
 
 MAX_WAITING = 2
@@ -37,7 +37,7 @@ class LiveTake:
     settings : LiveTakeSettings
     """
 
-    def __init__(self, settings: LiveTakeSettings = LiveTakeSettings()) -> None:
+    def __init__(self, settings: LiveTakeSettings = DEFAULT_SETTINGS) -> None:
         self._settings = settings
         self._first_frames: list[LiveFrame] = []
         self._started: _StartedTake | None = None
@@ -63,7 +63,7 @@ class LiveTake:
         return min(elapsed / self._settings.calibration_s, 1.0)
 
     def add(self, frames: Iterable[StreamFrame]) -> list[LiveMotion]:
-        """Reconstruct frames that arrived together, in their order; those of bones are left out.
+        """Reconstruct frames of joints that arrived together, in their order.
 
         Raises
         ------

@@ -8,7 +8,7 @@ from ...errors import InvalidFileError, InvalidMotionError
 from ...motion import Motion, find_humanoid_map
 from ...motion.humanoid import ESSENTIAL_ROLES
 from ...recordings.live import PoseFrame, StreamFrame, measured_rate, motion_from_poses
-from .live_motion import LiveMotion, LiveTakeSettings
+from .live_motion import DEFAULT_SETTINGS, LiveMotion, LiveTakeSettings
 from .time_slots import TimeSlots, is_continued
 
 MAX_WAITING = 12
@@ -30,7 +30,7 @@ class PoseTake:
     names: tuple[str, ...] = ()
     """None: a stream of rotations says nothing of confidence."""
 
-    def __init__(self, settings: LiveTakeSettings = LiveTakeSettings()) -> None:
+    def __init__(self, settings: LiveTakeSettings = DEFAULT_SETTINGS) -> None:
         self._settings = settings
         self._first_frames: list[PoseFrame] = []
         self._slots: TimeSlots | None = None
@@ -50,7 +50,7 @@ class PoseTake:
         return min(elapsed / self._settings.calibration_s, 1.0)
 
     def add(self, frames: Iterable[StreamFrame]) -> list[LiveMotion]:
-        """Take frames that arrived together, in their order; those of joints are left out.
+        """Take frames of bones that arrived together, in their order.
 
         Raises
         ------

@@ -55,10 +55,7 @@ def listen(load, window, port, monkeypatch):
     """Press Listen; return the button. All is ended afterwards."""
     button = load("mocap_assist.live.listen_button")
     listening = load("mocap_assist.live.listening")
-    original = button.preferred
-    monkeypatch.setattr(
-        button, "preferred", lambda name: port if name == "live_port" else original(name)
-    )
+    monkeypatch.setattr(button, "live_port", lambda: port)
 
     class Button(button.ListenButton):
         def report(self, kind, message):

@@ -35,7 +35,7 @@ def test_press_listens_on_loopback_only_and_second_press_stops(listen, load, win
 
     current = load("mocap_assist.live.listening").current()
     assert button.outcome == {"RUNNING_MODAL"} and window.modals == [button]
-    assert current.receiver.address == ("127.0.0.1", port)
+    assert current.listener.receiver.address == ("127.0.0.1", port)
     assert "No data yet" in window.status[-1] and "Esc" in window.status[-1]
 
     again = listen()
@@ -145,8 +145,8 @@ def test_invalid_datagrams_are_counted_only(listen, load, window, port, event):
 
     assert button.modal(window.context, event("TIMER")) == {"PASS_THROUGH"}
 
-    statistics = load("mocap_assist.live.listening").current().counts
-    assert (statistics.frames, statistics.unreadable) == (0, 3)
+    statistics = load("mocap_assist.live.listening").current().heard
+    assert (statistics.counts.frames, statistics.counts.unreadable) == (0, 3)
 
 
 def test_figure_stands_on_the_ground_at_the_origin(listen, act, load):

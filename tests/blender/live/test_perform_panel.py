@@ -5,7 +5,7 @@ import pytest
 
 @pytest.mark.usefixtures("all_panels")
 def test_panel_shows_button_and_port_before_listening(draw):
-    assert draw("MOCAP_PT_perform") == ["mocap_assist.listen", "live_port"]
+    assert draw("MOCAP_PT_perform") == ["mocap_assist.listen", "live_port", "live_protocol"]
 
 
 def test_panel_shows_received_frames_while_listening(draw, listen, act):
@@ -17,7 +17,7 @@ def test_panel_shows_received_frames_while_listening(draw, listen, act):
     shown = " ".join(draw("MOCAP_PT_perform"))
     assert "Wave to page, clap to perform" in shown
     assert "No search yet." in shown
-    assert "frames, 0 dropped" in shown
+    assert "JSON from 127.0.0.1:" in shown and "0 dropped." in shown
 
 
 @pytest.mark.parametrize("suffix", ["", "_graph", "_dopesheet"])

@@ -2,7 +2,6 @@
 
 import socket
 import threading
-from itertools import count
 
 import kinect_walks
 import numpy as np
@@ -13,26 +12,28 @@ pytestmark = pytest.mark.timeout(900)
 
 
 @pytest.fixture
-def stream(load, port):
-    """An actor who walks, again and again, until the test ends; frames arrive in real time."""
+def sent(load):
+    """What is sent: joints of a Kinect as JSON."""
     motion, samples = load("solvers.motion"), load("solvers.samples")
     postures = load("solvers.motion.humanoid.posture_joints")
-    live = load("solvers.recordings.live")
-    walk = kinect_walks.tracked_walk(motion, kinect_walks.true_positions(samples, postures))
-    frames = list(live.frames_from_recording(walk))
+    positions = kinect_walks.true_positions(samples, postures)
+    return kinect_walks.tracked_walk(motion, positions), "JSON"
+
+
+@pytest.fixture
+def stream(load, port, sent):
+    """An actor who walks, again and again, until the test ends; frames arrive in real time."""
+    streams, (recording, protocol) = load("solvers.recordings.streams"), sent
+    packets = streams.encode_recording(
+        recording, streams.StreamProtocol[protocol], is_repeated=True
+    )
     ended = threading.Event()
 
     def send():
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-            for number in count():
-                frame = frames[number % len(frames)]
-                line = live.encode_frame(
-                    live.LiveFrame(
-                        number / RATE_HZ, 0, frame.names, frame.positions, frame.confidence,
-                        frame.states, frame.sensor,
-                    )
-                )  # fmt: skip
-                sender.sendto(line, ("127.0.0.1", port))
+            for frame in packets:
+                for datagram in frame.datagrams:
+                    sender.sendto(datagram, ("127.0.0.1", port))
                 if ended.wait(1.0 / RATE_HZ):
                     return
 
@@ -46,10 +47,7 @@ def stream(load, port):
 @pytest.fixture
 def on_port(load, port, monkeypatch):
     live = load("mocap_assist.live.live_take")
-    original = live.preferred
-    monkeypatch.setattr(
-        live, "preferred", lambda name: port if name == "live_port" else original(name)
-    )
+    monkeypatch.setattr(live, "live_port", lambda: port)
 
 
 @pytest.fixture
@@ -94,6 +92,48 @@ def test_a_rig_follows_the_stream_and_gets_an_action(request, rig, blank, stream
     assert ((head - hips)[:, 2] > 0.4).all()
     assert 0.6 < hips[:, 2].mean() < 1.2
     assert np.ptp((shin - thigh)[:, 1]) > 0.1  # the leg swings
+
+
+@pytest.fixture
+def walk(load):
+    samples = load("solvers.samples")
+    return samples.walking_gait(samples.GaitSettings(duration=2.0, frame_rate=RATE_HZ))
+
+
+class TestBones:
+    """A stream of bones is recorded as it is."""
+
+    @pytest.fixture(params=["VMC", "XSENS"])
+    def sent(self, request, walk):
+        return walk, request.param
+
+    @pytest.mark.parametrize("rig", ["Mixamo"], indirect=True)
+    def test_knees_are_those_of_the_stream(self, rig, blank, load, walk, stream, on_port):
+        found = blank.ops.mocap_assist.record_live(duration=1.5, calibration_s=1.0)
+
+        assert found == {"FINISHED"}
+        first, last = map(round, rig.animation_data.action.frame_range)
+        heads = []
+        for frame in range(first, last + 1):
+            blank.context.scene.frame_set(frame)
+            bones = rig.evaluated_get(blank.context.evaluated_depsgraph_get()).pose.bones
+            names = ("LeftUpLeg", "LeftLeg", "LeftFoot")
+            heads.append([rig.matrix_world @ bones[name].head for name in names])
+        motion = load("solvers.motion")
+        joints = motion.find_humanoid_map(walk.skeleton).indices(walk.skeleton)
+        legs = [joints[role] for role in ("leftUpperLeg", "leftLowerLeg", "leftFoot")]
+        true = knee_angles(motion.forward_kinematics(walk).positions[:, legs])
+        recorded = knee_angles(np.array(heads))
+        assert recorded.max() == pytest.approx(true.max(), abs=2.0)
+        assert recorded.min() == pytest.approx(true.min(), abs=2.0)
+
+
+def knee_angles(legs):
+    """Degrees between thigh and shin, for hip, knee and ankle in each frame."""
+    thigh, shin = np.diff(legs, axis=1).swapaxes(0, 1)
+    cosines = (thigh * shin).sum(axis=1)
+    lengths = np.linalg.norm(thigh, axis=1) * np.linalg.norm(shin, axis=1)
+    return np.degrees(np.arccos(cosines / lengths))
 
 
 @pytest.mark.parametrize("rig", ["Mixamo"], indirect=True)
