@@ -2,6 +2,7 @@
 listed addresses."""
 
 import socket
+from collections import deque
 from collections.abc import Callable, Sequence
 from ipaddress import IPv4Network, ip_address, ip_network
 from time import monotonic
@@ -24,6 +25,8 @@ BUFFER_BYTES = 1 << 20
 SENDER_TIMEOUT_S = 1.0
 """Seconds of silence after which another sender is followed. By definition that of a body
 (`BODY_TIMEOUT_S`)."""
+MAX_SEEN = 32
+"""Number of datagrams whose senders are remembered. It bounds memory."""
 
 Address = tuple[str, int]
 
@@ -83,6 +86,8 @@ class Receiver:
         """The sender that is followed."""
         self.other: Address | None = None
         """The last one that was not."""
+        self.n_followed = 0
+        """Number of senders that were followed, one after the other."""
         self.n_others = 0
         """Number of datagrams from senders that are not followed."""
         self.n_refused = 0
@@ -90,6 +95,8 @@ class Receiver:
         self._networks, self._now = tuple(networks), now
         self._heard_at = float("-inf")
         self._released: Address | None = None
+        self._n_received = 0
+        self._seen = deque[Address](maxlen=MAX_SEEN)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             self._socket.setblocking(False)
@@ -117,16 +124,35 @@ class Receiver:
         senders = [sender for _, sender in received]
         if not senders:
             return []
-        if self.sender in senders:
-            self._heard_at = self._now()
-        elif self._now() - self._heard_at > SENDER_TIMEOUT_S:
+        if self.sender not in senders and self._now() - self._heard_at > SENDER_TIMEOUT_S:
             usable = [sender for sender in senders if sender != self._released]
-            self.sender, self._heard_at = (usable or senders)[0], self._now()
-        followed = [datagram for datagram, sender in received if sender == self.sender]
-        if len(followed) < len(received):
-            self.n_others += len(received) - len(followed)
-            self.other = next(each for each in reversed(senders) if each != self.sender)
-        return followed
+            self._follow((usable or senders)[0])
+            self.n_followed += 1
+        return [datagram for datagram, sender in received if self._is_followed(sender)]
+
+    def _is_followed(self, sender: Address) -> bool:
+        """Count a datagram; return whether its sender is followed.
+
+        Some programs send each datagram from a new port: one after a single datagram from the
+        same address is the same sender.
+        """
+        if sender != self.sender and self._continues(sender):
+            self._follow(sender)
+        self._seen.append(sender)
+        if sender != self.sender:
+            self.n_others, self.other = self.n_others + 1, sender
+            return False
+        self._n_received += 1
+        self._heard_at = self._now()
+        return True
+
+    def _continues(self, sender: Address) -> bool:
+        is_new = sender not in self._seen
+        is_same = self.sender is not None and sender[0] == self.sender[0]
+        return is_new and is_same and self._n_received <= 1
+
+    def _follow(self, sender: Address) -> None:
+        self.sender, self._n_received, self._heard_at = sender, 0, self._now()
 
     def release(self) -> None:
         """Follow another sender if there is one: what the followed one sends is of no use."""

@@ -93,10 +93,16 @@ class StreamReader:
     def __init__(self, decoder: FrameDecoder | None = None) -> None:
         self.heard = StreamCounts()
         self._decoder = decoder or JointLines()
+        self._steps = deque[float](maxlen=N_RATE_STEPS)
+        self._late: list[float] = []
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget body and time: another sender comes."""
         self._body: int | None = None
         self._time = float("-inf")
-        self._late: list[float] = []
-        self._steps = deque[float](maxlen=N_RATE_STEPS)
+        self._late.clear()
+        self._steps.clear()
 
     @property
     def rate(self) -> float:

@@ -65,7 +65,7 @@ class StreamListener:
         self._now = now
         self._decoder = StreamDecoder(protocol)
         self._reader = StreamReader(self._decoder)
-        self._sender: tuple[str, int] | None = None
+        self._n_followed = 0
         self._useful_at = now()
         self._has_frames = False
 
@@ -95,9 +95,10 @@ class StreamListener:
         if not datagrams:
             return []
         now = self._now()
-        if self.receiver.sender != self._sender:
-            self._sender, self._useful_at = self.receiver.sender, now
+        if self.receiver.n_followed != self._n_followed:
+            self._n_followed, self._useful_at = self.receiver.n_followed, now
             self._decoder.restart()
+            self._reader.restart()
         frames = list(self._reader.read(*datagrams, arrived=now))
         if frames:
             self._useful_at, self._has_frames = now, True

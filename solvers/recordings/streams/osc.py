@@ -5,6 +5,7 @@ References
 .. [1] Wright (2002). The Open Sound Control 1.0 specification. opensoundcontrol.stanford.edu
 """
 
+import itertools
 import struct
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -43,14 +44,12 @@ def read_packet(packet: bytes) -> list[Message]:
     InvalidMotionError
         The packet is damaged, or has more than 512 messages.
     """
-    messages: list[Message] = []
     try:
-        for message in _messages(packet, MAX_DEPTH):
-            messages.append(message)
-            if len(messages) > MAX_MESSAGES:
-                raise InvalidMotionError(f"A packet has more than {MAX_MESSAGES} messages.")
+        messages = list(itertools.islice(_messages(packet, MAX_DEPTH), MAX_MESSAGES + 1))
     except (struct.error, ValueError):
         raise InvalidMotionError(DAMAGED) from None
+    if len(messages) > MAX_MESSAGES:
+        raise InvalidMotionError(f"A packet has more than {MAX_MESSAGES} messages.")
     return messages
 
 

@@ -64,8 +64,8 @@ def is_vmc(packet: bytes) -> bool:
 class VmcDecoder:
     """Gathers the bones of frames; invalid packets change nothing."""
 
-    max_parts = 512
-    """Number of packets to read at a time: 9 frames of a sender with a packet per bone."""
+    max_parts = 192
+    """Number of packets to read at a time: three frames of a sender with a packet per bone."""
 
     def __init__(self) -> None:
         self._root: tuple[float, ...] = STILL
