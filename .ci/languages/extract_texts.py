@@ -15,12 +15,15 @@ NOT_SHOWN = (
     "solvers/reconstruction/residual_correction/learn_", "solvers/rotations/",
     "solvers/retrieval/index/", "solvers/retrieval/library/values.py",
     "solvers/retrieval/library/clip_rows.py", "solvers/recordings/live/frames.py",
+    *(f"solvers/recordings/streams/{name}.py"
+      for name in ("axes", "layouts", "lz4", "mocopi", "osc", "rokoko", "senders", "vmc")),
     "solvers/motion/skeletons/skeleton.py", "solvers/motion/skeletons/limb_ik.py",
     "solvers/motion/skeletons/warping.py", "solvers/motion/skeletons/joint_recording.py",
     "solvers/motion/skeletons/joint_limits.py",
 )  # fmt: skip
 """Beginnings of paths without texts of the window: verbs of the command line, what translates,
-scripts that learn, and checks of arrays that only programs and damaged libraries fail."""
+scripts that learn, damaged packets of streams, and checks of arrays that only programs and
+damaged libraries fail."""
 LABELED = {
     "mocap_assist/check/checking.py": {"_summary"},
     "mocap_assist/check/compare_panel.py": {"HOLD"},

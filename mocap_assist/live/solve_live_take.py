@@ -269,12 +269,12 @@ def _moved(motion: Motion, offset: Array) -> Motion:
 def _state(take: LiveTake | PoseTake | None, state: ListenerState) -> tuple[float, str]:
     """Return fraction and message of the progress."""
     if take is None:
-        return 0.0, state_text("Waiting for the tracker", state)
+        return 0.0, state_text("Waiting for the tracker.", state)
     if take.calibration is None:
         return take.calibrated_fraction, state_text(
-            "Measuring the actor: move arms and legs", state
+            "Measuring the actor: move arms and legs.", state
         )
-    return 1.0, state_text("Recording", state)
+    return 1.0, state_text("Recording the actor.", state, take.has_other_body)
 
 
 def _silence_text(port: int, state: ListenerState) -> str:

@@ -1,9 +1,15 @@
 """What the preferences say of live streams."""
 
+import bpy
+
 from ...solvers.errors import InvalidSettingError
 from ...solvers.recordings.live import PORT
 from ..panels.preference_values import preferences, preferred
 
+OFFLINE = (
+    "Blender's online access is off. Allow it in Preferences > System to receive from other"
+    " machines."
+)
 NO_ADDRESSES = (
     "Other machines may send, but no address is allowed. Add those of your trackers in the"
     " preferences, or switch it off."
@@ -21,11 +27,13 @@ def allowed_addresses() -> str:
     Raises
     ------
     InvalidSettingError
-        Other machines may send, but no address is listed.
+        Other machines may send, but no address is listed, or Blender is offline.
     """
     if preferences() is None or not preferred("live_network"):
         return ""
     addresses = str(preferred("live_addresses"))
     if not addresses.strip(" ,"):
         raise InvalidSettingError(NO_ADDRESSES)
+    if not bpy.app.online_access:
+        raise InvalidSettingError(OFFLINE)
     return addresses

@@ -2,10 +2,13 @@
 
 from ...solvers.recordings.streams import ListenerState
 
+OTHER_BODY = "The stream shows another body, which is ignored."
 
-def state_text(doing: str, state: ListenerState) -> str:
+
+def state_text(doing: str, state: ListenerState, has_other_body: bool = False) -> str:
     """Return what a recording does, who sends, and what is wrong."""
-    return " ".join(filter(None, (f"{doing}.", sender_text(state), issue_text(state))))
+    issue = OTHER_BODY if has_other_body else issue_text(state)
+    return " ".join(filter(None, (doing, sender_text(state), issue)))
 
 
 def sender_text(state: ListenerState) -> str:

@@ -18,7 +18,7 @@ from ..panels.preference_values import EXTENSION, preferences, preferred
 from .diagnostics import COPY
 
 NETWORK_WARNING = (
-    "Whoever sends from an allowed address moves your rig. Use it in a network that you know."
+    "Any program at an allowed address can move your rig. Use it in a network that you know."
 )
 STOP = "mocap_assist.stop_keeping"
 

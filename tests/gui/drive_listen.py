@@ -79,7 +79,7 @@ def record_live():
     job = bpy.context.window_manager.mocap_assist_job
     assert job.running
     yield from perform("hand up", "wave right", "wave left")
-    assert job.message == "Recording"
+    assert job.message.startswith("Recording the actor. JSON from 127.0.0.1:")
     bgui.shot("7-recording.png")
     yield from perform("hand up")
     bgui.shot("8-hand-up.png")

@@ -26,6 +26,7 @@ from .axes import checked_positions
 
 MAX_LINE_BYTES = 32_768
 """Maximum size of a line in bytes; 33 landmarks take about 4,000."""
+DAMAGED = "A line with landmarks is damaged."
 N_LANDMARKS = 33
 MARKS = (b"andmark", b'"keypoints3D"')
 """What the keys of landmarks have in common."""
@@ -69,18 +70,18 @@ class MediaPipeDecoder:
             The line is damaged, has image landmarks, or an invalid value.
         """
         if len(part) > MAX_LINE_BYTES:
-            raise InvalidMotionError(f"A frame of {len(part)} bytes is too long.")
+            raise InvalidMotionError(DAMAGED)
         try:
             fields = parse_json(part, parse_constant=_refuse)
         except ValueError:
-            raise InvalidMotionError("A frame is not readable as JSON.") from None
+            raise InvalidMotionError(DAMAGED) from None
         landmarks = frame_landmarks(fields, "A frame")
         if landmarks is None:
             return
         points = landmarks[None, :, :3]
         if not is_world(points):
             raise InvalidFileError(
-                "A frame has image landmarks, without true depth. Send MediaPipe's"
+                "The stream has image landmarks, without true depth. Send MediaPipe's"
                 " pose_world_landmarks."
             )
         visibility = np.nan_to_num(np.clip(landmarks[None, :, 3], 0.0, 1.0), nan=1.0)

@@ -106,7 +106,7 @@ class XsensDecoder:
         """Return the frame of a sample; props and fingers come after the body."""
         body = segments[:N_SEGMENTS]
         if body["id"].tolist() != list(range(1, N_SEGMENTS + 1)):
-            raise InvalidMotionError("A sample of Xsens MVN does not have the 23 segments.")
+            raise InvalidMotionError(DAMAGED)
         rotations = checked_rotations(body["rotation"].astype(np.float64))
         raw = body["position"].astype(np.float64)
         checked_positions(CENTIMETER * raw)

@@ -43,6 +43,8 @@ class LiveTake:
         self._started: _StartedTake | None = None
         self.n_skipped = 0
         """Number of frames that came faster than they were reconstructed."""
+        self.has_other_body = False
+        """Whether the last frame was left out, as it has other joints than the calibration."""
 
     @property
     def calibration(self) -> Motion | None:
@@ -75,6 +77,8 @@ class LiveTake:
             self._calibrate(arrived)
             return []
         self.n_skipped += max(len(arrived) - MAX_WAITING, 0)
+        if arrived:
+            self.has_other_body = arrived[-1].names != self.names
         poses = [self._started.add(frame) for frame in arrived[-MAX_WAITING:]]
         return [pose for pose in poses if pose is not None]
 

@@ -38,8 +38,8 @@ class PoseTake:
         """The motion in which the skeleton was measured; None as long as that lasts."""
         self.n_skipped = 0
         """Number of frames that came faster than they were taken."""
-        self.n_other_bones = 0
-        """Number of frames whose bones are not those of the calibration."""
+        self.has_other_body = False
+        """Whether the last frame was left out, as it has other bones than the calibration."""
 
     @property
     def calibrated_fraction(self) -> float:
@@ -94,8 +94,8 @@ class PoseTake:
         """Return the pose of a frame; None if it has other bones, or shares its time slot."""
         assert self.calibration is not None and self._slots is not None
         skeleton = self.calibration.skeleton
-        if frame.names != skeleton.names:
-            self.n_other_bones += 1
+        self.has_other_body = frame.names != skeleton.names
+        if self.has_other_body:
             return None
         slot = self._slots.next(frame.time)
         if slot is None:

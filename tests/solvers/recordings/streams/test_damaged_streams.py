@@ -1,4 +1,4 @@
-"""Damaged packets of every protocol: nothing raises, nothing grows, and the next frame is read."""
+"""Damaged packets of every protocol raise nothing, and the next frame is read."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What is sent in a protocol arrives as it was, over a socket, within the protocol's rounding."""
+"""What is sent over a socket arrives as it was, within the rounding of the protocol."""
 
 import socket
 
