@@ -8,6 +8,7 @@ import json
 import re
 import zipfile
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -27,6 +28,7 @@ from fuzz_seeds import (
     png,
     raw_depth,
     scene_json,
+    stream_packets,
 )
 from learned_files import LEARNED, npz
 from mkv_files import k4a
@@ -41,6 +43,7 @@ from solvers.recordings import DepthSettings, open_bodies, read_depth, read_reco
 from solvers.recordings.containers.png_header import read_png_header
 from solvers.recordings.depth_files.folder import is_depth_folder
 from solvers.recordings.live.frames import decode_frame
+from solvers.recordings.streams import StreamDecoder, StreamProtocol
 from solvers.retrieval import Clip, find_similar, load_clip_library
 
 DATA = Path(__file__).parents[1] / "data"
@@ -148,7 +151,7 @@ def targets() -> dict[str, Target]:
             content, _read_folder, [*TOKENS, *BINARY_TOKENS], is_archive=True
         )
     found["json"] = Target(scene_json(), _read_json, JOINT_TOKENS)
-    found["live_frame"] = Target(live_frame(), _read_frames, JOINT_TOKENS)
+    found |= stream_targets()
     found["bone_map"] = Target(
         BONE_MAP,
         read_humanoid_map,
@@ -161,6 +164,16 @@ def targets() -> dict[str, Target]:
         JOINT_TOKENS,
         "mocap_assist.json",
     )
+    return found
+
+
+def stream_targets() -> dict[str, Target]:
+    """Return the targets of live streams."""
+    found = {"live_frame": Target(live_frame(), _read_frames, JOINT_TOKENS)}
+    for protocol, packet in stream_packets().items():
+        found[f"stream_{protocol.value}"] = Target(
+            packet, partial(_read_packet, protocol), [*JOINT_TOKENS, *BINARY_TOKENS]
+        )
     return found
 
 
@@ -201,6 +214,12 @@ def _read_depth(path: Path) -> DepthRecording:
 
 def _read_frames(path: Path) -> list[object]:
     return [decode_frame(line) for line in path.read_bytes().split(b"\n")[:20]]
+
+
+def _read_packet(protocol: StreamProtocol, path: Path) -> list[object]:
+    decoder = StreamDecoder(protocol)
+    parts = decoder.parts(path.read_bytes())[:20]
+    return [frame for part in parts for frame in decoder.decode(part, 0.0)]
 
 
 def _search(path: Path) -> object:
