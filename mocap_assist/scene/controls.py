@@ -6,7 +6,7 @@ represented by the control that it moves with. The channels of all controls ther
 from the joints' world transforms without evaluating the rig.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -121,19 +121,31 @@ def keys_of(target: TargetRig, poses: WorldPoses, travel: Carried) -> Mapping[st
     moved = [_moved(control, target.skeleton, poses, travel) for control in target.controls]
     n_frames = len(poses.positions)
     still = Carried(np.tile([1.0, 0.0, 0.0, 0.0], (n_frames, 1)), np.zeros(3), np.zeros(3))
-    found = {}
-    for control, delta in zip(target.controls, moved, strict=True):
-        carrier = still if control.carrier == NO_CONTROL else moved[control.carrier]
-        found[control.bone] = BoneKeys(
-            _basis_rotations(control, carrier, delta) if control.rotates else None,
-            _basis_shifts(control, carrier, delta) / target.meters if control.moves else None,
+    carriers = [
+        still if control.carrier == NO_CONTROL else moved[control.carrier]
+        for control in target.controls
+    ]
+    rotations = _basis_rotations(target.controls, carriers, moved)
+    return {
+        control.bone: BoneKeys(
+            rotations[number] if control.rotates else None,
+            _basis_shifts(control, carriers[number], moved[number]) / target.meters
+            if control.moves
+            else None,
         )
-    return found
+        for number, control in enumerate(target.controls)
+    }
 
 
-def _basis_rotations(control: Control, carrier: Carried, moved: Carried) -> Array:
-    local = multiply(inverse(carrier.rotations), moved.rotations)
-    return np.asarray(multiply(multiply(inverse(control.axes), local), control.axes))
+def _basis_rotations(
+    controls: Sequence[Control], carriers: Sequence[Carried], moved: Sequence[Carried]
+) -> Array:
+    """Return the rotations of all controls at once, shape (n_controls, n_frames, 4)."""
+    axes = np.array([control.axes for control in controls]).reshape(-1, 1, 4)
+    carried = np.array([each.rotations for each in carriers]).reshape(len(controls), -1, 4)
+    turned = np.array([each.rotations for each in moved]).reshape(len(controls), -1, 4)
+    local = multiply(inverse(carried), turned)
+    return np.asarray(multiply(multiply(inverse(axes), local), axes))
 
 
 def _basis_shifts(control: Control, carrier: Carried, moved: Carried) -> Array:

@@ -4,26 +4,30 @@
     make bench-live ARGUMENTS=--docs    # into docs/benchmarks/live.md
 
 Takes of depth cameras are sent frame by frame to a `LiveTake` and then to a rig, without a
-socket. Takes whose path is missing are left out.
+socket. Then streams are sent over a socket in each protocol, and timed by stage. Takes whose
+path is missing are left out.
 """
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, thread_time
 from typing import NamedTuple
 
 import numpy as np
 
-from solvers.motion import find_humanoid_map
+from solvers.motion import JointRecording, Motion, find_humanoid_map
 from solvers.reconstruction import ReconstructSettings, reconstruct
 from solvers.recordings import read_recording
 from solvers.recordings.live import frames_from_recording
+from solvers.recordings.streams import StreamProtocol
 from solvers.retargeting import LiveRetargeting
-from solvers.samples import walker_skeleton
+from solvers.samples import GaitSettings, walker_skeleton, walking_gait
 from solvers.workflows import LiveTake
 
 from ..shared.report import DOCS, Report
 from ..shared.tables import table
+from .delay import measure_delay
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "kinect"
 TAKES = {
@@ -57,6 +61,24 @@ def main() -> None:
     ]  # fmt: skip
     report = Report(arguments.docs, DOCS / "benchmarks" / "live.md")
     report.part("live", [table(header, rows) + "\n"], perf_counter() - started)
+    started = perf_counter()
+    rows = {
+        name: measure_delay(*stream, walker_skeleton()).cells() for name, stream in streams()
+    }
+    header = ["stream", "receive", "solve", "rig", "to Blender", "at most behind"]
+    report.part("delay", [table(header, rows) + "\n"], perf_counter() - started)
+
+
+def streams() -> Iterator[tuple[str, tuple[Motion | JointRecording, StreamProtocol]]]:
+    """Yield what is sent: joints of a camera, and a made walk in each protocol of bones."""
+    name, path = next(iter(TAKES.items()))
+    if path.exists():
+        recording = read_recording(path)
+        yield f"{name}, JSON", (recording.slice(0, N_FRAMES), StreamProtocol.JSON)
+    walk = walking_gait(GaitSettings(duration=6.0, frame_rate=60.0))
+    for protocol in StreamProtocol:
+        if protocol not in {StreamProtocol.AUTO, StreamProtocol.JSON}:
+            yield f"made walk, {protocol.label}", (walk, protocol)
 
 
 def measure(path: Path) -> LiveFigures:
@@ -66,9 +88,9 @@ def measure(path: Path) -> LiveFigures:
     take, rig, poses, times, rig_times = LiveTake(), None, [], [], []
     calibration_s = 0.0
     for frame in frames_from_recording(recording):
-        began = perf_counter()
+        began = thread_time()
         arrived = take.add([frame])
-        elapsed = perf_counter() - began
+        elapsed = thread_time() - began
         if take.calibration is not None and rig is None:
             rig, calibration_s = _rig_for(take), elapsed
             continue
@@ -76,9 +98,9 @@ def measure(path: Path) -> LiveFigures:
             continue
         times.append(1e3 * elapsed)
         poses += arrived
-        began = perf_counter()
+        began = thread_time()
         rig.update(arrived[-1].motion)
-        rig_times.append(1e3 * (perf_counter() - began))
+        rig_times.append(1e3 * (thread_time() - began))
     offline = reconstruct(recording, settings=ReconstructSettings(causal=True))
     last = offline.tracks.positions[-len(poses) :]
     distance = np.linalg.norm(
