@@ -14,6 +14,7 @@ import bgui
 import bpy
 from driver_scene import empty_scene, settle, unfold_alone
 
+SENDER = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 PACKAGE = "bl_ext.user_default.mocap_assist"
 
 
@@ -23,15 +24,21 @@ def load(name):
 
 def perform(*gestures):
     """Send the frames of the made actor at their times."""
-    samples, frames = load("solvers.samples"), load("solvers.recordings.live.frames")
+    samples = load("solvers.samples")
     made = samples.perform_gestures(gestures, samples.PerformanceSettings(noise=0.004))
-    start = time.monotonic()
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-        for frame in frames.frames_from_recording(made.recording()):
-            while time.monotonic() - start < frame.time:
-                yield 0.01
-            sender.sendto(frames.encode_frame(frame), ("127.0.0.1", frames.PORT))
+    yield from send(made.recording(), "JSON")
     yield 0.3
+
+
+def send(recording, protocol):
+    """Send a recording in real time."""
+    streams, port = load("solvers.recordings.streams"), load("solvers.recordings.live").PORT
+    start = time.monotonic()
+    for packets in streams.encode_recording(recording, streams.StreamProtocol[protocol]):
+        while time.monotonic() - start < packets.time:
+            yield 0.01
+        for datagram in packets.datagrams:
+            SENDER.sendto(datagram, ("127.0.0.1", port))
 
 
 def steps():
@@ -63,6 +70,7 @@ def steps():
     yield 0.5
     assert listening.current() is None
     yield from record_live()
+    yield from record_bones()
     bgui.shot()
 
 
@@ -88,6 +96,27 @@ def record_live():
     assert not job.running
     action = armature.animation_data.action
     assert action != sample and action.frame_range[1] - action.frame_range[0] > 60
+    yield from settle()
+
+
+def record_bones():
+    """The armature follows a walk that comes as VMC."""
+    samples = load("solvers.samples")
+    walk = samples.walking_gait(samples.GaitSettings(duration=8.0, frame_rate=30.0))
+    armature = bpy.context.view_layer.objects.active
+    before = armature.animation_data.action
+    yield 1.5  # the last sender is followed for a second
+    yield from bgui.scan()
+    yield from bgui.click(*bgui.at("mocap_assist.record_live"))
+    bgui.move(*middle_of_view())
+    yield from send(walk, "VMC")
+    job = bpy.context.window_manager.mocap_assist_job
+    assert job.message.startswith("Recording the actor. VMC from 127.0.0.1:"), job.message
+    bgui.shot("9-bones.png")
+    yield from bgui.key("Escape")
+    yield 1.0
+    action = armature.animation_data.action
+    assert action != before and action.frame_range[1] - action.frame_range[0] > 60
     yield from settle()
 
 

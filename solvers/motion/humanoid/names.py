@@ -4,6 +4,7 @@ import re
 import unicodedata
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from itertools import accumulate
 from operator import and_, eq
 from typing import NamedTuple
@@ -53,7 +54,13 @@ def roles_by_name(names: Sequence[str]) -> dict[str, str]:
     -------
     dict of role to joint name; empty if no table has any of the names.
     """
-    return with_fingers(names, max(name_matches(names), key=len))
+    return dict(_cached_roles(tuple(names)))
+
+
+@lru_cache(maxsize=64)
+def _cached_roles(names: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
+    """Return roles and names, cached because a live stream has the same names in each frame."""
+    return tuple(with_fingers(names, max(name_matches(names), key=len)).items())
 
 
 def name_matches(names: Sequence[str]) -> list[dict[str, str]]:
