@@ -46,6 +46,7 @@ ON_ONE_PYTHON = {
     "recordings/depth_files/test_fuzz_depth.py": (3, 11),
     "recordings/joint_files/test_point_tables.py": (3, 11),
     "recordings/joint_files/test_unnamed_joints.py": (3, 11),
+    "recordings/streams": (3, 13),
     "recordings/test_fuzz_joints.py": (3, 11),
     "recordings/test_streaming.py": (3, 11),
     "retargeting": (3, 13),

@@ -68,11 +68,12 @@ class TestVmc:
     def test_the_root_moves_and_turns_the_hips(self):
         """A quarter turn about +Y takes the front +Z to +X; the root is one meter ahead."""
         root = write_message("/VMC/Ext/Root/Pos", "root", 0.0, 0.0, 1.0, 0.0, HALF, 0.0, HALF)
-        (frame,) = self.decode([root, *unity_body(), bone("Hips", (0, 1, 0))])
+        body = unity_body(at=(0.0, 1.0, 0.5))
+        (frame,) = self.decode([root, *body, body[0]])
 
         found = positions_of(frame)
-        assert_allclose(found["hips"], (0.0, -1.0, 1.0), atol=1e-6)
-        assert_allclose(found["leftUpperArm"], (0.0, -1.2, 1.5), atol=1e-6)
+        assert_allclose(found["hips"], (-0.5, -1.0, 1.0), atol=1e-6)
+        assert_allclose(found["leftUpperArm"], (-0.5, -1.2, 1.5), atol=1e-6)
 
     def test_a_frame_is_complete_when_its_last_bone_has_come(self):
         decoder = VmcDecoder()
