@@ -53,7 +53,9 @@ def read_stage(path: str) -> UsdStage:
     except RuntimeError:
         raise InvalidFileError(f"{path} is damaged or incomplete. Export it again.") from None
     rate = float(stage.GetTimeCodesPerSecond())
-    unit = float(UsdGeom.GetStageMetersPerUnit(stage))
+    # In some files the number has single precision, which GetStageMetersPerUnit refuses.
+    stated = stage.GetPseudoRoot().GetMetadata("metersPerUnit")
+    unit = UsdGeom.LinearUnits.centimeters if stated is None else float(stated)
     return UsdStage(str(UsdGeom.GetStageUpAxis(stage)), unit, rate)
 
 

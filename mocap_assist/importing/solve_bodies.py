@@ -1,6 +1,6 @@
 """Read the chosen bodies of a file, and all takes of each, for the button Import."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +9,10 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.motion import Motion
 from ...solvers.recordings import ALL_BODIES, Bodies, Body
 from ...solvers.recordings.conventions import MIN_BODY_JOINTS, observed_body
-from ..jobs.in_blender import BlendClip, BlendRead
+from ..jobs.in_blender import BlendClip, BlendRead, LeftOut
+
+MAX_LISTED = 3
+"""Bones that a sentence lists."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,8 +23,7 @@ class SkeletonAction:
     motion: Motion
     armature: str = ""
     """Name of the armature in the file."""
-    remarks: tuple[str, ...] = ()
-    """A message for each kind of motion that is left out."""
+    left_out: LeftOut = LeftOut()
 
 
 def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[SkeletonAction, ...]]:
@@ -38,7 +40,7 @@ def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[SkeletonAction,
     listed = tuple(_body(name, group, longest) for name, group in _named(groups))
     takes = [
         tuple(
-            SkeletonAction(clip.item, clip.motion, clip.armature, clip.remarks)
+            SkeletonAction(clip.item, clip.motion, clip.armature, clip.left_out)
             for clip in group
         )
         for group in groups
@@ -51,6 +53,24 @@ def choice_in_scene(wanted: str, bodies: Bodies[tuple[SkeletonAction, ...]]) -> 
     if wanted.strip().lower() in {"", ALL_BODIES}:
         return list(range(len(bodies.listed)))
     return bodies.choose(wanted)
+
+
+def describe_left_out(takes: Sequence[LeftOut]) -> tuple[str, ...]:
+    """Return one message for each kind of motion that the takes of a skeleton leave out."""
+    shifts: dict[str, float] = {}
+    for take in takes:
+        for name, meters in take.shifts:
+            shifts[name] = max(meters, shifts.get(name, 0.0))
+    growing = dict.fromkeys(name for take in takes for name in take.growing)
+    found = []
+    if shifts:
+        found.append(
+            "Bones change their distance to their parents, which is left out:"
+            f" {_listed(shifts)}, by up to {100.0 * max(shifts.values()):.0f} cm"
+        )
+    if growing:
+        found.append(f"Bones change their size, which is left out: {_listed(growing)}")
+    return tuple(found)
 
 
 def _grouped(clips: Sequence[BlendClip]) -> list[list[BlendClip]]:
@@ -89,3 +109,8 @@ def _body(name: str, group: list[BlendClip], longest: int) -> Body:
         longest / motion.frame_rate,
         is_person=motion.skeleton.n_joints >= MIN_BODY_JOINTS,
     )
+
+
+def _listed(names: Mapping[str, object]) -> str:
+    more = len(names) - MAX_LISTED
+    return ", ".join([*names][:MAX_LISTED]) + (f" and {more} more" if more > 0 else "")

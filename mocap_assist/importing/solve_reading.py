@@ -40,7 +40,12 @@ from ...solvers.recordings.conventions import (
 )
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 from ..jobs.in_blender import BackgroundBlender, BlendRead, SkinnedMeshes
-from .solve_bodies import SkeletonAction, bodies_of_scene, choice_in_scene
+from .solve_bodies import (
+    SkeletonAction,
+    bodies_of_scene,
+    choice_in_scene,
+    describe_left_out,
+)
 from .solve_scenes import read_scenes
 
 TrackedRecording = Motion | Tracks | JointRecording
@@ -167,13 +172,13 @@ def read_takes(
         )
         take = first.name if others else ""
         name = bodies.listed[index].name if len(bodies.listed) > 1 else ""
-        warnings = () if contents else found.refused
+        motions = [take.motion for take in (first, *others)]
         warnings = (
-            *warnings,
+            *(() if contents else found.refused),
             *describe_guesses(first.motion),
-            *_questions_of_axis([first, *others], conversion),
+            *([] if conversion.reading.up.axis else describe_lying(motions)),
             *questions_of(first.motion, conversion.floor),
-            *dict.fromkeys(text for take in (first, *others) for text in take.remarks),
+            *describe_left_out([take.left_out for take in (first, *others)]),
         )
         more = tuple(others), offered, found.meshes, first.armature
         contents.append(ReadRecording(first.motion, warnings, take, name, *more))
@@ -185,13 +190,6 @@ def _read_scenes(
 ) -> list[BlendRead | MocapAssistError]:
     blender, meshes = conversion.blender, conversion.meshes
     return read_scenes(paths, blender, meshes=meshes, progress=progress)
-
-
-def _questions_of_axis(takes: Sequence[SkeletonAction], conversion: Conversion) -> list[str]:
-    """Ask about takes of a skeleton that lie, unless Up was set."""
-    if conversion.reading.up.axis:
-        return []
-    return describe_lying([take.motion for take in takes])
 
 
 def _read_bodies(path: Path, conversion: Conversion, progress: Progress) -> list[ReadRecording]:

@@ -50,6 +50,15 @@ class BackgroundBlender:
             )
 
 
+class LeftOut(NamedTuple):
+    """Motion of a body's bones that a recording of rotations cannot hold."""
+
+    shifts: tuple[tuple[str, float], ...] = ()
+    """Bones whose distance to the parent changes, and by how much, meters."""
+    growing: tuple[str, ...] = ()
+    """Bones that change their size."""
+
+
 @dataclass(frozen=True, eq=False)
 class BlendClip:
     """An armature's action in a .blend file."""
@@ -60,8 +69,7 @@ class BlendClip:
     tags: tuple[str, ...] = ()
     armature: str = ""
     """Name of the armature."""
-    remarks: tuple[str, ...] = ()
-    """A message for each kind of motion that is left out."""
+    left_out: LeftOut = LeftOut()
 
 
 class SkinnedMeshes(NamedTuple):

@@ -20,7 +20,7 @@ from ..blender.compat import Source
 from ..blender.scene_files import open_scene_file
 from ..blender.skinned_meshes import pack_skinned_meshes
 from ..blender.stated_conventions import stated_conventions
-from ..jobs.in_blender import BlendClip, BlendRead
+from ..jobs.in_blender import BlendClip, BlendRead, LeftOut
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.rigify import is_rigify
 from ..rigs.target_read import find_roles
@@ -28,7 +28,7 @@ from ..scene import history
 from ..scene.rig import END
 from .carriers import with_carriers
 from .catalogs import NONE, catalog_file, read_catalogs
-from .left_out import describe_left_out
+from .left_out import find_left_out
 
 ROUNDING = 1e-3
 """Relative error of lengths that were stored in 32 bits."""
@@ -116,22 +116,22 @@ def read_source(
 
 def _read_clip(
     armature: bpy.types.Object, source: Source, stated: FileConventions | None, root: str = ""
-) -> tuple[Motion, tuple[str, ...]]:
+) -> tuple[Motion, LeftOut]:
     """Return how a body moves, and what is left out of it.
 
     If another program made the file, the body moves along with the objects above its armature.
     """
     scene = bpy.context.scene
     if stated is None:
-        return read_source(scene, armature, source, root), ()
+        return read_source(scene, armature, source, root), LeftOut()
     if is_rigify(armature.data.bones):
         motion = read_source(scene, armature, source, root)
-        return _with_conventions(armature, motion, stated), ()
+        return _with_conventions(armature, motion, stated), LeftOut()
     take = read_take(armature, scene, source=source, root=root)
     motion = take.parts[0].motion
     unit = _unit_ratio(armature, motion)
     motion = with_carriers(scene, armature, source, take.frames, motion, unit)
-    return _with_conventions(armature, motion, stated), describe_left_out(source, take)
+    return _with_conventions(armature, motion, stated), find_left_out(source, take)
 
 
 def _read_file(
@@ -227,8 +227,8 @@ def _read_action(
         if isinstance(read, Failure):
             refused.append(read.sentence)
             continue
-        motion, remarks = read
-        clips.append(BlendClip(item, motion, tags, armature.name, remarks))
+        motion, left_out = read
+        clips.append(BlendClip(item, motion, tags, armature.name, left_out))
     return BlendRead(tuple(clips), tuple(refused))
 
 

@@ -1,4 +1,4 @@
-"""Say what bones of other programs do that a recording of rotations cannot hold."""
+"""Find what bones of other programs do that a recording of rotations cannot hold."""
 
 from collections.abc import Sequence
 
@@ -9,6 +9,7 @@ from ...solvers.arrays import Array
 from ..actions.bone_channels import animated_curves, bone_path
 from ..actions.take import ArmatureTake
 from ..blender.compat import Source
+from ..jobs.in_blender import LeftOut
 
 MIN_SHIFT_M = 0.02
 """Change of a bone's distance to its parent, meters, from which it is reported. Chosen by hand:
@@ -16,11 +17,10 @@ half of the width of a wrist."""
 MIN_GROWTH = 0.02
 """Difference of a bone's scale from 1, a ratio, from which it is reported. Chosen by hand: 1 cm
 of a thigh."""
-MAX_LISTED = 3
 
 
-def describe_left_out(source: Source, take: ArmatureTake) -> tuple[str, ...]:
-    """Return a message for each kind of change of the body's bones that is left out.
+def find_left_out(source: Source, take: ArmatureTake) -> LeftOut:
+    """Return the bones of the body whose shifts and sizes are left out of a take.
 
     Parameters
     ----------
@@ -29,14 +29,7 @@ def describe_left_out(source: Source, take: ArmatureTake) -> tuple[str, ...]:
     take : ArmatureTake
     """
     body = take.parts[0].motion.skeleton.names
-    found = []
     shifts = {} if take.offsets is None else _shifts(take.offsets.names, take.offsets.positions)
-    if shifting := [name for name in body if shifts.get(name, 0.0) >= MIN_SHIFT_M]:
-        largest = 100.0 * max(shifts[name] for name in shifting)
-        found.append(
-            "Bones change their distance to their parents, which is left out:"
-            f" {_listed(shifting)}, by up to {largest:.0f} cm"
-        )
     curves = animated_curves(*source)
     growing = [
         name
@@ -47,9 +40,8 @@ def describe_left_out(source: Source, take: ArmatureTake) -> tuple[str, ...]:
             for axis in range(3)
         )
     ]
-    if growing:
-        found.append(f"Bones change their size, which is left out: {_listed(growing)}")
-    return tuple(found)
+    shifting = [(name, shifts[name]) for name in body if shifts.get(name, 0.0) >= MIN_SHIFT_M]
+    return LeftOut(tuple(shifting), tuple(growing))
 
 
 def _shifts(names: Sequence[str], positions: Array) -> dict[str, float]:
@@ -63,7 +55,3 @@ def _grows(curve: bpy.types.FCurve) -> bool:
     curve.keyframe_points.foreach_get("co", keys.ravel())
     return bool(np.any(np.abs(keys[:, 1] - 1.0) >= MIN_GROWTH))
 
-
-def _listed(names: Sequence[str]) -> str:
-    more = len(names) - MAX_LISTED
-    return ", ".join(names[:MAX_LISTED]) + (f" and {more} more" if more > 0 else "")
