@@ -13,6 +13,7 @@ from ...solvers.recordings import (
     is_depth_folder,
     is_scene_file,
     may_contain_motion,
+    one_path_per_take,
 )
 from ...solvers.recordings.containers import files_below, is_folder
 from ..depth.exr_folder import as_archive, exr_files, size_of
@@ -51,7 +52,7 @@ def all_recordings_in(folder: Path) -> list[Path]:
         for path in files_below(folder)
         if (may_contain_motion(path) or is_scene_file(path)) and not {*path.parents} & {*takes}
     ]
-    return sorted({*takes, *others})
+    return sorted({*takes, *one_path_per_take(others)})
 
 
 def take_of(path: Path) -> Path:

@@ -8,7 +8,12 @@ from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import SCENE_SUFFIXES, FloorPlacement, is_scene_file
+from ...solvers.recordings import (
+    SCENE_SUFFIXES,
+    FloorPlacement,
+    is_scene_file,
+    one_path_per_take,
+)
 from ...solvers.recordings.conventions import conventions_of
 from ..blender.path_properties import absolute, chosen_files
 from ..scene.scene_rate import scene_rate
@@ -38,14 +43,15 @@ def chosen_paths(operator: bpy.types.Operator) -> list[Path]:
     """Return the files that an operator was given, as a list in a folder or as one path.
 
     The skeleton of an AMC file may be among them: it is found anyway. A folder of depth images
-    may be given itself, as the folder that is shown, or by files in it.
+    may be given itself, as the folder that is shown, or by files in it. Of a take with a file
+    per frame, the first one is returned.
     """
     paths = chosen_files(operator)
     if not paths and operator.filepath:
         paths = [absolute(operator.filepath)]
     if not paths and operator.directory and is_take(absolute(operator.directory)):
         paths = [absolute(operator.directory)]
-    paths = list(dict.fromkeys(map(take_of, paths)))
+    paths = one_path_per_take(list(dict.fromkeys(map(take_of, paths))))
     if any(path.suffix.lower() == ".amc" for path in paths):
         paths = [path for path in paths if path.suffix.lower() != ".asf"]
     return paths

@@ -54,4 +54,3 @@ def _grows(curve: bpy.types.FCurve) -> bool:
     keys = np.empty((len(curve.keyframe_points), 2), np.float32)
     curve.keyframe_points.foreach_get("co", keys.ravel())
     return bool(np.any(np.abs(keys[:, 1] - 1.0) >= MIN_GROWTH))
-

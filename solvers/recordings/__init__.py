@@ -20,7 +20,12 @@ from .depth_files import (
     is_depth_folder,
     read_depth,
 )
-from .folders import depth_takes_in, may_contain_motion, recordings_in
+from .folders import (
+    depth_takes_in,
+    may_contain_motion,
+    one_path_per_take,
+    recordings_in,
+)
 from .formats import detect_format
 from .joint_files import (
     read_freemocap,
@@ -76,6 +81,7 @@ __all__ = [
     "is_scene_file",
     "list_bodies",
     "may_contain_motion",
+    "one_path_per_take",
     "open_as",
     "open_bodies",
     "questions_of",

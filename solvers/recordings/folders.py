@@ -1,22 +1,61 @@
 """Find the recordings in folders."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from ..faults import attempt
-from .containers import files_below, is_folder
+from ..faults import Failure, attempt
+from .containers import files_below, frame_files, is_folder
 from .depth_files import is_depth_folder
 from .formats import detect_format
 from .read_recording import is_depth_recording
+
+FRAME_SUFFIXES = (".json", ".npy")
+"""Endings of files that may hold a single frame."""
+MAX_FRAME_BYTES = 1 << 20
+"""Size of a file, bytes, above which it holds more than one frame. It bounds the run time: the
+joints of ten people take 100 kB as text."""
 
 
 def recordings_in(folder: Path) -> list[Path]:
     """Return the recordings in a folder and its subfolders, sorted by name.
 
     Skip hidden files and folders, and skeletons without motion. Include files and folders that
-    cannot be opened: the reader reports the reason.
+    cannot be opened: the reader reports the reason. A take with a file per frame is listed once
+    (`one_path_per_take`).
     """
-    return [path for path in files_below(folder) if may_contain_motion(path)]
+    return one_path_per_take([path for path in files_below(folder) if may_contain_motion(path)])
+
+
+def one_path_per_take(paths: Sequence[Path]) -> list[Path]:
+    """Return the paths without the further files of takes that have a file per frame."""
+    waiting = dict.fromkeys(path for path in paths if path.suffix.lower() in FRAME_SUFFIXES)
+    names: dict[Path, list[str]] = {}
+    for path in waiting:
+        names.setdefault(path.parent, []).append(path.name)
+    further: set[Path] = set()
+    while waiting:
+        path = next(iter(waiting))
+        files = [*frame_files(path, names[path.parent]).files.values()]
+        if len(files) > 1 and _is_one_frame(max(files, key=_size)):
+            further.update(each for each in files if each != path)
+        for each in files:
+            waiting.pop(each, None)
+    return [path for path in paths if path not in further]
+
+
+def _size(path: Path) -> int:
+    found = attempt(path, path.stat)
+    return 0 if isinstance(found, Failure) else found.st_size
+
+
+def _is_one_frame(path: Path) -> bool:
+    """Whether a file holds one frame of a take that has a file for each."""
+    if _size(path) > MAX_FRAME_BYTES:
+        return False
+    format_ = attempt(path, detect_format, path)
+    if isinstance(format_, Failure) or format_ is None or format_.is_one_frame is None:
+        return False
+    return attempt(path, format_.is_one_frame, path) is True
 
 
 def may_contain_motion(path: Path) -> bool:

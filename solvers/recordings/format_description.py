@@ -35,6 +35,8 @@ class Format(NamedTuple):
     """Whether it is recognized only for a better sentence."""
     lacks_bones: bool = False
     """Whether it may hold the rotations of a body without lengths (`smpl_body`)."""
+    is_one_frame: Callable[[Path], bool] | None = None
+    """Whether a file holds one frame of a take with a file for each; None if none can."""
 
 
 def one_body(read: Callable[..., Tracked]) -> Opener:

@@ -17,11 +17,14 @@ from .format_description import Format, one_body
 from .joint_files import (
     is_azure_csv,
     is_azure_json,
+    is_frame_json,
+    is_frame_mediapipe,
     is_frames_json,
     is_irds,
     is_joint_csv,
     is_joint_json,
     is_kinect_csv,
+    is_long_table,
     is_mediapipe_csv,
     is_mediapipe_json,
     is_msr_action3d,
@@ -38,6 +41,7 @@ from .joint_files import (
     open_irds,
     open_joint_csv,
     open_joint_json,
+    open_long_table,
     open_ntu_skeleton,
     open_nuitrack_csv,
     open_nuitrack_json,
@@ -59,7 +63,7 @@ from .marker_files import (
     open_trc,
     open_vicon_csv,
 )
-from .numpy_files import is_point_archive, read_npy, read_point_archive
+from .numpy_files import is_frame_npy, is_point_archive, open_npy, open_point_archive
 from .refuse_stand_ins import REFUSALS
 from .skeleton_files import (
     is_kimodo,
@@ -121,16 +125,22 @@ FORMATS = (
     Format("NTU RGB+D", is_ntu_skeleton, open_ntu_skeleton),
     Format("MSR Action3D", is_msr_action3d, one_body(read_msr_action3d)),
     Format("UI-PRMD", is_ui_prmd, one_body(read_ui_prmd)),
-    Format("freemocap", is_npy, one_body(read_npy), lacks_bones=True),
-    Format("joints of NumPy", is_point_archive, one_body(read_point_archive)),
+    Format("freemocap", is_npy, open_npy, lacks_bones=True, is_one_frame=is_frame_npy),
+    Format("joints of NumPy", is_point_archive, open_point_archive),
     Format("ZED JSON", is_zed_json, open_zed_json),
     Format("Nuitrack CSV", is_nuitrack_csv, open_nuitrack_csv),
     Format("Nuitrack JSON", is_nuitrack_json, open_nuitrack_json),
     Format("MediaPipe CSV", is_mediapipe_csv, one_body(read_mediapipe_csv)),
-    Format("MediaPipe JSON", is_mediapipe_json, one_body(read_mediapipe_json)),
+    Format(
+        "MediaPipe JSON",
+        is_mediapipe_json,
+        one_body(read_mediapipe_json),
+        is_one_frame=is_frame_mediapipe,
+    ),
     Format("joint CSV", is_joint_csv, open_joint_csv),
     Format("joint JSON", is_joint_json, open_joint_json),
-    Format("JSON of joints", is_frames_json, open_frames_json),
+    Format("JSON of joints", is_frames_json, open_frames_json, is_one_frame=is_frame_json),
+    Format("table with a line per joint", is_long_table, open_long_table),
     Format("table of points", is_point_table, one_body(read_point_table)),
 )
 """Supported formats; add a line here for a new one."""

@@ -3,14 +3,20 @@
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidFileError
 from ..motion import JointRecording, Motion, Tracks
 from ..motion.humanoid import ADULT_STATURE_M
 from ..progress import Progress, Remark, unwatched
-from .containers import archive_names, read_archive_members, read_array
-from .conventions import DEFAULT_FRAME_RATE, check_scale
+from .containers import (
+    archive_names,
+    describe_frame_files,
+    frame_files,
+    read_archive_members,
+    read_array,
+)
+from .conventions import DEFAULT_FRAME_RATE, Bodies, check_scale, observed_body
 from .joint_files import (
     body_of_points,
     has_layout,
@@ -27,21 +33,26 @@ POINT_MEMBERS = (
     "points_3d", "xyz", "points", "keypoints", "arr_0",
 )  # fmt: skip
 """Names of joints in archives, the clear ones first."""
+MAX_ROUNDING = 1e-2
+"""Difference from a rotation, without unit, up to which numbers are one. It guards points on a
+sphere of radius 1; rotations of 16 bits are off by 1e-3."""
 
 
-def read_npy(
+def open_npy(
     path: Path | str,
     *,
     scale: float | None = None,
     height: float = ADULT_STATURE_M,
     on_floor: bool = True,
     progress: Progress = unwatched,
-) -> Motion | JointRecording | Tracks:
-    """Read a `.npy` file by the shape of its array.
+) -> Bodies[Motion | JointRecording | Tracks]:
+    """Open a `.npy` file by the shape of its array.
 
     (n_frames, 322) is Motion-X: an SMPL-X body. Points of (n_frames, n_points, 3) are joints if
     they form a body in one of the known orders (`name_joints`), such as the 22 of HumanML3D, 20
-    Hz, or the 17 of Human3.6M. Other points are freemocap's (`read_freemocap`).
+    Hz, or the 17 of Human3.6M. Other points are freemocap's (`read_freemocap`). A fourth axis
+    in front has several people or takes. One frame (n_points, 3) stands for all files of its
+    take (`frame_files`).
 
     Parameters
     ----------
@@ -56,8 +67,8 @@ def read_npy(
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, or holds features, from which no pose follows, or points
-        of images.
+        The file is missing, damaged, or holds features or rotations, from which no pose
+        follows, or points of images.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -66,13 +77,48 @@ def read_npy(
     check_scale(scale)
     array = read_array(path)
     if is_motion_x(array.shape):
-        return read_motion_x(array, scale, height, on_floor, progress)
+        return Bodies(
+            str(path),
+            (),
+            lambda _, progress: read_motion_x(array, scale, height, on_floor, progress),
+        )
     if array.ndim == 2 and array.shape[1] == HUMANML3D_FEATURES:
         raise InvalidFileError(
             f"{path} holds the {HUMANML3D_FEATURES} features of HumanML3D, not a pose. Recover"
             " the 22 joints with its recover_from_ric, and save those."
         )
-    return _read_points(path, points_of_array(path, array), scale, progress)
+    if _is_frame(array):
+        array = _read_frames(path, array.shape, progress)
+    return _open_points(path, array, scale)
+
+
+def is_frame_npy(path: Path | str) -> bool:
+    """Return whether a file holds the joints of one frame."""
+    return _is_frame(read_array(path))
+
+
+def _is_frame(array: Array) -> bool:
+    return array.ndim == 2 and array.shape[1] in {3, 4} and has_layout(array.shape[0])
+
+
+def _read_frames(path: Path | str, shape: tuple[int, ...], progress: Progress) -> Array:
+    """Return the points of all files of a take; NaN in frames without a file."""
+    files = frame_files(path).frames()
+    if len(files) == 1:
+        raise InvalidFileError(
+            f"{path} holds the joints of one frame. Save all frames as one array of the shape"
+            " (frames, joints, 3)."
+        )
+    frames = []
+    for file in files:
+        frames.append(np.full(shape, np.nan) if file is None else read_array(file))
+        if frames[-1].shape != shape:
+            raise InvalidFileError(
+                f"{file} holds an array of shape {frames[-1].shape}, other frames of the take"
+                f" have {shape}. Save all joints in each frame."
+            )
+    progress(0.5, Remark(describe_frame_files(len(files))))
+    return np.stack(frames)
 
 
 def is_point_archive(head: bytes) -> bool:
@@ -81,10 +127,10 @@ def is_point_archive(head: bytes) -> bool:
     return "depth" not in names and not names.isdisjoint(POINT_MEMBERS)
 
 
-def read_point_archive(
+def open_point_archive(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> JointRecording | Tracks:
-    """Read the points of an `.npz` archive as `read_npy` does.
+) -> Bodies[JointRecording | Tracks]:
+    """Open the points of an `.npz` archive as `open_npy` does.
 
     Raises
     ------
@@ -100,11 +146,65 @@ def read_point_archive(
     found = next((members[name] for name in POINT_MEMBERS if name in members), None)
     if found is None:
         raise InvalidFileError(f"{path} has no array of joints. Export it again.")
-    return _read_points(path, points_of_array(path, found), scale, progress)
+    return _open_points(path, found, scale)
+
+
+def _open_points(
+    path: Path | str, array: Array, scale: float | None
+) -> Bodies[JointRecording | Tracks]:
+    """List the bodies of an array; several are on its first or second axis."""
+    _refuse_rotations(path, array)
+    bodies = _bodies_of(array)
+    listed = tuple(
+        observed_body(
+            str(number),
+            np.flatnonzero(np.isfinite(points).all(axis=2).any(axis=1)),
+            len(points),
+            len(points) / DEFAULT_FRAME_RATE,
+        )
+        for number, points in enumerate(bodies, start=1)
+        if len(bodies) > 1
+    )
+
+    def read(index: int, progress: Progress) -> JointRecording | Tracks:
+        return _read_points(path, points_of_array(path, bodies[index]), scale, progress)
+
+    return Bodies(str(path), listed, read)
+
+
+def _bodies_of(array: Array) -> list[Array]:
+    """Return the points of each body of an array, with the frames on the first axis.
+
+    Points move little from frame to frame, so frames are on the axis with the smaller steps. A
+    body whose points are all at the origin is not observed.
+    """
+    if array.ndim != 4 or 1 in array.shape[:2] or array.shape[3] not in {2, 3, 4}:
+        return [array]
+    steps = [np.nanmedian(np.abs(np.diff(array, axis=axis))) for axis in (0, 1)]
+    found = np.moveaxis(array, 1, 0) if steps[0] < steps[1] else array
+    is_observed = found.any(axis=(2, 3), keepdims=True)
+    return [*np.where(is_observed, found, np.nan)]
+
+
+def _refuse_rotations(path: Path | str, array: Array) -> None:
+    """Raise InvalidFileError for rotation matrices and unit quaternions."""
+    if array.ndim < 3 or not array.size or not np.isfinite(array).all():
+        return
+    if array.shape[-2:] == (3, 3):
+        products = array @ np.swapaxes(array, -1, -2)
+        is_rotation = np.abs(products - np.eye(3)).max() < MAX_ROUNDING
+    else:
+        norms = np.linalg.norm(array, axis=-1)
+        is_rotation = array.shape[-1] == 4 and np.abs(norms - 1.0).max() < MAX_ROUNDING
+    if is_rotation:
+        raise InvalidFileError(
+            f"{path} holds rotations without a skeleton, an array of shape {array.shape}. Save"
+            " the positions of the joints, shape (frames, joints, 3), or export BVH."
+        )
 
 
 def _read_points(
-    path: Path | str, points: NDArray[np.float64], scale: float | None, progress: Progress
+    path: Path | str, points: Array, scale: float | None, progress: Progress
 ) -> JointRecording | Tracks:
     points = np.where(np.isfinite(points).all(axis=-1)[..., None], points, np.nan)
     body = body_of_points(path, points)

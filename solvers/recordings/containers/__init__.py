@@ -3,9 +3,16 @@
 from .c3d_file import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
 from .delimited import find_separator, split_cells, stream_cells
 from .folder_scan import check_folder_access, files_below, is_folder
+from .frame_files import FrameFiles, describe_frame_files, frame_files
 from .glb_file import GlbFile, json_length, vector
 from .growing_table import GrowingTable
-from .json_members import array_from_json, json_members
+from .json_members import (
+    JsonMember,
+    array_from_json,
+    json_content,
+    json_frame_files,
+    json_members,
+)
 from .line_reader import Block, LineReader
 from .listed_images import is_listed, max_color_size, open_bounded_image, open_listed_image
 from .matlab_file import MatlabArray, is_matlab, matlab_arrays
@@ -60,8 +67,10 @@ __all__ = [
     "Block",
     "ByteSlice",
     "C3dFile",
+    "FrameFiles",
     "GlbFile",
     "GrowingTable",
+    "JsonMember",
     "LineReader",
     "MatlabArray",
     "Matroska",
@@ -75,8 +84,10 @@ __all__ = [
     "array_from_json",
     "check_folder_access",
     "decode_text",
+    "describe_frame_files",
     "files_below",
     "find_separator",
+    "frame_files",
     "index_matroska",
     "is_c3d",
     "is_folder",
@@ -84,6 +95,8 @@ __all__ = [
     "is_matlab",
     "is_matroska",
     "is_png",
+    "json_content",
+    "json_frame_files",
     "json_length",
     "json_members",
     "matlab_arrays",

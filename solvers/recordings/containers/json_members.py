@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
+from ...json_text import parse_json
+from .frame_files import frame_files
 from .text import read_bytes
 
 SPACE = re.compile(r"[ \t\r\n]*")
@@ -42,9 +44,35 @@ def json_members(path: Path | str, *, lists: bool = False) -> Iterator[JsonMembe
         else:
             yield from _members(text)
     except (ValueError, RecursionError, IndexError):
-        raise InvalidFileError(
-            f"{path} is not readable as JSON: it is damaged or cut short. Export it again."
-        ) from None
+        raise _damaged(path) from None
+
+
+def json_content(path: Path | str, done: float = 1.0) -> JsonMember:
+    """Return the content of a small file, with an empty key.
+
+    Raises InvalidFileError if the file is missing or not JSON.
+    """
+    try:
+        return JsonMember("", parse_json(read_bytes(path)), done)
+    except (ValueError, RecursionError):
+        raise _damaged(path) from None
+
+
+def json_frame_files(path: Path | str) -> Iterator[JsonMember]:
+    """Yield the content of each file of a take with a file per frame (`frame_files`).
+
+    The value of a frame without a file is None. Raises InvalidFileError for a damaged file.
+    """
+    frames = frame_files(path).frames()
+    for count, file in enumerate(frames, start=1):
+        done = count / len(frames)
+        yield JsonMember("", None, done) if file is None else json_content(file, done)
+
+
+def _damaged(path: Path | str) -> InvalidFileError:
+    return InvalidFileError(
+        f"{path} is not readable as JSON: it is damaged or cut short. Export it again."
+    )
 
 
 def _members(text: str) -> Iterator[JsonMember]:

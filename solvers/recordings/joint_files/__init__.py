@@ -2,16 +2,18 @@
 
 from .azure_csv import is_azure_csv, open_azure_csv
 from .azure_json import is_azure_json, open_azure_json
-from .frames_json import is_frames_json, open_frames_json
+from .frames_json import is_frame_json, is_frames_json, open_frames_json
 from .freemocap import is_npy, read_freemocap, read_freemocap_points
 from .irds import is_irds, open_irds
 from .joint_csv import is_joint_csv, open_joint_csv, write_joint_csv
 from .joint_json import is_joint_json, open_joint_json, write_joint_json
 from .kinect_csv import is_kinect_csv, read_kinect_csv
+from .long_table import is_long_table, open_long_table
 from .mediapipe_csv import is_mediapipe_csv, read_mediapipe_csv
 from .mediapipe_json import (
     frame_landmarks,
     frame_time,
+    is_frame_mediapipe,
     is_mediapipe_json,
     read_mediapipe_json,
 )
@@ -39,11 +41,14 @@ __all__ = [
     "has_layout",
     "is_azure_csv",
     "is_azure_json",
+    "is_frame_json",
+    "is_frame_mediapipe",
     "is_frames_json",
     "is_irds",
     "is_joint_csv",
     "is_joint_json",
     "is_kinect_csv",
+    "is_long_table",
     "is_mediapipe_csv",
     "is_mediapipe_json",
     "is_msr_action3d",
@@ -61,6 +66,7 @@ __all__ = [
     "open_irds",
     "open_joint_csv",
     "open_joint_json",
+    "open_long_table",
     "open_ntu_skeleton",
     "open_nuitrack_csv",
     "open_nuitrack_json",

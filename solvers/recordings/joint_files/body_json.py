@@ -126,5 +126,6 @@ def stacked(body: str, frames: list[BodiesFrame]) -> tuple[Array, Array | None]:
 
 
 def name_of_body(body: Mapping[str, Any], keys: tuple[str, ...], count: int) -> str:
-    """Return the identity of a body, or its index in the frame."""
-    return str(next((body[key] for key in keys if key in body), count))
+    """Return the identity of a body, or its index in the frame where it has none, or -1."""
+    known = (body[key] for key in keys if body.get(key) not in (None, -1, [-1]))
+    return str(next(known, count))

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,7 +12,7 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording
 from ...progress import Progress, Remark, unwatched
-from ..containers import json_members
+from ..containers import JsonMember, describe_frame_files, json_frame_files, json_members
 from ..conventions import DEFAULT_FRAME_RATE, Bodies, check_scale
 from .body_json import BodiesFrame, BodyJoints, name_of_body, open_frames, stacked
 from .named_points import body_of_named_points
@@ -54,9 +54,31 @@ class _Person(NamedTuple):
     """Shape (n_joints, 3)."""
 
 
+class _Content(NamedTuple):
+    """What a file, or the files of a take, hold."""
+
+    frames: list[BodiesFrame]
+    columns: dict[str, dict[str, int]]
+    """Column of each named joint, by person."""
+    rate: float | None
+    second: float | None
+    """Seconds per unit of the times; None if that is not stated."""
+
+    @property
+    def n_frames(self) -> int:
+        """Number of frames of the person in most frames."""
+        counts = Counter(body for frame in self.frames for body in frame.bodies)
+        return max(counts.values(), default=0)
+
+
 def is_frames_json(head: bytes) -> bool:
     """Return whether a file lists joints, from its first bytes."""
     return HEAD.match(head) is not None
+
+
+def is_frame_json(path: Path | str) -> bool:
+    """Return whether a file holds the joints of one frame."""
+    return _read_content(json_members(path, lists=True), unwatched).n_frames == 1
 
 
 def open_frames_json(
@@ -68,7 +90,8 @@ def open_frames_json(
     list of points, a list of numbers, or an object with a point for each name. It may list
     people in `instances`, `people` or the like, or be a list of points itself. Named joints may
     be missing in some frames. Joints without names are recognized by their bones
-    (`name_joints`). Axes and unit are judged from the body.
+    (`name_joints`). Axes and unit are judged from the body. A file of one frame stands for all
+    files of its take (`frame_files`).
 
     Parameters
     ----------
@@ -86,11 +109,39 @@ def open_frames_json(
         Raised by `progress`.
     """
     check_scale(scale)
+    content = _read_content(json_members(path, lists=True), progress)
+    if content.n_frames <= 1:
+        content = _read_content(json_frame_files(path), progress)
+        if content.n_frames > 1:
+            progress(0.8, Remark(describe_frame_files(len(content.frames))))
+    if content.n_frames == 1:
+        raise InvalidFileError(
+            f"{path} holds the joints of one frame. Combine all frames in an array of the shape"
+            " (frames, joints, 3), and save it with numpy.save."
+        )
+    frames, columns, rate, second = (
+        content.frames,
+        content.columns,
+        content.rate,
+        content.second,
+    )
+    if second is None:
+        second = second_of_times(np.array([frame.time for frame in frames]), progress)
+
+    def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
+        names = tuple(columns[body])
+        return _recording(path, names, body, frames, times, rate, scale, progress)
+
+    return open_frames(path, frames, second, read)
+
+
+def _read_content(members: Iterable[JsonMember], progress: Progress) -> _Content:
+    """Return the frames in the members of a file, or in the files of a take."""
     by_key: dict[str, list[BodiesFrame]] = {}
     columns: dict[str, dict[str, int]] = {}
     rate: float | None = None
     second: float | None = None
-    for member in json_members(path, lists=True):
+    for member in members:
         if member.key in RATE_KEYS and _is_number(member.value):
             rate = float(member.value)
         time = np.nan
@@ -104,22 +155,7 @@ def open_frames_json(
             found[person.identity] = BodyJoints(positions, unknown)
         by_key.setdefault(member.key, []).append(BodiesFrame(time, found, member.done))
         progress(0.8 * member.done, "Reading")
-    frames = _frames(by_key)
-    n_frames = Counter(body for frame in frames for body in frame.bodies)
-    if n_frames and max(n_frames.values()) == 1:
-        raise InvalidFileError(
-            f"{path} holds the joints of one frame. Combine all frames in an array of the shape"
-            " (frames, joints, 3), and save it with numpy.save."
-        )
-
-    if second is None:
-        second = second_of_times(np.array([frame.time for frame in frames]), progress)
-
-    def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
-        names = tuple(columns[body])
-        return _recording(path, names, body, frames, times, rate, scale, progress)
-
-    return open_frames(path, frames, second, read)
+    return _Content(_frames(by_key), columns, rate, second)
 
 
 def _frames(by_key: Mapping[str, list[BodiesFrame]]) -> list[BodiesFrame]:

@@ -1,17 +1,24 @@
 """Read MediaPipe's world landmarks as programs save them: JSON."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording
-from ...progress import Progress, unwatched
-from ..containers import array_from_json, json_members
+from ...progress import Progress, Remark, unwatched
+from ..containers import (
+    JsonMember,
+    array_from_json,
+    describe_frame_files,
+    json_content,
+    json_frame_files,
+    json_members,
+)
 from ..conventions import check_scale
 from .body_json import number
 from .mediapipe_landmarks import N_POINTS, recording_from_landmarks, seconds
@@ -20,6 +27,8 @@ WORLD = ("worldLandmarks", "pose_world_landmarks", "poseWorldLandmarks", "world_
          "keypoints3D")  # fmt: skip
 FLAT = ("landmarks", "pose_landmarks", "poseLandmarks", "landmark")
 WRAPPERS = ("pose", "result", "results", "data")
+KEYS = frozenset((*WORLD, *FLAT, *WRAPPERS))
+"""Members of a frame, with or without a body."""
 HEAD = re.compile(
     rb'\s*[\[{].*"(' + "|".join((*WORLD, *FLAT)).encode() + rb')"\s*:\s*[\[{]', re.DOTALL
 )
@@ -32,9 +41,26 @@ RATES = ("fps", "frame_rate", "frameRate", "FPS")
 VISIBILITY = ("visibility", "presence", "score")
 
 
+class _Content(NamedTuple):
+    """What a file, or the files of a take, hold."""
+
+    frames: list[Array]
+    """Landmarks of each frame, shape (33, 4)."""
+    times: list[float]
+    """Seconds; NaN without a time stamp."""
+    rate: float | None
+
+
 def is_mediapipe_json(head: bytes) -> bool:
     """Return whether the first bytes are JSON with landmarks."""
     return HEAD.match(head) is not None
+
+
+def is_frame_mediapipe(path: Path | str) -> bool:
+    """Return whether a file holds the landmarks of one frame."""
+    listed = _read_content(path, json_members(path, lists=True), unwatched).frames
+    outermost = _read_content(path, [json_content(path)], unwatched).frames
+    return len(listed) <= 1 and max(len(listed), len(outermost)) == 1
 
 
 def read_mediapipe_json(
@@ -43,10 +69,10 @@ def read_mediapipe_json(
     """Read world landmarks of MediaPipe, in meters, Z up, with visibility as confidence.
 
     MediaPipe has no file format; programs write its results in similar ways. Read are frames in
-    a list, or as the outermost value, each with 33 `worldLandmarks` (or
-    `pose_world_landmarks`): objects with x, y, z and visibility, or lists. Of several bodies
-    the first one is read. Landmarks of the picture are refused. The hips are always at the
-    origin. Joints in the middle of the body are added (`COMPUTED_JOINTS`).
+    a list, as the outermost value, or in a file each (`frame_files`), with 33 `worldLandmarks`
+    (or `pose_world_landmarks`): objects with x, y, z and visibility, or lists. Of several
+    bodies the first one is read. Landmarks of the picture are refused. The hips are always at
+    the origin. Joints in the middle of the body are added (`COMPUTED_JOINTS`).
 
     Parameters
     ----------
@@ -65,21 +91,12 @@ def read_mediapipe_json(
         Raised by `progress`.
     """
     check_scale(scale)
-    frames: list[Array] = []
-    times: list[float] = []
-    rate = None
-    for member in json_members(path, lists=True):
-        location = f"{path}, frame {len(frames) + 1}"
-        if member.key in RATES:
-            rate = number(member.value, f"{path}, {member.key}")
-        elif isinstance(member.value, Mapping) or member.key in WORLD:
-            found = frame_landmarks(member.value, location)
-            time = frame_time(member.value, location)
-            if found is None and np.isnan(time):
-                continue  # something else, such as a header
-            frames.append(np.full((N_POINTS, 4), np.nan) if found is None else found)
-            times.append(time)
-            progress(0.9 * member.done, "Reading")
+    content = _read_content(path, json_members(path, lists=True), progress)
+    if len(content.frames) <= 1:
+        content = _read_content(path, json_frame_files(path), progress)
+        if len(content.frames) > 1:
+            progress(0.9, Remark(describe_frame_files(len(content.frames))))
+    frames, times, rate = content
     if not frames:
         raise InvalidFileError(f"{path} has no frames with landmarks. Export it again.")
     stamps = np.array(times)
@@ -92,6 +109,34 @@ def read_mediapipe_json(
         scale,
         progress,
     )
+
+
+def _read_content(
+    path: Path | str, members: Iterable[JsonMember], progress: Progress
+) -> _Content:
+    """Return landmarks and time of each frame, and the rate, of a file or the files of a take.
+
+    A file without a body is a frame without one.
+    """
+    frames: list[Array] = []
+    times: list[float] = []
+    rate: float | None = None
+    for member in members:
+        location = f"{path}, frame {len(frames) + 1}"
+        if member.key in RATES:
+            rate = number(member.value, f"{path}, {member.key}")
+        elif member.value is None and not member.key:
+            frames.append(np.full((N_POINTS, 4), np.nan))
+            times.append(np.nan)
+        elif isinstance(member.value, Mapping) or member.key in WORLD:
+            found = frame_landmarks(member.value, location)
+            time = frame_time(member.value, location)
+            if found is None and np.isnan(time) and KEYS.isdisjoint(member.value):
+                continue  # something else, such as a header
+            frames.append(np.full((N_POINTS, 4), np.nan) if found is None else found)
+            times.append(time)
+            progress(0.9 * member.done, "Reading")
+    return _Content(frames, times, rate)
 
 
 def frame_time(frame: Any, location: str) -> float:

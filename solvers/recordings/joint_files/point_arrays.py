@@ -76,16 +76,11 @@ def points_of_array(path: Path | str, array: NDArray[np.float64]) -> NDArray[np.
     Raises
     ------
     InvalidFileError
-        The array has another shape, several takes, or no depth.
+        The array has another shape, or no depth.
     """
     if array.ndim == 4 and 1 in array.shape[:2]:
         array = np.squeeze(array, axis=array.shape.index(1))
     shape = array.shape
-    if array.ndim == 4 and 3 in shape[2:]:
-        raise InvalidFileError(
-            f"{path} holds {shape[0]} takes or people in one array. Save each of them as a file"
-            " of its own, with numpy.save."
-        )
     if array.ndim == 3 and shape[2] == 2 and has_layout(shape[1]):
         raise _flat(path)
     for points in _as_points(array):

@@ -112,25 +112,36 @@ def read_point_table(
         times = None
     else:
         times = times * (columns.second or second_of_times(times, progress))
-    return _recording(path, columns, points, times, scale, progress)
+    unit = columns.unit if scale is None else scale
+    return recording_of_points(path, columns.names, points, times, unit, progress)
 
 
-def _recording(
+def recording_of_points(
     path: Path | str,
-    columns: _Columns,
+    names: tuple[str, ...],
     points: Array,
     times: Array | None,
-    scale: float | None,
+    unit: float | None,
     progress: Progress,
 ) -> JointRecording | Tracks:
-    unit = columns.unit if scale is None else scale
-    if all(name.isdigit() for name in columns.names):
+    """Return named or numbered points as the joints of a body, or as markers if they are none.
+
+    Parameters
+    ----------
+    path : Path or str
+    names : tuple of str
+    points : shape (n_frames, n_points, 3), in the unit and axes of the file
+    times : shape (n_frames,), seconds, or None
+    unit : float, meters per unit of the file, or None
+    progress : Progress
+    """
+    if all(name.isdigit() for name in names):
         unnamed = body_of_points(path, points)
         if unnamed is not None:
             return read_body(path, unnamed, unit, progress, times)
     if times is None:
         progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
-    body = body_of_named_points(columns.names, points)
+    body = body_of_named_points(names, points)
     if body is not None:
         return stand_body(
             path, body.names, body.positions, times=times, scale=unit, progress=progress
@@ -141,7 +152,7 @@ def _recording(
         points, rate = resampler.positions(points), resampler.frame_rate
     unit = guess_unit_of_points(points) if unit is None else unit
     progress(1.0, READING)
-    return stand_markers(columns.names, points * unit, rate, unit, "")
+    return stand_markers(names, points * unit, rate, unit, "")
 
 
 def _titles(line: bytes) -> list[str]:

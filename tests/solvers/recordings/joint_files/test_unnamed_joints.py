@@ -141,8 +141,3 @@ def test_points_of_images_are_refused(tmp_path, walk, third):
 
     with pytest.raises(InvalidFileError, match="2D points of images, without depth"):
         read(tmp_path, array)
-
-
-def test_several_takes_in_one_array_are_refused(tmp_path, walk):
-    with pytest.raises(InvalidFileError, match="2 takes or people in one array"):
-        read(tmp_path, np.stack([ordered(walk, "COCO")] * 2))

@@ -1,0 +1,65 @@
+"""Find takes that are stored as one file for each frame."""
+
+import re
+from collections.abc import Iterable
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+NUMBER = re.compile(r"\d+")
+MAX_GAP_FRAMES = 1000
+"""Missing numbers in a row, frames, up to which they are frames without a file. It bounds the
+memory: after more of them, the take goes on with the next file."""
+
+
+class FrameFiles(NamedTuple):
+    """Files in one folder whose names differ in one number."""
+
+    head: str
+    """Start of their names, before the number."""
+    tail: str
+    files: dict[int, Path]
+    """By number, in order."""
+
+    def frames(self) -> list[Path | None]:
+        """Return the file of each frame; None for numbers between them without a file."""
+        numbers = list(self.files)
+        step = min((after - before for before, after in pairwise(numbers)), default=1)
+        found: list[Path | None] = [self.files[numbers[0]]]
+        for before, after in pairwise(numbers):
+            n_missing = (after - before) // step - 1
+            found += [None] * (n_missing if n_missing <= MAX_GAP_FRAMES else 0)
+            found.append(self.files[after])
+        return found
+
+
+def frame_files(path: Path | str, names: Iterable[str] | None = None) -> FrameFiles:
+    """Return the files that are called like one of them but for a number, in its folder.
+
+    Of several numbers in a name, it is the one with the most files.
+
+    Parameters
+    ----------
+    path : Path or str
+    names : iterable of str, optional
+        Names to search instead of the folder's.
+    """
+    path = Path(path)
+    listed = [*names] if names is not None else [each.name for each in path.parent.iterdir()]
+    found = [FrameFiles(path.stem, path.suffix, {0: path})]
+    for run in NUMBER.finditer(path.name):
+        head, tail = path.name[: run.start()], path.name[run.end() :]
+        numbers = {
+            int(name[len(head) : len(name) - len(tail)]): path.with_name(name)
+            for name in listed
+            if name.startswith(head)
+            and name.endswith(tail)
+            and NUMBER.fullmatch(name, len(head), max(len(head), len(name) - len(tail)))
+        }
+        found.append(FrameFiles(head, tail, dict(sorted(numbers.items()))))
+    return max(found, key=lambda each: len(each.files))
+
+
+def describe_frame_files(n_frames: int) -> str:
+    """Return a message without a period on a take that was read from a file per frame."""
+    return f"{n_frames} files in the folder, with a frame each, are read as one take"

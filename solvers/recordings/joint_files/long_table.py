@@ -1,0 +1,249 @@
+"""Read tables with a line for each joint of each frame."""
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ...motion import JointRecording, Tracks
+from ...progress import Progress, unwatched, within
+from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    Bodies,
+    check_scale,
+    observed_body,
+    recorded_seconds,
+)
+from .point_arrays import second_of_times
+from .point_table import TIMES, recording_of_points
+
+FRAMES = ("frame", "frame_id", "frameid", "frame_index", "frame_number", "frame_num", "image")
+JOINTS = (
+    "joint", "joint_name", "jointname", "joint_id", "joint_index", "landmark", "landmark_name",
+    "landmark_id", "landmark_index", "keypoint", "keypoint_name", "keypoint_id", "point",
+    "point_id", "marker", "marker_name", "body_part", "bodypart", "bone", "name", "part",
+)  # fmt: skip
+PEOPLE = ("person", "person_id", "body", "body_id", "track_id", "subject", "skeleton_id")
+AXES = ("x", "y", "z")
+AXIS_AFFIXES = ("{}", "pos_{}", "{}_pos", "position_{}", "{}_m", "world_{}", "{}_world", "{}3d")
+"""Titles of coordinates, with the axis at the braces."""
+MIN_JOINTS = 8
+"""Number of joints of a body. It guards tables of something else."""
+MAX_SPREAD = 100
+"""Frames for each one with a line, a ratio, up to which missing numbers are frames without a
+body. It bounds the memory of damaged files."""
+MAX_POINTS = 1 << 27
+"""Points of all people over all frames. It bounds the memory: 3 GB."""
+
+
+class _Columns(NamedTuple):
+    """Columns of a table, by index; None where it has no such column."""
+
+    frame: int | None
+    time: int | None
+    second: float | None
+    """Seconds per unit of the times; None if the title does not state it."""
+    joint: int
+    person: int | None
+    axes: tuple[int, ...]
+
+
+class _Numbers:
+    """Numbers words as they appear, for the columns of a table."""
+
+    def __init__(self) -> None:
+        self._numbers: dict[bytes, int] = {}
+
+    def __call__(self, cell: bytes) -> bytes:
+        return b"%d" % self._numbers.setdefault(cell, len(self._numbers)) if cell else b""
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    def name(self, number: int) -> str:
+        """Return the word with this number."""
+        return next((decode_text(w) for w, k in self._numbers.items() if k == number), "1")
+
+    def in_order(self) -> tuple[tuple[str, ...], NDArray[np.intp]]:
+        """Return the words, numbers among them by size, and the index of each in that list."""
+        words = [*self._numbers]
+        if all(word.isdigit() for word in words):
+            words.sort(key=int)
+        order = np.array([words.index(word) for word in self._numbers])
+        return tuple(decode_text(word) for word in words), order
+
+
+class _Table(NamedTuple):
+    """Lines of a file, with numbers for words."""
+
+    rows: Array
+    columns: _Columns
+    joints: _Numbers
+    people: _Numbers
+
+
+def is_long_table(head: bytes) -> bool:
+    """Return whether the first line of a file names a frame, a joint and its coordinates."""
+    lines = head.lstrip().splitlines()
+    return len(lines) > 1 and _columns(_titles(lines[0])) is not None
+
+
+def open_long_table(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording | Tracks]:
+    """Open a table whose lines are `frame, joint, x, y, z`, in any order of columns.
+
+    Frames are in a column called `frame` or the like; without it, each time is one. `joint`,
+    `landmark`, `marker` or the like is a name or a number; `person` or the like, that of one of
+    several people. Lines may be missing: those points are not observed. Axes and unit are
+    judged as in `read_point_table`.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, meters per unit of the file, or None
+    progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or has too few joints.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    table = _read_table(path, progress)
+    rows, columns = table.rows, table.columns
+    frames, times = _frames(rows, columns)
+    is_row = np.isfinite(rows[:, columns.joint]) & (frames >= 0)
+    if not is_row.any() or len(table.joints) < MIN_JOINTS:
+        raise InvalidFileError(
+            f"{path} has {len(table.joints)} joints in its lines; a body has {MIN_JOINTS} and"
+            " more. Export it again."
+        )
+    names, order = table.joints.in_order()
+    points = _points(path, table, frames, order)
+    if times is not None:
+        times = times * (columns.second or second_of_times(times, progress))
+    duration = len(points[0]) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
+    listed = tuple(
+        observed_body(
+            table.people.name(number),
+            np.flatnonzero(np.isfinite(body).all(axis=2).any(axis=1)),
+            len(body),
+            duration,
+        )
+        for number, body in enumerate(points)
+    )
+
+    def read(index: int, progress: Progress) -> JointRecording | Tracks:
+        return recording_of_points(path, names, points[index], times, scale, progress)
+
+    return Bodies(str(path), listed if len(listed) > 1 else (), read)
+
+
+def _read_table(path: Path | str, progress: Progress) -> _Table:
+    reader = LineReader(path)
+    first = reader.take(1)
+    titles = _titles(first[0]) if first else []
+    columns = _columns(titles)
+    if columns is None:
+        raise InvalidFileError(f"{path} has no columns of joints. Export it again.")
+    joints, people = _Numbers(), _Numbers()
+    converters: dict[int, Callable[[bytes], bytes]] = {columns.joint: joints}
+    if columns.person is not None:
+        converters[columns.person] = people
+    if columns.frame is not None:
+        converters[columns.frame] = _frame_number
+    separator, width = find_separator(first[0]), len(titles)
+    progress = within(progress, 0.0, 0.6)
+    rows = stream_cells(reader, separator, width, path, progress, converters=converters)
+    return _Table(rows, columns, joints, people)
+
+
+def _points(
+    path: Path | str, table: _Table, frames: NDArray[np.intp], order: NDArray[np.intp]
+) -> Array:
+    """Return the points of all people, shape (n_people, n_frames, n_joints, 3)."""
+    joint, person = table.columns.joint, table.columns.person
+    is_row = np.isfinite(table.rows[:, joint]) & (frames >= 0)
+    rows, frames = table.rows[is_row], frames[is_row]
+    whose = np.zeros(len(rows), int)
+    if person is not None:
+        whose = np.nan_to_num(rows[:, person]).astype(int)
+    shape = int(whose.max()) + 1, int(frames.max()) + 1, len(order)
+    if np.prod(shape, dtype=float) > MAX_POINTS:
+        raise InvalidFileError(
+            f"{path} has {shape[2]} joints of {shape[0]} people in {shape[1]} frames, which"
+            " does not fit its lines. Export it again."
+        )
+    points = np.full((*shape, 3), np.nan)
+    points[whose, frames, order[rows[:, joint].astype(int)]] = rows[:, list(table.columns.axes)]
+    return points
+
+
+def _frame_number(cell: bytes) -> bytes:
+    """Return the last number in the name of a frame, such as `frame_0012.png`."""
+    numbers = re.findall(rb"\d+(?:\.0+)?(?=\D*$)", cell)
+    return numbers[-1] if numbers else b""
+
+
+def _frames(rows: Array, columns: _Columns) -> tuple[NDArray[np.intp], Array | None]:
+    """Return the frame of each line, -1 where it has none, and the time of each frame.
+
+    Numbers between those of the file are frames without a body.
+    """
+    key = rows[:, columns.time if columns.frame is None else columns.frame]
+    known, index = np.unique(key, return_inverse=True)
+    known = known[np.isfinite(known)]
+    if columns.frame is not None and len(known) > 1:
+        step = np.diff(known).min()
+        spread = np.rint((known - known[0]) / step).astype(int)
+        if spread[-1] < len(known) * MAX_SPREAD:
+            index = np.append(spread, -1)[np.minimum(index, len(known))]
+    frames = np.where(np.isfinite(key), index, -1)
+    if columns.time is None or not len(known):
+        return frames, None
+    times = np.full(frames.max() + 1, np.nan)
+    times[frames[frames >= 0]] = rows[frames >= 0, columns.time]
+    if not np.isfinite(times).any():
+        return frames, None
+    numbers = np.arange(len(times))
+    is_known = np.isfinite(times)
+    return frames, np.interp(numbers, numbers[is_known], times[is_known])
+
+
+def _titles(line: bytes) -> list[str]:
+    line = line.lstrip(b"#").strip()
+    return [decode_text(cell) for cell in split_cells(line, find_separator(line))]
+
+
+def _columns(titles: Sequence[str]) -> _Columns | None:
+    """Return the columns of such a table; None if one is missing."""
+    lower = [title.strip().lower().replace(" ", "_") for title in titles]
+
+    def find(names: Iterable[str]) -> int | None:
+        return next((lower.index(name) for name in names if name in lower), None)
+
+    joint, frame = find(JOINTS), find(FRAMES)
+    time = next((column for column, title in enumerate(titles) if title.lower() in TIMES), None)
+    axes = next(
+        (
+            tuple(map(lower.index, wanted))
+            for affix in AXIS_AFFIXES
+            if {*(wanted := [affix.format(axis) for axis in AXES])} <= {*lower}
+        ),
+        None,
+    )
+    if joint is None or axes is None or (frame is None and time is None):
+        return None
+    second = None if time is None else TIMES[titles[time].lower()]
+    return _Columns(frame, time, second, joint, find(PEOPLE), axes)

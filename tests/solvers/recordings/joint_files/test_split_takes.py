@@ -1,0 +1,172 @@
+"""Takes with a file per frame, with a line per joint, and several takes in one array."""
+
+import json
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidFileError
+from solvers.motion import find_humanoid_map, forward_kinematics
+from solvers.motion.skeletons import BODY_POINTS
+from solvers.recordings import list_bodies, read_recording, recordings_in
+from solvers.samples import walking_gait
+
+F = 24
+SIDES = ("left", "right")
+PARTS = {"UpperArm": "shoulder", "LowerArm": "elbow", "Hand": "wrist", "UpperLeg": "hip",
+         "LowerLeg": "knee", "Foot": "ankle"}  # fmt: skip
+NAMES = {f"{side}_{part}": side + role for side in SIDES for role, part in PARTS.items()}
+"""Names of keypoints, with the role of the walker's joint."""
+COCO = ["head"] * 5 + [side + role for role in PARTS for side in SIDES]
+
+
+@pytest.fixture(scope="module")
+def walk():
+    """Positions of the joints of a walker by their role, meters, Z up."""
+    motion = walking_gait()
+    positions = forward_kinematics(motion).positions[:F]
+    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    return {role: positions[:, joint] for role, joint in roles.items()}
+
+
+@pytest.fixture
+def coco(walk):
+    return np.stack([walk[role] for role in COCO], axis=1)
+
+
+def read(path, **which):
+    """Return the recording and what the reader says."""
+    said = []
+    recording = read_recording(
+        path, progress=lambda _, text="": said.append(str(text)), **which
+    )
+    return recording, " ".join(said)
+
+
+def people(points):
+    """Return a frame as EasyMocap stores it: with the confidence of each joint."""
+    joints = np.concatenate([points, np.ones_like(points[:, :1])], axis=1)
+    return [{"id": 3, "keypoints3d": joints.tolist()}]
+
+
+def landmarks(points):
+    """Return a frame of MediaPipe, whose hips are at the origin and Y is down."""
+    hips = points[[11, 12]].mean(axis=0)
+    found = dict.fromkeys(BODY_POINTS, points[0] - hips)
+    found |= {
+        name: points[5 + 2 * part + side] - hips
+        for part, word in enumerate(PARTS.values())
+        for side, name in enumerate(f"{side}_{word}" for side in SIDES)
+    }
+    return {"pose_world_landmarks": [
+        {"x": x, "y": -z, "z": y, "visibility": 1.0} for x, y, z in found.values()
+    ]}  # fmt: skip
+
+
+@pytest.mark.parametrize("make", [people, landmarks], ids=["people", "mediapipe"])
+def test_one_file_per_frame_is_one_take(tmp_path, coco, make):
+    for frame in [*range(7), *range(9, F)]:
+        name = f"cam2_{frame:06d}_keypoints.json"
+        (tmp_path / name).write_text(json.dumps(make(coco[frame])))
+    (tmp_path / "cam2_notes.json").write_text("{}")
+    chosen = tmp_path / "cam2_000003_keypoints.json"
+
+    recording, said = read(chosen)
+
+    assert f"{F} files in the folder, with a frame each, are read as one take" in said
+    assert recording.tracks.n_frames == F
+    missing = np.isnan(recording.tracks.positions).all(axis=(1, 2))
+    assert np.flatnonzero(missing).tolist() == [7, 8]
+    elbow = recording.tracks.positions[:, recording.names.index("left_elbow")]
+    shoulder = recording.tracks.positions[:, recording.names.index("left_shoulder")]
+    expected = (coco[:, 7] - coco[:, 5])[~missing]
+    assert np.allclose((elbow - shoulder)[~missing], expected, atol=1e-6)
+    assert recordings_in(tmp_path) == [tmp_path / "cam2_000000_keypoints.json"]
+
+
+def test_one_array_per_frame_is_one_take(tmp_path, coco):
+    for frame in range(F):
+        np.save(tmp_path / f"{frame}.npy", coco[frame])
+
+    recording, _ = read(tmp_path / "0.npy")
+
+    assert np.allclose(recording.tracks.positions[:, :17], coco)
+    assert recordings_in(tmp_path) == [tmp_path / "0.npy"]
+    np.save(tmp_path / "5.npy", coco[0, :16])
+    with pytest.raises(InvalidFileError, match=r"5.npy holds an array of shape \(16, 3\)"):
+        read(tmp_path / "0.npy")
+
+
+def test_complete_takes_with_numbers_stay_apart(tmp_path, coco):
+    for take in range(3):
+        np.save(tmp_path / f"take_{take}.npy", coco)
+
+    assert len(recordings_in(tmp_path)) == 3
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_people_of_one_array_are_listed(tmp_path, coco, axis):
+    other = np.add(coco, (2.0, 0.0, 0.0))
+    other[F // 2 :] = 0.0  # where a tracker lost the person
+    np.save(tmp_path / "people.npy", np.stack([other, coco], axis=axis))
+
+    first, _ = read(tmp_path / "people.npy", body="1")
+    longest, said = read(tmp_path / "people.npy")
+
+    assert [each.n_frames for each in list_bodies(tmp_path / "people.npy")] == [F // 2, F]
+    assert "Body 2 of 2. Left out: 1 (" in said
+    assert np.allclose(first.tracks.positions[: F // 2, :17], other[: F // 2])
+    assert np.isnan(first.tracks.positions[F // 2 :]).all()
+    assert np.allclose(longest.tracks.positions[:, :17], coco)
+
+
+@pytest.mark.parametrize("width", [3, 4])
+def test_rotations_are_no_points(tmp_path, rng, width):
+    turns = np.linalg.qr(rng.normal(size=(F, 22, width, width)))[0]
+    np.save(tmp_path / "pose.npy", turns[..., 0] if width == 4 else turns[:, 0])
+
+    with pytest.raises(InvalidFileError, match="holds rotations without a skeleton"):
+        read(tmp_path / "pose.npy")
+
+
+def lines(walk, title="frame,person,joint,x,y,z,score", frame="{}", people=1):
+    """Return a table with a line for each joint, without those of frame 5."""
+    rows = [title]
+    for k in range(F):
+        for person in range(people):
+            for name, role in NAMES.items():
+                x, y, z = walk[role][k] + (2.0 * person, 0.0, 0.0)
+                row = f"{frame.format(k)},{person},{name},{x:.6f},{y:.6f},{z:.6f},0.9"
+                rows += [row] * (k != 5)
+    return "\n".join(rows) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("title", "frame"),
+    [
+        ("frame,person,joint,x,y,z,score", "{}"),
+        ("Frame_ID,track_id,Landmark Name,pos_x,pos_y,pos_z,score", "run2_{:05d}.png"),
+    ],
+)
+def test_a_line_per_joint_is_read(tmp_path, walk, title, frame):
+    path = tmp_path / "long.csv"
+    path.write_text(lines(walk, title, frame, people=2))
+
+    recording, _ = read(path, body="2")
+
+    assert [each.name for each in list_bodies(path)] == ["0", "1"]
+    assert recording.tracks.n_frames == F
+    wrist = recording.tracks.positions[:, recording.names.index("right_wrist")]
+    assert np.isnan(wrist[5]).all()
+    known = np.arange(F) != 5
+    assert np.allclose(wrist[known], walk["rightHand"][known] + (2.0, 0.0, 0.0), atol=1e-5)
+
+
+def test_times_of_a_line_per_joint_give_the_rate(tmp_path, walk):
+    rows = [line.split(",") for line in lines(walk).splitlines()[1:]]
+    timed = [f"{int(row[0]) / 60:.5f};{row[2]};{row[3]};{row[4]};{row[5]}" for row in rows]
+    (tmp_path / "long.csv").write_text("\n".join(["time;marker;x;y;z", *timed]))
+
+    recording, _ = read(tmp_path / "long.csv")
+
+    assert recording.tracks.frame_rate == pytest.approx(60.0, rel=1e-3)
