@@ -72,7 +72,9 @@ def _run(path: str, operator: Any, **options: Any) -> None:
     except RuntimeError as error:
         lines = str(error).strip().removeprefix("Error:").strip().splitlines()
         reason = lines[0] if lines else "no reason is given"
-        raise InvalidFileError(f"{path} cannot be read: {reason}") from None
+        raise InvalidFileError(
+            f"{path} cannot be read: {reason.rstrip('.')}. Save it again where it was made."
+        ) from None
 
 
 def _open_fbx(path: str) -> None:

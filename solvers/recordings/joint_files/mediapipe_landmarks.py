@@ -22,6 +22,9 @@ MAX_CENTER_FRACTION = 0.2
 """Distance of the middle of the hips from the origin, relative to the size of the body, up to
 which landmarks are those of the world, whose origin is there. It is meant for landmarks of the
 image, whose origin is a corner. Chosen by hand: x0.5 and x2 fail no test of this module."""
+MIN_INSIDE = 0.95
+"""Coordinates in a picture, a fraction of all. It guards takes of scenes, with a third and more
+outside; MediaPipe also guesses limbs that leave the picture."""
 
 
 def seconds(stamps: Array) -> Array:
@@ -40,6 +43,16 @@ def is_world(points: Array) -> bool:
         return False
     away = np.linalg.norm(center[known], axis=1) / size[known]
     return bool(np.median(away) <= MAX_CENTER_FRACTION)
+
+
+def is_normalized(points: Array) -> bool:
+    """Return whether 33 landmarks, shape (n_frames, 33, 3), are fractions of a picture's size.
+
+    A person of 1.5 m and more who stands in a scene exceeds 0 to 1 meter.
+    """
+    flat = points[..., :2][np.isfinite(points).all(axis=-1)]
+    inside = (flat >= 0.0) & (flat <= 1.0)
+    return bool(inside.mean() >= MIN_INSIDE) and not is_world(points)
 
 
 def recording_from_landmarks(

@@ -25,6 +25,7 @@ from ..conventions import (
     with_conventions,
     z_up_from_y_up,
 )
+from .mediapipe_landmarks import N_POINTS, is_normalized
 from .unnamed_joints import NamedJoints, has_layout, name_joints
 
 UP: dict[AxisName, float] = {"Y": 0.2, "Z": 0.2, "-Y": 0.2}
@@ -64,6 +65,8 @@ def body_of_points(path: Path | str, points: NDArray[np.float64]) -> NamedJoints
         The points lie in a picture.
     """
     _refuse_pictures(path, points)
+    if points.shape[1] == N_POINTS and np.isfinite(points).any() and is_normalized(points):
+        raise _flat(path)
     return name_joints(points) if has_layout(points.shape[1]) else None
 
 

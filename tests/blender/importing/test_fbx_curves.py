@@ -5,9 +5,9 @@ import pytest
 
 @pytest.mark.parametrize(
     ("axes", "is_text", "is_lost"),
-    [("Z", False, True), ("XYZ", False, False), ("Z", True, False)],
+    [("Z", False, True), ("XYZ", False, False), ("Z", True, True), ("XYZ", True, False)],
 )
-def test_only_binary_files_need_the_other_importer(
+def test_lost_curves_are_read_by_the_other_importer_or_reported(
     load, tmp_path, monkeypatch, axes, is_text, is_lost
 ):
     module = load("mocap_assist.blender.fbx_curves")
@@ -15,7 +15,10 @@ def test_only_binary_files_need_the_other_importer(
     path = tmp_path / "take.fbx"
     path.write_bytes(b"Connections" + b"".join(link(axis, is_text) for axis in axes))
 
-    assert module.loses_curves(str(path)) is is_lost
+    assert module.loses_curves(str(path)) is (is_lost and not is_text)
+    assert ("this FBX file is text" in module.describe_lost_curves(str(path))) is (
+        is_lost and is_text
+    )
 
 
 def link(axis, is_text):

@@ -49,8 +49,8 @@ def people(points):
     return [{"id": 3, "keypoints3d": joints.tolist()}]
 
 
-def landmarks(points):
-    """Return a frame of MediaPipe, whose hips are at the origin and Y is down."""
+def coordinates(points):
+    """Return MediaPipe's landmarks by name, whose hips are at the origin and Y is down."""
     hips = points[[11, 12]].mean(axis=0)
     found = dict.fromkeys(BODY_POINTS, points[0] - hips)
     found |= {
@@ -58,8 +58,13 @@ def landmarks(points):
         for part, word in enumerate(PARTS.values())
         for side, name in enumerate(f"{side}_{word}" for side in SIDES)
     }
+    return {name: (x, -z, y) for name, (x, y, z) in found.items()}
+
+
+def landmarks(points):
+    """Return a frame of MediaPipe as programs save it."""
     return {"pose_world_landmarks": [
-        {"x": x, "y": -z, "z": y, "visibility": 1.0} for x, y, z in found.values()
+        {"x": x, "y": y, "z": z, "visibility": 1.0} for x, y, z in coordinates(points).values()
     ]}  # fmt: skip
 
 
@@ -127,6 +132,20 @@ def test_rotations_are_no_points(tmp_path, rng, width):
 
     with pytest.raises(InvalidFileError, match="holds rotations without a skeleton"):
         read(tmp_path / "pose.npy")
+
+
+def test_landmarks_of_images_are_refused(tmp_path, coco):
+    """MediaPipe's image landmarks are fractions of the width and height of the picture."""
+    points = np.stack([list(frame.values()) for frame in map(coordinates, coco)])
+    sized = 0.4 * points + (0.5, 0.5, 0.0)
+    np.save(tmp_path / "image.npy", sized)
+    np.save(tmp_path / "world.npy", points)
+
+    recording, _ = read(tmp_path / "world.npy")
+
+    assert "left_elbow" in recording.names
+    with pytest.raises(InvalidFileError, match="2D points of images"):
+        read(tmp_path / "image.npy")
 
 
 def lines(walk, title="frame,person,joint,x,y,z,score", frame="{}", people=1):
