@@ -9,7 +9,7 @@ from ..mocap_assist.blender.path_properties import HIDDEN
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.importing.button_settings import ImportBundle
 from ..mocap_assist.importing.file_kinds import kinds_of
-from ..mocap_assist.importing.import_operator import WIDTH, FilesOperator
+from ..mocap_assist.importing.import_operator import WIDTH, FilesOperator, propose_start
 from ..mocap_assist.importing.importing import FILTER, chosen_paths, preview
 from ..mocap_assist.runtime.solver_operator import in_background
 
@@ -36,6 +36,7 @@ class MOCAP_OT_import_recording(FilesOperator, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self._was_invoked = True
+        propose_start(self, context)
         if not chosen_paths(self):
             context.window_manager.fileselect_add(self)
             return {"RUNNING_MODAL"}

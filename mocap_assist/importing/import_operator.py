@@ -25,6 +25,12 @@ WIDTH = 400  # of the dialog, pixels at scale 1
 NOTE_WIDTH = 300  # of Adjust Last Operation, whose width Blender chooses
 
 
+def propose_start(operator: bpy.types.Operator, context: bpy.types.Context) -> None:
+    """Let the animation begin where the scene does, unless a start was chosen."""
+    if not operator.properties.is_property_set("frame_start"):
+        operator.frame_start = context.scene.frame_start
+
+
 class FilesOperator(SettingsMixin):
     """Mix in before bpy.types.Operator: files to import, how, and the import itself."""
 

@@ -70,11 +70,10 @@ def is_same_rate(one: float, other: float) -> bool:
 
 
 def set_duration(scene: bpy.types.Scene, first_frame: int, last_frame: float) -> None:
-    """Set the scene's range; the current frame moves into it."""
+    """Set the scene's range; a current frame outside moves to the first one."""
     scene.frame_start, scene.frame_end = first_frame, ceil(last_frame - RATE_ROUNDING)
-    inside = min(max(scene.frame_current, scene.frame_start), scene.frame_end)
-    if inside != scene.frame_current:
-        scene.frame_set(inside)
+    if not scene.frame_start <= scene.frame_current <= scene.frame_end:
+        scene.frame_set(scene.frame_start)
 
 
 def extend_duration(scene: bpy.types.Scene, last_frame: float) -> None:

@@ -1,5 +1,6 @@
 """What is exported comes in again in true size, upright, at its rate, joint by joint."""
 
+import addon_utils
 import pytest
 from armature_fixtures import BONES
 from mathutils import Matrix
@@ -34,3 +35,29 @@ def test_joints_come_back_within_a_millimeter(
     scene = blank.context.scene
     assert_allclose(heads(back, frames, BONES), expected, atol=MILLIMETER)
     assert scene.render.fps / scene.render.fps_base == pytest.approx(30.0)
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+def test_blenders_own_importers_agree(walk, blank, export, heads, ending):
+    """Other programs have readers of their own; the take keeps its range and size there."""
+    frames = range(1, 61)
+    expected = heads(walk, frames, BONES)
+    path = str(export(f"out.{ending}"))
+    importers = {
+        "fbx": lambda: blank.ops.wm.fbx_import(filepath=path),
+        "glb": lambda: blank.ops.import_scene.gltf(filepath=path),
+        "bvh": lambda: blank.ops.import_anim.bvh(
+            filepath=path, global_scale=0.01, axis_forward="-Z", axis_up="Y"
+        ),
+    }
+    before = set(blank.data.objects)
+    if ending == "glb":
+        addon_utils.enable("io_scene_gltf2")
+
+    importers[ending]()
+
+    back = next(each for each in set(blank.data.objects) - before if each.type == "ARMATURE")
+    first, last = back.animation_data.action.frame_range
+    assert last - first == pytest.approx(59.0, abs=1e-3)
+    found = heads(back, [first + frame - 1 for frame in frames], BONES)
+    assert_allclose(found, expected, atol=MILLIMETER)

@@ -1,5 +1,7 @@
 """A scene without animation takes over rate and length of a take; another one keeps them."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -43,8 +45,20 @@ def test_scene_takes_over_rate_and_length_when_nothing_is_animated(
 
     assert time_of(scene) == (RATE, 1, N_FRAMES)
     assert list(times) == list(range(1, N_FRAMES + 1))
-    assert scene.frame_current == N_FRAMES
+    assert scene.frame_current == 1
     assert "The scene now plays at 120 FPS." in capfd.readouterr().out
+
+
+@pytest.mark.parametrize("is_chosen", [False, True])
+def test_the_dialog_proposes_the_first_frame_of_the_scene(load, blank, is_chosen):
+    blank.context.scene.frame_start = 1001
+    operator = SimpleNamespace(
+        frame_start=1, properties=SimpleNamespace(is_property_set=lambda name: is_chosen)
+    )
+
+    load("mocap_assist.importing.import_operator").propose_start(operator, blank.context)
+
+    assert operator.frame_start == (1 if is_chosen else 1001)
 
 
 def test_fractional_rate_is_taken_over(bring, blank, load, tmp_path, time_of, key_times):
