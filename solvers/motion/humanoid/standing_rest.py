@@ -14,6 +14,9 @@ LEG_BONES = tuple(
 )
 FOOT_BONES = tuple((f"{side}Foot", f"{side}Toes") for side in ("left", "right"))
 FRAME_ROLES = ("hips", "leftUpperLeg", "rightUpperLeg")
+STANDING_QUANTILE = 0.25
+"""Quantile, a fraction, of the heights of ankles up to which a foot stands. Chosen by hand: in a
+walk each foot stands for more than half of the time."""
 TOPS = ("neck", "head", "chest", "spine")
 
 
@@ -23,8 +26,9 @@ def with_standing_rest(motion: Motion, humanoid: HumanoidMap) -> Motion:
     Files of some data sets have rest poses that no body can take: each bone lies along an axis
     of its joint, so that one leg points down and the other up. The axial rotation of a limb
     relative to the T-pose, and the height of the ankles, cannot be read from such a pose. The
-    rest pose is then that of the frame with the straightest legs and feet, upright and facing
-    -Y, with the hips at the origin. The positions of all joints over time stay the same.
+    rest pose is then that of the frame with straight legs and feet as they stand,
+    upright and facing -Y, with the hips at the origin. The positions of all joints over time
+    stay the same.
 
     Parameters
     ----------
@@ -50,7 +54,7 @@ def with_standing_rest(motion: Motion, humanoid: HumanoidMap) -> Motion:
     down = positions[:, hips] - positions[:, top]
     forward = np.cross(down, positions[:, left] - positions[:, right])
     straight = np.minimum(
-        _smallest_cosine(positions, legs, down), _smallest_cosine(positions, feet, forward)
+        _smallest_cosine(positions, legs, down), _flatness(positions, feet, forward)
     )
     usable = np.isfinite(poses.rotations).all(axis=(1, 2)) & np.isfinite(straight)
     usable &= np.linalg.norm(forward, axis=1) > MIN_BONE_M**2
@@ -78,6 +82,23 @@ def _smallest_cosine(positions: Array, bones: list[tuple[int, int]], direction: 
         length = np.linalg.norm(bone, axis=1) * np.linalg.norm(direction, axis=1)
         smallest = np.minimum(smallest, (bone * direction).sum(axis=1) / (length + 1e-9))
     return smallest
+
+
+def _flatness(positions: Array, feet: list[tuple[int, int]], forward: Array) -> Array:
+    """Return how similar both feet are to a foot that stands, (n_frames,); 1 for equal slopes.
+
+    The slope of a standing foot depends on the height of its ankle: the foot that points most
+    to the front is one with raised toes. The lowest ankles are those of standing feet.
+    """
+    if not feet:
+        return np.ones(len(positions))
+    slopes = np.stack([_smallest_cosine(positions, [bone], forward) for bone in feet], axis=1)
+    ankles = positions[:, [ankle for ankle, _ in feet], 2]
+    is_known = np.isfinite(slopes) & np.isfinite(ankles)
+    if not is_known.any():
+        return np.full(len(positions), np.nan)
+    low = is_known & (ankles <= np.quantile(ankles[is_known], STANDING_QUANTILE))
+    return np.asarray(1.0 - np.abs(slopes - np.median(slopes[low])).max(axis=1))
 
 
 def _upright_from(up: Array, left: Array) -> Array:

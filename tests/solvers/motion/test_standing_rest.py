@@ -103,3 +103,26 @@ def test_retargeting_does_not_depend_on_the_rest_pose(role):
         axis=-1,
     )
     assert distance.max() < 0.06
+
+
+def test_the_feet_rest_as_they_stand_though_toes_are_raised_for_a_moment():
+    rotations = WALK.rotations.copy()
+    for side in ("left", "right"):
+        foot = INDICES[f"{side}Foot"]
+        raised = quaternion_from_rotation_vector(np.array([-0.6, 0.0, 0.0]))
+        rotations[20:24, foot] = multiply(rotations[20:24, foot], raised)
+
+    stood = with_standing_rest(with_bones_along_axes(WALK.with_poses(rotations)), HUMANOID)
+
+    standing = forward_kinematics(WALK).positions
+    for side in ("left", "right"):
+        heights = standing[:, INDICES[f"{side}Foot"], 2]
+        low = slope(standing, side)[heights <= np.quantile(heights, 0.25)]
+        found = slope(stood.skeleton.rest_positions, side)
+        assert found == pytest.approx(np.median(low), abs=np.radians(12.0))
+
+
+def slope(positions, side):
+    """Return the slope of a foot, radians."""
+    bone = positions[..., INDICES[f"{side}Toes"], :] - positions[..., INDICES[f"{side}Foot"], :]
+    return np.arctan2(bone[..., 2], np.linalg.norm(bone[..., :2], axis=-1))
