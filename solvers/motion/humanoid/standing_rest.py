@@ -14,6 +14,10 @@ LEG_BONES = tuple(
 )
 FOOT_BONES = tuple((f"{side}Foot", f"{side}Toes") for side in ("left", "right"))
 FRAME_ROLES = ("hips", "leftUpperLeg", "rightUpperLeg")
+SHOULDERS = ("leftUpperArm", "rightUpperArm")
+MIN_SIDE_COSINE = 0.5
+"""Cosine between the lines through both shoulders and both hips. It guards the rest poses of
+people, 0.9 and more; spines that rest along one axis give -1 to 0.2."""
 STANDING_QUANTILE = 0.25
 """Quantile, a fraction, of the heights of ankles up to which a foot stands. Chosen by hand: in a
 walk each foot stands for more than half of the time."""
@@ -21,10 +25,11 @@ TOPS = ("neck", "head", "chest", "spine")
 
 
 def with_standing_rest(motion: Motion, humanoid: HumanoidMap) -> Motion:
-    """Return the same motion with a standing rest pose, if a leg points up in its rest pose.
+    """Return the same motion with a standing rest pose, if that of its file is no person's.
 
     Files of some data sets have rest poses that no body can take: each bone lies along an axis
-    of its joint, so that one leg points down and the other up. The axial rotation of a limb
+    of its joint, so that one leg points down and the other up, or the trunk lies on its side
+    above the legs. The axial rotation of a limb
     relative to the T-pose, and the height of the ankles, cannot be read from such a pose. The
     rest pose is then that of the frame with straight legs and feet as they stand,
     upright and facing -Y, with the hips at the origin. The positions of all joints over time
@@ -47,7 +52,8 @@ def with_standing_rest(motion: Motion, humanoid: HumanoidMap) -> Motion:
         return motion
     hips, left, right = (joints[role] for role in FRAME_ROLES)
     rest = motion.skeleton.rest_positions[None]
-    if _smallest_cosine(rest, legs, rest[:, hips] - rest[:, top])[0] > 0.0:
+    is_standing = _smallest_cosine(rest, legs, rest[:, hips] - rest[:, top])[0] > 0.0
+    if is_standing and _sides_agree(rest, joints):
         return motion
     poses = forward_kinematics(motion)
     positions = poses.positions
@@ -82,6 +88,13 @@ def _smallest_cosine(positions: Array, bones: list[tuple[int, int]], direction: 
         length = np.linalg.norm(bone, axis=1) * np.linalg.norm(direction, axis=1)
         smallest = np.minimum(smallest, (bone * direction).sum(axis=1) / (length + 1e-9))
     return smallest
+
+
+def _sides_agree(rest: Array, joints: dict[str, int]) -> bool:
+    """Return whether the shoulders are about parallel to the hips; of one without arms too."""
+    shoulders = [(joints[b], joints[a]) for a, b in [SHOULDERS] if a in joints and b in joints]
+    across = rest[:, joints["leftUpperLeg"]] - rest[:, joints["rightUpperLeg"]]
+    return bool(_smallest_cosine(rest, shoulders, across)[0] > MIN_SIDE_COSINE)
 
 
 def _flatness(positions: Array, feet: list[tuple[int, int]], forward: Array) -> Array:
