@@ -6,6 +6,7 @@ from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian re
 
 from ..arrays import Array
 from ..motion import Skeleton
+from ..motion.humanoid import ball_of_foot
 from ..motion_fitting.goals import BonePoint
 from .legs import LegJoints
 
@@ -41,12 +42,12 @@ def sole_points(skeleton: Skeleton, leg: LegJoints) -> tuple[BonePoint, ...]:
     with its ankle.
     """
     rest = skeleton.rest_positions
-    ball = leg.toe if leg.toe is not None else _first_child(skeleton, leg.ankle)
+    ball = leg.toe if leg.toe is not None else ball_of_foot(skeleton, leg.ankle)
     foot = rest[ball] - rest[leg.ankle]
     heel = np.array([0.0, 0.0, foot[2]]) - HEEL_FRACTION * foot * (1.0, 1.0, 0.0)
     points = [BonePoint(leg.ankle, heel), BonePoint(ball, np.zeros(3))]
-    if leg.toe is not None and (tip := _first_child(skeleton, leg.toe)) != leg.toe:
-        points.append(BonePoint(tip, np.zeros(3)))
+    if leg.toe is not None and skeleton.children[leg.toe]:
+        points.append(BonePoint(skeleton.children[leg.toe][0], np.zeros(3)))
     return tuple(points)
 
 
@@ -96,8 +97,3 @@ def _speeds(points: Array, frame_rate: float) -> Array:
     """Return the smoothed speeds of points in meters per second, (n_frames, n_points)."""
     speeds = np.linalg.norm(np.gradient(points, axis=0), axis=-1) * frame_rate
     return np.asarray(gaussian_filter1d(speeds, SMOOTHING_S * frame_rate, axis=0))
-
-
-def _first_child(skeleton: Skeleton, joint: int) -> int:
-    """Return the joint's first child, or itself if it has none."""
-    return next(iter(skeleton.children[joint]), joint)

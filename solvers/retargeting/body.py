@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import HumanoidMap, Motion, Skeleton, t_pose_alignment
+from ..motion.humanoid import prolongs_shin
 from .map_checks import check_feet, check_roles
 
 SIDES = ("left", "right")
@@ -83,6 +84,7 @@ def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> Humanoid
     check_feet(alignment, joints, whose)
     ancestors = {up for joint in joints.values() for up in skeleton.ancestors(joint)}
     feet = [joints[role] for role in FEET if role in joints]
+    feet = [foot for foot in feet if not prolongs_shin(skeleton, foot)]
     ends = {child for foot in feet for child in skeleton.children[foot][:1]}
     joint_indices = tuple(sorted({*joints.values(), *ancestors, *ends, 0}))
     new_index = {joint: index for index, joint in enumerate(joint_indices)}

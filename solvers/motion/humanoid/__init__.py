@@ -23,9 +23,11 @@ from .bone_lengths import fit_bone_lengths, transfer_motion
 from .canonical import (
     FORWARD,
     UP,
+    ball_of_foot,
     canonical_rotations,
     end_of_foot,
     from_canonical,
+    prolongs_shin,
     t_pose_alignment,
 )
 from .foot_contacts import (
@@ -106,6 +108,7 @@ __all__ = [
     "PostureNormalizer",
     "Reason",
     "RoleEvidence",
+    "ball_of_foot",
     "bone_directions",
     "canonical_rotations",
     "contact_probabilities",
@@ -133,6 +136,7 @@ __all__ = [
     "posture_positions",
     "postures_from_motion",
     "probabilities_of_points",
+    "prolongs_shin",
     "rates_from_directions",
     "read_humanoid_map",
     "resize_postures",

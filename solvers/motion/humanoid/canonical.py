@@ -46,6 +46,13 @@ MAX_STRAIGHT_YAW_RAD = np.radians(8.0)
 one shoulder in front of the other (4 degrees in HDM05). Chosen by hand on the rigs of
 `tests/solvers/motion`."""
 
+MAX_FOOT_FRACTION = 0.75
+"""Length of a foot relative to the shin, above which an end site in line with the shin is none.
+It guards pointed feet: those of people are 0.3 to 0.5 of the shin, invented tails 1."""
+MIN_PROLONGED_COSINE = np.cos(np.radians(10.0))
+"""Cosine of the angle between shin and end site up to which they are in line. It guards
+rounding: invented tails are exactly in line."""
+
 MAX_SOLE_SLOPE_SINE = np.sin(np.radians(65.0))
 """Slope of a foot bone above which the rest pose has pointed toes, not a flat sole. Chosen by
 hand on the rigs of `tests/solvers/motion`."""
@@ -220,12 +227,37 @@ def _foot_bone(skeleton: Skeleton, foot: int, toes: int | None) -> NDArray[np.fl
 def end_of_foot(skeleton: Skeleton, foot: int, toes: int | None) -> int:
     """Return the joint of the toes, otherwise the farthest one below the ankle, or the ankle.
 
-    The next joint may be at the sole, straight below the ankle, and show no direction.
+    The next joint may be at the sole, straight below the ankle, and show no direction. An end
+    that only prolongs the shin is no foot (`prolongs_shin`).
     """
     if toes is not None:
         return toes
+    if prolongs_shin(skeleton, foot):
+        return foot
     away = np.linalg.norm(skeleton.rest_positions - skeleton.rest_positions[foot], axis=1)
     return max(skeleton.subtree(foot), key=lambda joint: float(away[joint]))
+
+
+def ball_of_foot(skeleton: Skeleton, foot: int) -> int:
+    """Return the joint below an ankle without toes, or the ankle if there is none."""
+    return foot if prolongs_shin(skeleton, foot) else (*skeleton.children[foot], foot)[0]
+
+
+def prolongs_shin(skeleton: Skeleton, foot: int) -> bool:
+    """Return whether all that is below an ankle is an end site that repeats the shin.
+
+    Importers of glTF give the last bone of a chain a tail: the direction and the length of the
+    bone above it.
+    """
+    end = _only_end_site(skeleton, foot)
+    if end is None:
+        return False
+    tail, shin = skeleton.offsets[end], skeleton.offsets[foot]
+    lengths = np.linalg.norm(tail), np.linalg.norm(shin)
+    return bool(
+        lengths[0] > MAX_FOOT_FRACTION * lengths[1]
+        and tail @ shin > MIN_PROLONGED_COSINE * lengths[0] * lengths[1]
+    )
 
 
 def _split(role: str) -> tuple[str, str]:

@@ -15,6 +15,7 @@ from ...signals import (
     two_state_probabilities,
 )
 from ..skeletons import Motion, Skeleton, forward_kinematics
+from .canonical import ball_of_foot
 from .roles import HumanoidMap, find_humanoid_map
 
 HUMAN_LEG_LENGTH_M = 0.9
@@ -178,7 +179,7 @@ def foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.intp]:
     rows = []
     for side in ("left", "right"):
         foot = joints[f"{side}Foot"]
-        rows.append([foot, joints.get(f"{side}Toes", (*skeleton.children[foot], foot)[0])])
+        rows.append([foot, joints.get(f"{side}Toes", ball_of_foot(skeleton, foot))])
     return np.array(rows)
 
 

@@ -19,8 +19,8 @@ MIN_SIDE_COSINE = 0.5
 """Cosine between the lines through both shoulders and both hips. It guards the rest poses of
 people, 0.9 and more; spines that rest along one axis give -1 to 0.2."""
 STANDING_QUANTILE = 0.25
-"""Quantile, a fraction, of the heights of ankles up to which a foot stands. Chosen by hand: in a
-walk each foot stands for more than half of the time."""
+"""Quantile, a fraction, of the heights of ankles up to which a foot stands. Chosen by hand: in
+a walk each foot stands for more than half of the time."""
 TOPS = ("neck", "head", "chest", "spine")
 
 

@@ -66,6 +66,32 @@ def test_heels_stay_above_ground_and_toes_in_the_foot_plane(recordings, take):
     assert (toe_flexion_deg(result) < np.maximum(free, at_rest + 32.0) + 8.0).all()
 
 
+def test_tails_that_prolong_the_shins_are_no_feet():
+    """Importers of glTF invent such tails; the body sank by the length of a shin."""
+    walk = walking_gait()
+    skeleton = walk.skeleton
+    feet = [skeleton.index(f"{side}Foot") for side in ("Left", "Right")]
+    toes = {joint for foot in feet for joint in skeleton.subtree(foot)} - {*feet}
+    kept = [joint for joint in range(skeleton.n_joints) if joint not in toes]
+    bare = skeleton.select(kept)
+    ends = [bare.index(skeleton.names[foot]) for foot in feet]
+    tailed = Skeleton(
+        (*bare.names, *(f"{bare.names[foot]}_end" for foot in ends)),
+        (*bare.parents, *ends),
+        np.concatenate([bare.offsets, bare.offsets[ends]]),
+    )
+    still = np.tile((1.0, 0.0, 0.0, 0.0), (walk.n_frames, 2, 1))
+    rotations = np.concatenate([walk.rotations[:, kept], still], axis=1)
+    motion = Motion(tailed, rotations, walk.root_positions, walk.frame_rate)
+
+    heights = forward_kinematics(retargeted_to(motion)).positions[..., 2]
+
+    ankles = [ankle for ankle, _, _ in FEET]
+    assert heights[:, ankles].min(axis=0) == pytest.approx(
+        RIG.rest_positions[ankles, 2], abs=0.03
+    )
+
+
 def angle(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     lengths = np.linalg.norm(one, axis=-1) * np.linalg.norm(other, axis=-1)
     return np.degrees(np.arccos(np.clip((one * other).sum(axis=-1) / lengths, -1.0, 1.0)))
