@@ -25,6 +25,7 @@ NOT_SHOWN = (
 scripts that learn, damaged packets of streams, and checks of arrays that only programs and
 damaged libraries fail."""
 LABELED = {
+    "mocap_assist/blender/fbx_curves.py": {"describe_lost_curves"},
     "mocap_assist/check/checking.py": {"_summary"},
     "mocap_assist/check/compare_panel.py": {"HOLD"},
     "mocap_assist/check/panel.py": {"_draw_figures", "KINDS"},
@@ -38,11 +39,11 @@ LABELED = {
     "mocap_assist/importing/body_choice.py": {"BEST", "EVERY", "ONLY_THIS"},
     "mocap_assist/importing/depth_objects.py": {"make_preview"},
     "mocap_assist/importing/import_menu.py": {"ENTRY"},
+    "mocap_assist/importing/solve_bodies.py": {"describe_left_out"},
     "mocap_assist/importing/marker_objects.py": {"make_markers"},
     "mocap_assist/importing/recording_objects.py": {"make_objects", "_never_observed",
                                                     "_make_armature", "add_takes"},
     "mocap_assist/library/background.py": {"message_of"},
-    "mocap_assist/library/left_out.py": {"describe_left_out"},
     "mocap_assist/live/listening.py": {"MODES"},
     "mocap_assist/panels/figure_rows.py": {"FIGURES"},
     "mocap_assist/retarget/bone_list.py": {"PRESETS"},
@@ -55,6 +56,7 @@ LABELED = {
     "solvers/denoising/window_estimates/channel_groups.py": {"_describe_prior"},
     "solvers/motion/skeletons/file_conventions.py": {"sentence", "OFFSET_ADDED",
                                                      "_confidence_in_up", "_up_at_rest"},
+    "solvers/recordings/containers/frame_files.py": {"describe_frame_files"},
     "solvers/recordings/conventions/body_axes.py": {"describe_guessed_axis"},
     "solvers/recordings/conventions/body_unit.py": {"describe_guessed_unit",
                                                     "question_of_size"},

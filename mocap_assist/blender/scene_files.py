@@ -71,9 +71,9 @@ def _run(path: str, operator: Any, **options: Any) -> None:
         operator(filepath=path, **options)
     except RuntimeError as error:
         lines = str(error).strip().removeprefix("Error:").strip().splitlines()
-        reason = lines[0] if lines else "no reason is given"
+        reason = lines[0].rstrip(".") if lines else "no reason is given"
         raise InvalidFileError(
-            f"{path} cannot be read: {reason.rstrip('.')}. Save it again where it was made."
+            f"{path} cannot be read: {reason}. Save it again where it was made."
         ) from None
 
 

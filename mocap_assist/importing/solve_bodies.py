@@ -57,16 +57,17 @@ def choice_in_scene(wanted: str, bodies: Bodies[tuple[SkeletonAction, ...]]) -> 
 
 def describe_left_out(takes: Sequence[LeftOut]) -> tuple[str, ...]:
     """Return one message for each kind of motion that the takes of a skeleton leave out."""
-    shifts: dict[str, float] = {}
+    shifting: dict[str, float] = {}
     for take in takes:
         for name, meters in take.shifts:
-            shifts[name] = max(meters, shifts.get(name, 0.0))
+            shifting[name] = max(meters, shifting.get(name, 0.0))
     growing = dict.fromkeys(name for take in takes for name in take.growing)
     found = []
-    if shifts:
+    if shifting:
+        largest = 100.0 * max(shifting.values())
         found.append(
             "Bones change their distance to their parents, which is left out:"
-            f" {_listed(shifts)}, by up to {100.0 * max(shifts.values()):.0f} cm"
+            f" {_listed(shifting)}, by up to {largest:.0f} cm"
         )
     if growing:
         found.append(f"Bones change their size, which is left out: {_listed(growing)}")

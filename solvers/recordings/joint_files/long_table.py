@@ -126,8 +126,8 @@ def open_long_table(
     is_row = np.isfinite(rows[:, columns.joint]) & (frames >= 0)
     if not is_row.any() or len(table.joints) < MIN_JOINTS:
         raise InvalidFileError(
-            f"{path} has {len(table.joints)} joints in its lines; a body has {MIN_JOINTS} and"
-            " more. Export it again."
+            f"{path} has {len(table.joints)} different joints in its lines, too few for a body."
+            " Export it again."
         )
     names, order = table.joints.in_order()
     points = _points(path, table, frames, order)
@@ -156,7 +156,7 @@ def _read_table(path: Path | str, progress: Progress) -> _Table:
     titles = _titles(first[0]) if first else []
     columns = _columns(titles)
     if columns is None:
-        raise InvalidFileError(f"{path} has no columns of joints. Export it again.")
+        raise InvalidFileError(f"{path} has no columns of points. Export it again.")
     joints, people = _Numbers(), _Numbers()
     converters: dict[int, Callable[[bytes], bytes]] = {columns.joint: joints}
     if columns.person is not None:
