@@ -37,6 +37,7 @@ from .reduce_keys import MOCAP_OT_reduce_keys
 from .retarget import MOCAP_OT_retarget
 from .retrack import MOCAP_OT_retrack
 from .revert_to_raw import MOCAP_OT_revert_to_raw
+from .set_range import MOCAP_OT_set_range
 from .show_depth import MOCAP_OT_show_depth
 from .show_raw import MOCAP_OT_show_raw
 from .simulate import MOCAP_OT_simulate
@@ -65,6 +66,7 @@ OPERATORS = (
     MOCAP_OT_measure_quality,
     MOCAP_OT_jump_to_issue,
     MOCAP_OT_mark_issues,
+    MOCAP_OT_set_range,
     MOCAP_OT_plant_feet,
     MOCAP_OT_learn_patterns,
     MOCAP_OT_simulate,

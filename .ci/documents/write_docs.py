@@ -33,7 +33,7 @@ PAGES = {
     "tracking": "track_depth retrack",
     "reconstruction": "reconstruct",
     "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_issue mark_issues"
-    " revert_to_raw show_raw",
+    " set_range revert_to_raw show_raw",
     "export": "export_take",
     "physics": "simulate",
     "markers": "solve_skeleton",

@@ -10,7 +10,7 @@ from ..languages import translated
 from ..panels.drawing import exists
 from ..runtime.selection import played_result, selected_subject
 from ..scene import history
-from .raw_key import key_text
+from .key_map import key_text
 
 REVERT = "mocap_assist.revert_to_raw"
 HOLD = "Hold {key} to see the raw take"

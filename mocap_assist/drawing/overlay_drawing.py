@@ -11,7 +11,7 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 
 from ..actions.markers import holder_of
-from . import marker_overlay, onion_skin, overlay, strip_drawing
+from . import marker_overlay, onion_skin, overlay, raw_curves_switch, strip_drawing
 from .view_drawing import ViewDrawing, redraw, visible_active
 from .wipe import clipped, draw_wipe_line
 
@@ -61,6 +61,7 @@ def forget() -> None:
     overlay.forget()
     onion_skin.forget()
     marker_overlay.forget()
+    raw_curves_switch.forget()
     strip_drawing.forget()
 
 

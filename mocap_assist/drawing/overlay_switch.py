@@ -5,6 +5,7 @@ import bpy
 from ..panels.preference_values import preferences, preferred
 from . import overlay_drawing
 from .onion_skin import Onion
+from .raw_curves_switch import SWITCH as RAW_CURVES
 from .view_drawing import redraw
 
 PREFIX = "mocap_assist_"
@@ -25,7 +26,8 @@ def draw_overlay_switches(layout: bpy.types.UILayout, context: bpy.types.Context
         row.prop(manager, "mocap_assist_onion_step")
     if manager.mocap_assist_wipe:
         column.prop(manager, "mocap_assist_wipe_position", slider=True)
-    is_on = any(getattr(manager, PREFIX + switch) for switch in SWITCHES)
+    column.prop(manager, RAW_CURVES, toggle=True, icon="FCURVE")
+    is_on = any(getattr(manager, name) for name in (*map(PREFIX.__add__, SWITCHES), RAW_CURVES))
     if is_on and preferences() is not None:
         _draw_colors(column)
 

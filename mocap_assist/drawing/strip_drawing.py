@@ -56,8 +56,7 @@ def draw_strip(context: bpy.types.Context) -> None:
     if strip is None:
         return
     scale = context.preferences.system.ui_scale
-    bottom = strip_bottom(context, len(strip.rows), scale)
-    height = row_height(context.region.height - bottom, len(strip.rows), scale)
+    bottom, height = strip_height(context, len(strip.rows))
     first, last = visible_frames(context.region)
     pixels_per_frame = context.region.width / (last - first)
     batches = _batches_of(strip, min_width(pixels_per_frame, strip.step))
@@ -80,6 +79,13 @@ def visible_frames(region: bpy.types.Region) -> tuple[float, float]:
     left, _ = region.view2d.region_to_view(0, 0)
     right, _ = region.view2d.region_to_view(region.width, 0)
     return left, right
+
+
+def strip_height(context: bpy.types.Context, n_rows: int) -> tuple[float, float]:
+    """Return the height of the strip in its region, and that of one of its rows."""
+    scale = context.preferences.system.ui_scale
+    bottom = strip_bottom(context, n_rows, scale)
+    return bottom, row_height(context.region.height - bottom, n_rows, scale)
 
 
 def strip_bottom(context: bpy.types.Context, n_rows: int, scale: float) -> float:

@@ -1,9 +1,15 @@
 """User interface: panels in the sidebar, menus, preferences and the overlay."""
 
 from .. import languages
-from ..check import issue_views, raw_key, renewing
+from ..check import issue_views, key_map, renewing
 from ..clean import example_list
-from ..drawing import color_icons, confidence_switch, overlay_switch, strip_switch
+from ..drawing import (
+    color_icons,
+    confidence_switch,
+    overlay_switch,
+    raw_curves_switch,
+    strip_switch,
+)
 from ..exporting import export_menu
 from ..importing import import_menu
 from ..panels import presets
@@ -34,10 +40,11 @@ PARTS = (
     export_menu,
     overlay_switch,
     confidence_switch,
+    raw_curves_switch,
     strip_switch,
     issue_views,
     renewing,
-    raw_key,
+    key_map,
     manual,
 )
 

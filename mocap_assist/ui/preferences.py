@@ -8,7 +8,7 @@ import bpy
 from ...solvers.errors import MocapAssistError
 from ...solvers.recordings.live import PORT
 from ..actions.armature_write import Output
-from ..check.raw_key import draw_keys
+from ..check.key_map import draw_keys
 from ..drawing import overlay_drawing
 from ..languages import translated
 from ..library.auto_update_list import auto_updated_libraries, stop_keeping

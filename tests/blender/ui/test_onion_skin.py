@@ -91,8 +91,10 @@ def test_halves_of_a_wipe_cover_the_view_once(load, position):
 
 
 @pytest.mark.usefixtures("all_panels")
-def test_settings_and_colors_are_shown_while_a_switch_is_on(blank, draw, load):
-    manager, shown = blank.context.window_manager, draw("MOCAP_PT_compare")
+def test_settings_and_colors_are_shown_while_a_switch_is_on(blank, draw, load, monkeypatch):
+    manager = blank.context.window_manager
+    monkeypatch.setattr(manager, "mocap_assist_raw_curves", False)
+    shown = draw("MOCAP_PT_compare")
     assert {"mocap_assist_onion", "mocap_assist_wipe"} <= set(shown)
     assert not {"mocap_assist_onion_ghosts", "mocap_assist_wipe_position", "raw_color"} & set(
         shown

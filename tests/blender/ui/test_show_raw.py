@@ -267,7 +267,7 @@ def default_items(name):
 
 @pytest.mark.parametrize("name", ["blender_default", "industry_compatible_data"])
 def test_key_is_free_in_the_key_maps_of_blender(load, name):
-    key = load("mocap_assist.check.raw_key").KEY
+    key = load("mocap_assist.check.key_map").KEY
     items = list(default_items(name))
     assert {"Pose", "Object Mode"} <= {keymap for keymap, *_ in items}
 

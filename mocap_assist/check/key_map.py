@@ -1,31 +1,51 @@
-"""The key that shows the recorded action while it is held, in the add-on key map."""
+"""Keys of the extension, in the add-on key map: the animator can edit them."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import bpy
 
 SHOW_RAW = "mocap_assist.show_raw"
 KEY = "Y"
 """Key that neither of Blender's key maps uses in Pose Mode and in Object Mode."""
-MODES = ("Pose", "Object Mode")
+SET_RANGE = "mocap_assist.set_range"
+DRAG = "LEFTMOUSE"
+"""The operator passes on every press that is not on the strip."""
 MODE_COLUMN = 0.16
 """Width of the names of the modes in the preferences, as a fraction."""
+
+
+class _Entry(NamedTuple):
+    operator: str
+    key: str
+    mode: str
+    """Name of Blender's key map."""
+    editor: str = "EMPTY"
+
+
+ENTRIES = (
+    _Entry(SHOW_RAW, KEY, "Pose"),
+    _Entry(SHOW_RAW, KEY, "Object Mode"),
+    _Entry(SET_RANGE, DRAG, "Dopesheet", "DOPESHEET_EDITOR"),
+    _Entry(SET_RANGE, DRAG, "Graph Editor", "GRAPH_EDITOR"),
+)
 _items: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
 
 
 def animators_items() -> Iterator[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]]:
     """Yield the items as the animator edited them, if there is a key map, as in a window."""
     keyconfig = bpy.context.window_manager.keyconfigs.user
-    for mode in MODES:
-        keymap = keyconfig and keyconfig.keymaps.get(mode)
+    for entry in ENTRIES:
+        keymap = keyconfig and keyconfig.keymaps.get(entry.mode)
         for item in keymap.keymap_items if keymap else ():
-            if item.idname == SHOW_RAW:
+            if item.idname == entry.operator:
                 yield keymap, item
 
 
 def key_text() -> str:
-    """Return the key as Blender writes it; nothing where it was removed or switched off."""
-    return next((item.to_string() for _, item in animators_items() if item.active), "")
+    """Return the key of the recorded take as Blender writes it; nothing if it is off."""
+    shown = (item for _, item in animators_items() if item.idname == SHOW_RAW and item.active)
+    return next((item.to_string() for item in shown), "")
 
 
 def draw_keys(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -44,9 +64,9 @@ def draw_keys(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 def register() -> None:
     """Add the items; without a window Blender may have no key maps."""
     keyconfig = bpy.context.window_manager.keyconfigs.addon
-    for mode in MODES if keyconfig else ():
-        keymap = keyconfig.keymaps.new(name=mode)
-        _items.append((keymap, keymap.keymap_items.new(SHOW_RAW, KEY, "PRESS")))
+    for operator, key, mode, editor in ENTRIES if keyconfig else ():
+        keymap = keyconfig.keymaps.new(name=mode, space_type=editor)
+        _items.append((keymap, keymap.keymap_items.new(operator, key, "PRESS")))
 
 
 def unregister() -> None:
