@@ -13,7 +13,7 @@ from .view_drawing import redraw
 SWITCH = "mocap_assist_raw_curves"
 OPACITY = 0.7
 """Of a recorded curve relative to the color of the recorded take."""
-WIDTH_PX = 1.5
+WIDTH_PX = 2.0
 """Width of a recorded curve at interface scale 1; Blender's own curves have 1 to 2."""
 MAX_CACHED = 128
 """Number of cached curves. It bounds the memory: of 10,000 keys each has 240 kB."""
@@ -27,7 +27,7 @@ def forget() -> None:
 
 
 def draw_raw_curves(context: bpy.types.Context) -> None:
-    """Draw the recorded curve of each curve of a result that the Graph Editor shows."""
+    """Draw the recorded curves of those that the Graph Editor shows, in frames and values."""
     space = context.space_data
     if space.mode != "FCURVES":
         return
@@ -42,24 +42,14 @@ def draw_raw_curves(context: bpy.types.Context) -> None:
     shader.uniform_float("lineWidth", WIDTH_PX * context.preferences.system.ui_scale)
     gpu.state.blend_set("ALPHA")
     for pair in pairs:
-        values = displayed_values(
+        factor, offset = displayed_values(
             pair.played, context.scene, normalized=space.use_normalization
         )
-        _draw_pair(pair, values, context.region, shader)
+        with gpu.matrix.push_pop():
+            gpu.matrix.translate((0.0, offset))
+            gpu.matrix.scale((1.0, factor))
+            _batch_of(pair, shader).draw(shader)
     gpu.state.blend_set("NONE")
-
-
-def _draw_pair(
-    pair: CurvePair, values: tuple[float, float], region: bpy.types.Region, shader: Any
-) -> None:
-    factor, offset = values
-    left, bottom = region.view2d.region_to_view(0, 0)
-    right, top = region.view2d.region_to_view(region.width, region.height)
-    wide, high = region.width / (right - left), region.height / (top - bottom)
-    with gpu.matrix.push_pop():
-        gpu.matrix.translate((-left * wide, (offset - bottom) * high))
-        gpu.matrix.scale((wide, factor * high))
-        _batch_of(pair, shader).draw(shader)
 
 
 def _batch_of(pair: CurvePair, shader: Any) -> Any:
@@ -95,7 +85,7 @@ def register() -> None:
         update=_switched,
     )
     setattr(bpy.types.WindowManager, SWITCH, described)
-    _handles.append(SpaceGraphEditor.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL"))
+    _handles.append(SpaceGraphEditor.draw_handler_add(_draw, (), "WINDOW", "PRE_VIEW"))
 
 
 def unregister() -> None:

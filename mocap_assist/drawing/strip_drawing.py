@@ -1,24 +1,23 @@
 """Draw the strip at the bottom of the Timeline, the Dope Sheet and the Graph Editor."""
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
-import blf
 import bpy
 import gpu
 import numpy as np
 
 from ...solvers.arrays import Single
 from ..languages import translated
-from . import strip_reading
+from . import strip_labels, strip_reading
 from .strip_ranges import COLORS, Range, StripRow
 from .strip_reading import Strip
 
 EDITORS = ("DOPESHEET_EDITOR", "GRAPH_EDITOR")
 MODES = {"TIMELINE", "DOPESHEET", "ACTION", "SHAPEKEY", "FCURVES"}
 """Of these editors, the modes whose keys are those of objects."""
-ROW_HEIGHT_PX, LABEL_PX, GAP_PX = 13, 10, 3
-"""Height of a row, size of its label and distance from the border, in pixels at scale 1."""
+ROW_HEIGHT_PX, GAP_PX = 13, 3
+"""Height of a row, and distance from the border, in pixels at scale 1."""
 MIN_LABELED_PX, MIN_ROW_PX = 10, 2
 """Height below which a row has no label, and its minimum, in pixels at scale 1."""
 SCROLLER_PX, MARKERS_PX, RULER_PX = 10, 42, 24
@@ -28,23 +27,16 @@ MIN_WIDTH_PX = 2.0
 """Width of a range of which many lie in one pixel."""
 ROW_INSET = 0.08
 """Distance between two rows, as a fraction of their height."""
-BACKGROUND, PLATE = (0.06, 0.06, 0.06, 0.7), (0.06, 0.06, 0.06, 0.85)
-LABEL_COLOR = (0.95, 0.95, 0.95, 1.0)
+BACKGROUND = (0.06, 0.06, 0.06, 0.7)
 
-
-class _Batches(NamedTuple):
-    """The ranges, in frames and rows, and what lies behind the labels, one unit wide."""
-
-    ranges: Any
-    plate: Any
-
-
-_batches: dict[tuple[int, float], tuple[Strip, _Batches]] = {}
+_batches: dict[tuple[int, float], tuple[Strip, Any]] = {}
+"""Of ranges, in frames and rows."""
 
 
 def forget() -> None:
     """Clear the caches, so that the next drawing reads again."""
     strip_reading.forget()
+    strip_labels.forget()
     _batches.clear()
 
 
@@ -59,11 +51,11 @@ def draw_strip(context: bpy.types.Context) -> None:
     bottom, height = strip_height(context, len(strip.rows))
     first, last = visible_frames(context.region)
     pixels_per_frame = context.region.width / (last - first)
-    batches = _batches_of(strip, min_width(pixels_per_frame, strip.step))
-    corner = (-first * pixels_per_frame, bottom)
-    _draw_batch(batches.ranges, corner, (pixels_per_frame, height))
+    batch = _batch_of(strip, min_width(pixels_per_frame, strip.step))
+    _draw_batch(batch, (-first * pixels_per_frame, bottom), (pixels_per_frame, height))
     if height >= MIN_LABELED_PX * scale:
-        _draw_labels(strip, batches.plate, bottom, height, scale)
+        texts = tuple(translated(row.value) for row in strip.rows)
+        strip_labels.draw_labels(strip_labels.Labels(texts, height, scale), bottom)
 
 
 def min_width(pixels_per_frame: float, step: float) -> float:
@@ -115,44 +107,26 @@ def _draw_batch(batch: Any, corner: tuple[float, float], unit: tuple[float, floa
     gpu.state.blend_set("NONE")
 
 
-def _draw_labels(strip: Strip, plate: Any, bottom: float, height: float, scale: float) -> None:
-    """Name the rows at the left border, on a plate over the ranges."""
-    font, margin = 0, 2 * GAP_PX * scale
-    texts = [translated(row.value) for row in strip.rows]
-    blf.size(font, LABEL_PX * scale)
-    blf.color(font, *LABEL_COLOR)
-    width = max(blf.dimensions(font, text)[0] for text in texts) + 2 * margin
-    _draw_batch(plate, (0.0, bottom), (width, height))
-    for index, text in enumerate(reversed(texts)):
-        blf.position(font, margin, bottom + index * height + GAP_PX * scale, 0.0)
-        blf.draw(font, text)
-
-
-def _batches_of(strip: Strip, width: float) -> _Batches:
-    """Return the batches of a strip; they are made once for each doubled zoom."""
+def _batch_of(strip: Strip, width: float) -> Any:
+    """Return the batch of a strip; it is made once for each doubled zoom."""
     key = id(strip), width
     known = _batches.get(key)
     if known is None or known[0] is not strip:
         if len(_batches) >= strip_reading.MAX_CACHED:
             del _batches[next(iter(_batches))]
-        known = _batches[key] = strip, _make_batches(strip, width)
+        known = _batches[key] = strip, _make_batch(strip, width)
     return known[1]
 
 
-def _make_batches(strip: Strip, width: float) -> _Batches:
+def _make_batch(strip: Strip, width: float) -> Any:
     from gpu_extras.batch import batch_for_shader
 
-    shader = gpu.shader.from_builtin("SMOOTH_COLOR")
     corners, colors = rectangles_of(strip, width)
     first = np.arange(len(corners), dtype=np.int32)[:, None, None] * 4
     triangles = (first + np.array([[0, 1, 2], [2, 1, 3]], np.int32)).reshape(-1, 3)
-    ranges = {"pos": corners.reshape(-1, 2), "color": colors.reshape(-1, 4)}
-    ends = [(x, y * len(strip.rows)) for x in (0, 1) for y in (0, 1)]
-    plate = {"pos": ends, "color": [PLATE] * len(ends)}
-    return _Batches(
-        batch_for_shader(shader, "TRIS", ranges, indices=triangles),
-        batch_for_shader(shader, "TRI_STRIP", plate),
-    )
+    content = {"pos": corners.reshape(-1, 2), "color": colors.reshape(-1, 4)}
+    shader = gpu.shader.from_builtin("SMOOTH_COLOR")
+    return batch_for_shader(shader, "TRIS", content, indices=triangles)
 
 
 def rectangles_of(strip: Strip, width: float) -> tuple[Single, Single]:

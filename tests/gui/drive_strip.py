@@ -145,6 +145,63 @@ def see_ghosts_and_wipe():
     manager.mocap_assist_wipe = False
 
 
+def drag_on_the_strip():
+    """A drag sets the range in the Graph Editor and in the Timeline; a click clears it."""
+    scene, drag = bpy.context.scene, load("drawing.strip_drag")
+    for kind, picture in (("GRAPH_EDITOR", "3b-dragged.png"), ("DOPESHEET_EDITOR", None)):
+        region = bgui.region("WINDOW", kind)
+        with bgui.override("WINDOW", kind):
+            found = load("drawing.strip_reading").strip_of(bpy.context)
+            bottom, row = load("drawing.strip_drawing").strip_height(
+                bpy.context, len(found.rows)
+            )
+        columns = [region.x + int(part * region.width) for part in (0.4, 0.5, 0.6)]
+        line = region.y + int(bottom + 0.5 * row)
+        bgui.move(columns[0], line)
+        yield 0.3
+        bgui.x("mousedown", 1)
+        for column in columns:
+            bgui.move(column, line)
+            yield 0.3
+        bgui.x("mouseup", 1)
+        yield 0.5
+        assert scene.use_preview_range, kind
+        ends = scene.frame_preview_start, scene.frame_preview_end
+        expected = drag.frames_between(region, *(each - region.x for each in columns[::2]))
+        assert np.abs(np.subtract(ends, expected)).max() <= 1, (ends, expected)
+        assert scene.mocap_assist.clean.frame_range == "PREVIEW"
+        yield from settle(2)
+        if picture:
+            bgui.shot(picture)
+        yield from bgui.click(columns[0], line)
+        yield 0.3
+        assert not scene.use_preview_range, kind
+        assert scene.mocap_assist.clean.frame_range == "ACTION"
+
+
+def see_raw_curves(armature):
+    """The recorded curves of one bone, behind those of the result."""
+    compat = load("blender.compat")
+    for bone in armature.pose.bones:
+        compat.select_bone(bone, bone.name == "LeftLeg")
+    armature.data.bones.active = armature.data.bones["LeftLeg"]
+    with bgui.override("WINDOW", "GRAPH_EDITOR"):
+        pairs = load("drawing.raw_curves").shown_pairs(bpy.context)
+        bpy.ops.graph.view_all()
+    assert pairs and all("LeftLeg" in each.recorded.data_path for each in pairs), pairs
+    yield from settle(2)
+    bgui.shot("3c-raw-curves.png")
+    space = bgui.area("GRAPH_EDITOR").spaces.active
+    space.use_normalization = True
+    with bgui.override("WINDOW", "GRAPH_EDITOR"):
+        bpy.ops.graph.view_all()
+    yield from settle(2)
+    bgui.shot("3d-raw-curves-normalized.png")
+    space.use_normalization = False
+    for bone in armature.pose.bones:
+        compat.select_bone(bone, True)
+
+
 def large_action():
     """Make an armature with an action of 100 bones and 10,000 frames, and 5 % generated."""
     with bgui.override("WINDOW"):
@@ -191,6 +248,20 @@ def measure():
     bpy.context.scene.frame_end = N_FRAMES
     switch, times, cpu_times = load("drawing.strip_switch"), [], []
     draw_strip = switch.draw_strip
+    drawing, labels, uploads = load("drawing.strip_drawing"), load("drawing.strip_labels"), []
+    makers = (drawing, "_make_batch"), (labels, "_make_image")
+
+    def uploading(make):
+        def timed_upload(*given):
+            started = time.perf_counter()
+            made = make(*given)
+            uploads.append(1000.0 * (time.perf_counter() - started))
+            return made
+
+        return timed_upload
+
+    for module, name in makers:
+        setattr(module, name, uploading(getattr(module, name)))
 
     def timed(context):
         started, cpu_started = time.perf_counter(), time.thread_time()
@@ -214,7 +285,8 @@ def measure():
     print(
         f"bgui: the strip of {N_BONES} bones and {N_FRAMES} frames: first {times[0]:.1f} ms,"
         f" then median {np.median(times[1:]):.3f} ms, of the processor"
-        f" {np.median(cpu_times[1:]):.3f} ms, best {min(times):.3f} ms, of {len(times)}",
+        f" {np.median(cpu_times[1:]):.3f} ms, best {min(times):.3f} ms, of {len(times)};"
+        f" uploads to the GPU, once: {', '.join(f'{each:.1f}' for each in uploads)} ms",
         flush=True,
     )
 
@@ -265,6 +337,8 @@ def steps():
     yield from settle(2)
     assert bpy.context.scene.mocap_assist.checked == "walk.clean", "the list is not renewed"
     bgui.shot("3-checked.png")
+    yield from drag_on_the_strip()
+    yield from see_raw_curves(armature)
     made_up_confidence(armature)
     yield from settle(5)
     bgui.shot("4-confidence.png")
