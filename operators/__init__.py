@@ -5,6 +5,7 @@ import bpy
 from .accept_fix import MOCAP_OT_accept_fix
 from .add_workspace import MOCAP_OT_add_workspace
 from .assign_variants import MOCAP_OT_assign_variants
+from .browse_matches import MOCAP_OT_browse_matches
 from .cancel_solve import MOCAP_OT_cancel_solve
 from .change_axes import MOCAP_OT_change_axes
 from .denoise import MOCAP_OT_denoise
@@ -81,6 +82,7 @@ OPERATORS = (
     MOCAP_OT_index_library,
     MOCAP_OT_keep_current,
     MOCAP_OT_find_similar,
+    MOCAP_OT_browse_matches,
     MOCAP_OT_load_match,
     MOCAP_OT_link_match,
     MOCAP_OT_learn_from_matches,

@@ -38,8 +38,8 @@ PAGES = {
     "physics": "simulate",
     "markers": "solve_skeleton",
     "retargeting": "retarget reduce_keys",
-    "library_in_blender": "index_library keep_current find_similar load_match link_match"
-    " learn_from_matches use_matches mark_asset",
+    "library_in_blender": "index_library keep_current find_similar browse_matches load_match"
+    " link_match learn_from_matches use_matches mark_asset",
     "performing": "listen record_live",
     "variation": "vary keep_variants stack_variants assign_variants draw_variants"
     " mark_variants",

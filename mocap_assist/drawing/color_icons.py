@@ -1,6 +1,6 @@
 """Icons that show a color of a drawing, for the legends in panels."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import bpy.utils.previews
@@ -18,9 +18,16 @@ BARS = {Mark.LOW: 1, Mark.MEDIUM: 2, Mark.HIGH: 3}
 _icons: list[Any] = []
 
 
-def square_icon(mark: Mark) -> int:
-    """Return the number of an icon: a square in the color of a mark."""
-    return _icon(f"square {mark.name}", lambda: _square(COLORS[mark]))
+def draw_marks(layout: bpy.types.UILayout, marks: Iterable[Mark], *, columns: int) -> None:
+    """Draw a legend: the color of each mark, and what it means."""
+    grid = layout.grid_flow(row_major=True, columns=columns, even_columns=True, align=True)
+    for mark in marks:
+        grid.label(text=mark.value, icon_value=square_icon(COLORS[mark]))
+
+
+def square_icon(color: Color) -> int:
+    """Return the number of an icon: a square in a color."""
+    return _icon(f"square {color}", lambda: _square(color))
 
 
 def bars_icon(mark: Mark) -> int:

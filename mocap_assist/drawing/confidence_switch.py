@@ -9,7 +9,9 @@ import numpy as np
 from ..actions.reliability_curves import Term
 from ..panels.drawing import draw_sentence
 from ..panels.preference_values import preferred
+from .color_icons import draw_marks
 from .confidence_colors import ColoredBones, available_terms, colored_bones_at
+from .strip_ranges import MARKS, StripRow
 from .view_drawing import ViewDrawing, redraw, visible_active
 
 WIDTH_FACTOR = 2.0
@@ -50,6 +52,7 @@ def draw_confidence_switch(layout: bpy.types.UILayout, context: bpy.types.Contex
         cell = grid.row(align=True)
         cell.enabled = term in available
         cell.prop_enum(manager, "mocap_assist_confidence_term", term.name)
+    draw_marks(layout, MARKS[StripRow.CONFIDENCE], columns=3)
     for sentence in _missing(available):
         draw_sentence(layout, context, sentence, icon="INFO")
 

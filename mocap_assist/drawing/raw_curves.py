@@ -41,9 +41,7 @@ def _players(context: bpy.types.Context) -> Iterator[bpy.types.Object]:
     yield from (each for each in context.selected_objects if each != active)
 
 
-def _pairs_of(
-    player: bpy.types.Object, visible: list[bpy.types.FCurve]
-) -> Iterator[CurvePair]:
+def _pairs_of(player: bpy.types.Object, visible: list[bpy.types.FCurve]) -> Iterator[CurvePair]:
     played = history.played_result(player)
     recorded = played and history.raw_of(*played)
     if not (played and recorded):

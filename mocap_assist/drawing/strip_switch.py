@@ -1,15 +1,14 @@
 """Switch of the strip, and its legend; it is on the window manager, not in the scene."""
 
-from collections.abc import Iterable
 from typing import Any
 
 import bpy
 from bpy.types import SpaceDopeSheetEditor, SpaceGraphEditor
 
 from ..panels.drawing import draw_sentence
-from .color_icons import square_icon
+from .color_icons import draw_marks
 from .strip_drawing import EDITORS, draw_strip
-from .strip_ranges import MARKS, Mark, StripRow
+from .strip_ranges import MARKS, StripRow
 from .strip_reading import strip_of
 from .view_drawing import redraw
 
@@ -32,17 +31,9 @@ def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) ->
     column = layout.column(align=True)
     if StripRow.CONFIDENCE in strip.rows:
         column.label(text=StripRow.CONFIDENCE.value)
-        _draw_marks(column, MARKS[StripRow.CONFIDENCE], columns=3)
-    others = (
-        mark for row in strip.rows if row is not StripRow.CONFIDENCE for mark in MARKS[row]
-    )
-    _draw_marks(column, dict.fromkeys(others), columns=2)
-
-
-def _draw_marks(layout: bpy.types.UILayout, marks: Iterable[Mark], *, columns: int) -> None:
-    grid = layout.grid_flow(row_major=True, columns=columns, even_columns=True, align=True)
-    for mark in marks:
-        grid.label(text=mark.value, icon_value=square_icon(mark))
+        draw_marks(column, MARKS[StripRow.CONFIDENCE], columns=3)
+    others = (mark for row in strip.rows if row is not StripRow.CONFIDENCE for mark in MARKS[row])
+    draw_marks(column, dict.fromkeys(others), columns=2)
 
 
 def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:

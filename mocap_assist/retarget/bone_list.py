@@ -12,12 +12,12 @@ from ...solvers.motion import read_humanoid_map, write_humanoid_map
 from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import OperatorMixin
 from ..blender.path_properties import absolute, path_property
-from ..drawing.color_icons import BARS, bars_icon
+from ..drawing.color_icons import BARS, bars_icon, square_icon
 from ..drawing.strip_ranges import MARKS, Mark, StripRow, confidence_mark
 from ..languages import translated
 from ..panels.drawing import draw_sentence, is_wide
 from ..runtime.selection import selected_armature, why_not_retarget
-from .bone_highlight import SWITCH, why_certain
+from .bone_highlight import COLOR, SWITCH, why_certain
 from .bone_map import (
     SIDES,
     BoneMaps,
@@ -232,7 +232,8 @@ def _draw_legend(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     row = layout.row(align=True)
     for mark in MARKS[StripRow.CONFIDENCE]:
         row.label(text=mark.value, icon_value=bars_icon(mark))
-    row.prop(context.window_manager, SWITCH, text="", icon="BONE_DATA", toggle=True)
+    color = square_icon(COLOR)
+    row.prop(context.window_manager, SWITCH, text="", icon_value=color, toggle=True)
 
 
 def _draw_reasons(

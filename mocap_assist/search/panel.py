@@ -6,6 +6,7 @@ import bpy
 
 from ...solvers.retrieval import FindSettings
 from ..blender.mixins import PanelMixin
+from ..drawing.color_icons import square_icon
 from ..languages import translated
 from ..library.auto_update_list import choices_are_kept
 from ..panels.drawing import draw_sentence, exists, folded, is_wide, settings_column
@@ -14,6 +15,7 @@ from ..panels.visibility import shows_take
 from ..runtime.selection import Bones
 from . import searches
 from .finding import why_not_find
+from .ghost_drawing import COLOR
 from .match_grid import draw_match_grid
 from .previews import icon_of
 from .source_list import draw_sources
@@ -22,7 +24,7 @@ KEEP = "mocap_assist.keep_current"
 INDEX, FIND = "mocap_assist.index_library", "mocap_assist.find_similar"
 LOAD, LINK = "mocap_assist.load_match", "mocap_assist.link_match"
 LEARN, MARK = "mocap_assist.learn_from_matches", "mocap_assist.mark_asset"
-USE = "mocap_assist.use_matches"
+USE, BROWSE = "mocap_assist.use_matches", "mocap_assist.browse_matches"
 PARTS = (("trunk",), ("left_arm", "right_arm"), ("left_leg", "right_leg"))
 SHOWN_APART = {"n_matches", "n_aligned", *(name for row in PARTS for name in row)}
 MIN_ROWS, MAX_ROWS = 3, 6
@@ -129,6 +131,7 @@ def _draw_matches(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
         draw_sentence(column, context, "Outdated. Press Find Similar again.", icon="INFO")
         return
     draw_sentence(column, context, f'Similar to "{listed.query}"')
+    column.operator(BROWSE, icon="PLAY")
     n_good = draw_match_grid(column, context, search)
     header, body = column.panel("mocap_assist_all_matches", default_closed=True)
     header.label(text="All Matches")
@@ -157,7 +160,8 @@ def _draw_chosen(
     )
     switch = column.row()
     switch.use_property_split = False
-    switch.prop(context.window_manager, "mocap_assist_ghost", toggle=True, icon="GHOST_ENABLED")
+    color = square_icon(COLOR)
+    switch.prop(context.window_manager, "mocap_assist_ghost", toggle=True, icon_value=color)
     load = context.scene.mocap_assist.load
     column.prop(load, "part")
     column.prop(load, "at_query")

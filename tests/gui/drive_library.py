@@ -7,11 +7,12 @@ is copied next to this script; clips similar to the last of them are searched. T
 written as a .blend file, so that another Blender has to read that.
 """
 
+from importlib import import_module
 from pathlib import Path
 
 import bgui
 import bpy
-from driver_scene import empty_scene, settle, unfold_alone
+from driver_scene import PACKAGE, empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 CLIPS = FOLDER / "clips"
@@ -106,6 +107,34 @@ def find():
     matches().active = 0
 
 
+def browse():
+    """The matches over the view: one plays under the pointer, a click selects it."""
+    yield from press("mocap_assist.browse_matches")
+    view = bgui.area()
+    cells = import_module(f"{PACKAGE}.mocap_assist.search.gallery_drawing")
+    layout = import_module(f"{PACKAGE}.mocap_assist.search.gallery")
+    space = cells.free_space(view)
+    scale = bpy.context.preferences.system.ui_scale
+    below = space._replace(height=space.height - cells.HEAD_PX * scale)
+    cell = layout.cells_in(below, len(matches().rows), scale)[2]
+    region = bgui.region("WINDOW")
+    middle = region.x + cell.x + 0.5 * cell.width, region.y + cell.y + 0.5 * cell.height
+    bgui.move(*middle)
+    yield 1.0
+    bgui.shot("4b-played.png")
+    yield 0.5
+    bgui.shot("4c-played-later.png")
+    yield from bgui.click(*middle)
+    yield 0.5
+    assert matches().active == 2, matches().active
+    matches().active = 0
+    yield from press("mocap_assist.browse_matches")
+    yield from bgui.key("Escape")
+    yield 0.3
+    assert matches().active == 0
+    bgui.shot("4d-closed.png")
+
+
 def use(armature):
     before = armature.animation_data.action
     bpy.context.scene.frame_set(int(before.frame_range[0]) + 60)
@@ -139,6 +168,7 @@ def steps():
     yield from index()
     yield from keep_current()
     yield from find()
+    yield from browse()
     yield from use(armature)
 
 

@@ -236,6 +236,27 @@ def large_action():
     return armature
 
 
+def time_uploads():
+    """Return a list that gets the milliseconds of each upload to the GPU from now on."""
+    uploads = []
+
+    def timed(make):
+        def upload(*given):
+            started = time.perf_counter()
+            made = make(*given)
+            uploads.append(1000.0 * (time.perf_counter() - started))
+            return made
+
+        return upload
+
+    for module, name in (
+        (load("drawing.strip_drawing"), "_make_batch"),
+        (load("drawing.strip_labels"), "_make_image"),
+    ):
+        setattr(module, name, timed(getattr(module, name)))
+    return uploads
+
+
 def measure():
     """Print the time of the first drawing, which reads the action, and of the others."""
     large_action()
@@ -248,20 +269,7 @@ def measure():
     bpy.context.scene.frame_end = N_FRAMES
     switch, times, cpu_times = load("drawing.strip_switch"), [], []
     draw_strip = switch.draw_strip
-    drawing, labels, uploads = load("drawing.strip_drawing"), load("drawing.strip_labels"), []
-    makers = (drawing, "_make_batch"), (labels, "_make_image")
-
-    def uploading(make):
-        def timed_upload(*given):
-            started = time.perf_counter()
-            made = make(*given)
-            uploads.append(1000.0 * (time.perf_counter() - started))
-            return made
-
-        return timed_upload
-
-    for module, name in makers:
-        setattr(module, name, uploading(getattr(module, name)))
+    uploads = time_uploads()
 
     def timed(context):
         started, cpu_started = time.perf_counter(), time.thread_time()

@@ -1,0 +1,45 @@
+"""The grid of matches over the view: every cell is visible, and figures stand in theirs."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def gallery(load):
+    return load("mocap_assist.search.gallery")
+
+
+@pytest.mark.parametrize("n_matches", [1, 5, 24, 60])
+@pytest.mark.parametrize("size", [(1000, 500), (300, 900), (120, 90)])
+def test_cells_are_within_the_view_and_apart(gallery, n_matches, size):
+    space = gallery.Box(40.0, 10.0, *size)
+
+    cells = gallery.cells_in(space, n_matches, scale=1.0)
+
+    assert len(cells) == min(n_matches, gallery.MAX_CELLS)
+    middles = [(c.x + 0.5 * c.width, c.y + 0.5 * c.height) for c in cells]
+    assert [gallery.cell_at(cells, *middle) for middle in middles] == list(range(len(cells)))
+    if size != (120, 90):  # where nothing fits, they only do not overlap
+        assert all(space.has(c.x, c.y) and space.has(c.x + c.width, c.y) for c in cells)
+    assert gallery.cell_at(cells, space.x, space.y) == -1
+
+
+def test_figure_stands_in_its_cell_and_the_clip_repeats(gallery):
+    postures = np.zeros((10, 20, 3), np.float32)
+    postures[:, :, 2] = np.linspace(-1.0, 0.8, 20)
+    postures[7, 3] += 0.5
+    found = SimpleNamespace(postures=postures, rate=20.0)
+    cell = gallery.Box(100.0, 50.0, 190.0, 224.0)
+
+    lines, left = gallery.figure_lines(found, 0, cell)
+
+    assert len(lines) == len(left) == 19 and left.any() and not left.all()
+    assert (lines[..., 1] >= cell.y + 34.0).all()
+    assert all(cell.has(*point) for point in lines.reshape(-1, 2))
+    assert gallery.posture_row(found, None) == 7
+    assert [gallery.posture_row(found, seconds) for seconds in (0.0, 0.3, 0.5)] == [0, 6, 0]
+
+    found.postures[0, 0] = np.nan
+    assert len(gallery.figure_lines(found, 0, cell)[0]) < 19
