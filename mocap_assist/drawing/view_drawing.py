@@ -8,11 +8,17 @@ from bpy.types import SpaceView3D
 
 
 class ViewDrawing:
-    """Calls `draw` for every redraw of a 3D View with overlays, until it is closed."""
+    """Calls `draw` for every redraw of a 3D View with overlays, until it is closed.
 
-    def __init__(self, draw: Callable[[bpy.types.Context], None]) -> None:
+    In the space of the scene, or, `in_pixels`, of the region.
+    """
+
+    def __init__(
+        self, draw: Callable[[bpy.types.Context], None], *, in_pixels: bool = False
+    ) -> None:
         self._draw = draw
-        self._handle: Any = SpaceView3D.draw_handler_add(self._drawn, (), "WINDOW", "POST_VIEW")
+        kind = "POST_PIXEL" if in_pixels else "POST_VIEW"
+        self._handle: Any = SpaceView3D.draw_handler_add(self._drawn, (), "WINDOW", kind)
 
     @property
     def is_on(self) -> bool:

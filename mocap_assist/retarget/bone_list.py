@@ -28,6 +28,7 @@ from .bone_map import (
     listed_armature,
     listed_maps,
 )
+from .rest_preview import draw_rest_switch
 from .retargeting import target_called
 from .role_labels import role_label
 
@@ -206,6 +207,7 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         heads.label(text=f"{getattr(listed, side)} {score:.0%}", translate=False)
     layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
     _draw_legend(layout, context)
+    draw_rest_switch(layout, context)
     row = listed.rows[min(listed.active_row, len(listed.rows) - 1)]
     if n_marked := count_low_confidence(listed):
         marked = (

@@ -1,6 +1,4 @@
-"""Layout of matches as a grid over a view, and their figures. Knows nothing of Blender."""
-
-from typing import NamedTuple
+"""Layout of matches as a grid over a view, and their figures, as plain arrays."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +6,7 @@ from numpy.typing import NDArray
 from ...solvers.arrays import Array
 from ...solvers.motion.humanoid import POSTURE_JOINTS
 from ...solvers.pictures import ViewDirection, project_to_view
+from ..drawing.pixel_drawing import Box
 from .ghost import BONES
 from .solve_finding import Found
 
@@ -21,19 +20,6 @@ FIGURE_HEIGHT_M, FLOOR_M = 2.3, 1.05
 floor to the hips."""
 LEFT = np.array([POSTURE_JOINTS[joint].startswith("left") for _, joint in BONES])
 """Which of the bones are of the left arm and leg, shape (n_bones,)."""
-
-
-class Box(NamedTuple):
-    """A rectangle, in pixels from the lower left corner of a region."""
-
-    x: float
-    y: float
-    width: float
-    height: float
-
-    def has(self, x: float, y: float) -> bool:
-        """Whether a point is within it."""
-        return self.x <= x < self.x + self.width and self.y <= y < self.y + self.height
 
 
 def cells_in(space: Box, n_matches: int, scale: float) -> list[Box]:
@@ -71,14 +57,16 @@ def cell_at(cells: list[Box], x: float, y: float) -> int:
 def posture_row(found: Found, seconds: float | None) -> int:
     """Return the row of the posture that is shown after some seconds; the clip repeats.
 
-    Without a time it is the key pose: the posture that is the farthest from the mean.
+    Without a time it is the key pose: in the middle half of the clip, since many clips begin
+    and end in a pose for calibration, the posture that is the farthest from the mean.
     """
     n_postures = len(found.postures)
     if seconds is not None:
         return int(seconds * found.rate) % n_postures
-    distances = np.linalg.norm(found.postures - found.postures.mean(axis=0), axis=2)
-    farthest = np.nan_to_num(np.nansum(distances, axis=1))
-    return int(np.argmax(farthest))
+    first = n_postures // 4
+    middle = found.postures[first : max(n_postures - first, first + 1)]
+    distances = np.linalg.norm(middle - middle.mean(axis=0), axis=2)
+    return first + int(np.argmax(np.nansum(distances, axis=1)))
 
 
 def figure_lines(found: Found, row: int, cell: Box) -> tuple[Array, NDArray[np.bool_]]:

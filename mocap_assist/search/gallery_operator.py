@@ -6,10 +6,11 @@ import bpy
 
 from ..blender.last_press import note_press
 from ..blender.mixins import OperatorMixin
+from ..drawing.pixel_drawing import window_region
 from ..languages import translated
 from ..runtime.watch import why_busy
 from . import searches
-from .gallery_drawing import Gallery, window_region
+from .gallery_drawing import Gallery
 
 FRAME_S = 1 / 24
 """Seconds from one drawing to the next while the matches are shown."""

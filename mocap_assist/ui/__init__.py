@@ -13,7 +13,7 @@ from ..drawing import (
 from ..exporting import export_menu
 from ..importing import import_menu
 from ..panels import presets
-from ..retarget import bone_highlight, bone_list
+from ..retarget import bone_highlight, bone_list, rest_preview
 from ..retarget import panel as retarget_panel
 from ..search import match_grid, source_list
 from ..search import panel as library_panel
@@ -27,6 +27,7 @@ PARTS = (
     color_icons,
     example_list,
     bone_highlight,
+    rest_preview,
     bone_list,
     retarget_panel,
     source_list,

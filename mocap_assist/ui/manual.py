@@ -49,6 +49,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.find_bones*": "retarget",
     "bpy.ops.mocap_assist.*_bone_map*": "retarget",
     "bpy.types.windowmanager.mocap_assist_highlight*": "retarget",
+    "bpy.types.windowmanager.mocap_assist_rest_poses*": "retarget",
     "bpy.ops.mocap_assist.reduce_keys*": "unbake",
     "bpy.types.mocap_pg_retarget*": "retarget",
     "bpy.types.mocap_pg_bone*": "retarget",

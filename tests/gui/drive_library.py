@@ -12,6 +12,7 @@ from pathlib import Path
 
 import bgui
 import bpy
+import numpy as np
 from driver_scene import PACKAGE, empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
@@ -107,13 +108,23 @@ def find():
     matches().active = 0
 
 
+def differs(*names):
+    """Whether two pictures differ."""
+    images = [bpy.data.images.load(str(Path(bgui.OUT) / name)) for name in names]
+    pixels = [np.array(image.pixels[:]) for image in images]
+    for image in images:
+        bpy.data.images.remove(image)
+    return np.abs(pixels[0] - pixels[1]).max() > 0.1
+
+
 def browse():
     """The matches over the view: one plays under the pointer, a click selects it."""
     yield from press("mocap_assist.browse_matches")
     view = bgui.area()
     cells = import_module(f"{PACKAGE}.mocap_assist.search.gallery_drawing")
     layout = import_module(f"{PACKAGE}.mocap_assist.search.gallery")
-    space = cells.free_space(view)
+    pixels = import_module(f"{PACKAGE}.mocap_assist.drawing.pixel_drawing")
+    space = pixels.free_space(view)
     scale = bpy.context.preferences.system.ui_scale
     below = space._replace(height=space.height - cells.HEAD_PX * scale)
     cell = layout.cells_in(below, len(matches().rows), scale)[2]
@@ -124,6 +135,7 @@ def browse():
     bgui.shot("4b-played.png")
     yield 0.5
     bgui.shot("4c-played-later.png")
+    assert differs("4b-played.png", "4c-played-later.png"), "nothing plays"
     yield from bgui.click(*middle)
     yield 0.5
     assert matches().active == 2, matches().active

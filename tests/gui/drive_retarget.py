@@ -70,8 +70,24 @@ def find_the_bones(hero):
     assert listed.active_row == 7, listed.active_row
     assert bpy.context.window_manager.mocap_assist_highlight
     bgui.shot("2b-row-clicked.png")
+    yield from rest_poses(hero)
     bpy.context.window_manager.mocap_assist_highlight = False
     yield from press("mocap_assist.find_bones")
+
+
+def rest_poses(hero):
+    """Both rigs in their rest poses; nothing of the scene changes for it."""
+    source = bpy.context.view_layer.objects.active
+    before = [[bone.matrix.copy() for bone in each.pose.bones] for each in (source, hero)]
+    positions = [each.data.pose_position for each in (source, hero)]
+    yield from press("mocap_assist_rest_poses")
+    yield from settle(pointer=AWAY)
+    assert bpy.context.window_manager.mocap_assist_rest_poses
+    bgui.shot("2c-rest-poses.png")
+    yield from press("mocap_assist_rest_poses")
+    assert not bpy.context.window_manager.mocap_assist_rest_poses
+    assert positions == [each.data.pose_position for each in (source, hero)]
+    assert before == [[bone.matrix for bone in each.pose.bones] for each in (source, hero)]
 
 
 def escape_leaves_all_as_it_was(hero):

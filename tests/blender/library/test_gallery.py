@@ -29,17 +29,17 @@ def test_cells_are_within_the_view_and_apart(gallery, n_matches, size):
 def test_figure_stands_in_its_cell_and_the_clip_repeats(gallery):
     postures = np.zeros((10, 20, 3), np.float32)
     postures[:, :, 2] = np.linspace(-1.0, 0.8, 20)
-    postures[7, 3] += 0.5
+    postures[[0, 6], 3] += [[0.9], [0.5]]
     found = SimpleNamespace(postures=postures, rate=20.0)
     cell = gallery.Box(100.0, 50.0, 190.0, 224.0)
 
-    lines, left = gallery.figure_lines(found, 0, cell)
+    lines, left = gallery.figure_lines(found, 1, cell)
 
     assert len(lines) == len(left) == 19 and left.any() and not left.all()
     assert (lines[..., 1] >= cell.y + 34.0).all()
     assert all(cell.has(*point) for point in lines.reshape(-1, 2))
-    assert gallery.posture_row(found, None) == 7
+    assert gallery.posture_row(found, None) == 6
     assert [gallery.posture_row(found, seconds) for seconds in (0.0, 0.3, 0.5)] == [0, 6, 0]
 
-    found.postures[0, 0] = np.nan
-    assert len(gallery.figure_lines(found, 0, cell)[0]) < 19
+    found.postures[1, 0] = np.nan
+    assert len(gallery.figure_lines(found, 1, cell)[0]) < 19

@@ -1,6 +1,8 @@
 """The editable list of bones, its presets, and the panel around it."""
 
+import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 
 @pytest.fixture
@@ -215,3 +217,28 @@ def test_levels_differ_without_colors(load):
     painted = [icons._bars((1.0, 1.0, 1.0, 1.0), icons.BARS[each]) for each in levels]
     lit = [int((each[..., 3] == 1.0).sum()) for each in painted]
     assert lit[0] < lit[1] < lit[2]
+
+
+def test_rest_poses_of_both_rigs_fill_their_boxes(listed, load, blank, walker):
+    preview = load("mocap_assist.retarget.rest_preview")
+    blank.context.scene.frame_set(20)
+
+    source, target = preview.rest_figures(blank.context)
+
+    for figure in (source, target):
+        box = preview.Box(10.0, 20.0, 240.0, 240.0)
+        front = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+        points = preview.lines_in_box(figure.lines, front, box).reshape(-1, 2)
+        assert all(box.has(*point) for point in points)
+        assert np.ptp(points, axis=0).max() > 0.5 * box.width
+        head = np.argmax(figure.lines.reshape(-1, 3)[:, 2])
+        assert points[head, 1] == points[:, 1].max()
+    bones = list(walker.data.bones)
+    hips = next(index for index, bone in enumerate(bones) if bone.name == "Hips")
+    matrix = walker.matrix_world
+    assert_allclose(source.lines[hips, 0], matrix @ bones[hips].head_local, atol=1e-6)
+    assert source.colors[hips] == preview.HIGHLIGHT  # the first row
+    assert (source.name, target.name) == (walker.name, "Unreal")
+
+    blank.context.view_layer.objects.active = None
+    assert preview.rest_figures(blank.context) == []
