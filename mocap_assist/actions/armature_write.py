@@ -168,11 +168,25 @@ def put_to_use(
     raw = history.raw_of(action, slot)
     if raw and armature.animation_data is not None:
         remove_deltas(armature.animation_data, raw[0])
+    if armature.animation_data is not None:
+        keep_replaced(armature.animation_data, (action, raw[0] if raw else None))
     if output is Output.ACTION:
         compat.assign(armature, action, slot)
         return
     armature.animation_data.action = None
     new_strip(armature.animation_data, (action, slot))
+
+
+def keep_replaced(
+    animation: bpy.types.AnimData, known: Collection[bpy.types.Action | None]
+) -> None:
+    """Let the assigned action, such as a fix by hand, stay in the file when it is replaced.
+
+    Those that are `known`, the recording and the result, stay anyway.
+    """
+    replaced = animation.action
+    if replaced is not None and replaced not in known and replaced.library is None:
+        replaced.use_fake_user = True
 
 
 def remove_deltas(animation: bpy.types.AnimData, base: bpy.types.Action) -> None:

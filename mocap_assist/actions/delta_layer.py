@@ -14,6 +14,7 @@ from .armature_write import (
     NUMBERED,
     check_writable,
     delta_tracks,
+    keep_replaced,
     new_strip,
     play_in,
     remove_deltas,
@@ -110,6 +111,7 @@ def lay_delta(armature: bpy.types.Object, base: Source, delta: Source) -> None:
         strip = new_strip(animation, delta)
         strip.blend_type = "COMBINE"
         _free_influence(strip, dialed[-1] if dialed else 1.0)
+    keep_replaced(animation, (base[0], delta[0]))
     animation.action = None
 
 

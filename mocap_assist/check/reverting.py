@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..actions.armature_write import remove_deltas
+from ..actions.armature_write import keep_replaced, remove_deltas
 from ..blender import compat
 from ..blender.compat import Source
 from ..runtime.selection import animated_objects, played_result, selected_subject
@@ -38,9 +38,7 @@ def revert(subject: bpy.types.Object) -> str:
 
 def _revert(player: bpy.types.Object, raw: Source) -> None:
     """Assign the recorded action and slot; remove NLA tracks of its results."""
-    above = player.animation_data.action
-    if above is not None and above != raw[0]:
-        above.use_fake_user = True  # such as a fix by hand above the tracks
+    keep_replaced(player.animation_data, raw[:1])
     tracks = player.animation_data.nla_tracks
     remove_deltas(player.animation_data, raw[0])
     for track in list(tracks):

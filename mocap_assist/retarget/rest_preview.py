@@ -128,7 +128,9 @@ def register() -> None:
     """Add the switch, which starts off."""
     described = bpy.props.BoolProperty(
         name="Rest Poses",
-        description="Draw both rigs in their rest poses at the bottom of 3D Views, in these colors",
+        description=(
+            "Draw both rigs in their rest poses at the bottom of 3D Views, in these colors"
+        ),
         update=_switched,
     )
     setattr(bpy.types.WindowManager, SWITCH, described)

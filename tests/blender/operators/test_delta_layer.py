@@ -218,3 +218,19 @@ def test_delta_is_hidden_only_by_an_action_of_most_bones(noisy, clean, blank, lo
 
     assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
     assert by_hand.use_fake_user
+
+
+@pytest.mark.parametrize("output", ["ACTION", "NLA_TRACK", "DELTA_LAYER"])
+def test_fix_by_hand_above_a_result_is_saved_when_clean_replaces_it(
+    noisy, clean, blank, output
+):
+    raw = noisy.animation_data.action
+    clean(result_as="NLA_TRACK")
+    by_hand = blank.data.actions.new("by hand")
+    slot = by_hand.slots.new("OBJECT", noisy.name)
+    noisy.animation_data.action, noisy.animation_data.action_slot = by_hand, slot
+
+    clean(result_as=output)
+
+    assert noisy.animation_data.action != by_hand
+    assert by_hand.use_fake_user and not raw.use_fake_user
