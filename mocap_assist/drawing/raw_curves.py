@@ -68,7 +68,8 @@ def curve_lines(curve: bpy.types.FCurve) -> Single:
     observed = steps <= MAX_STEPS_APART * (np.median(steps) if len(steps) else 1.0)
     points = np.zeros((len(keys), 3), np.float32)
     points[:, :2] = keys
-    return np.stack([points[:-1], points[1:]], axis=1)[observed]
+    lines: Single = np.stack([points[:-1], points[1:]], axis=1)[observed]
+    return lines
 
 
 def displayed_values(

@@ -23,7 +23,7 @@ from .bone_highlight import COLOR as HIGHLIGHT
 from .bone_map import SIDES, listed_armature
 
 SWITCH = "mocap_assist_rest_poses"
-UNMAPPED: Color = (*map(float, UNKNOWN[:3]), 0.5)
+UNMAPPED: Color = tuple(UNKNOWN.tolist())
 BACKGROUND: Color = (0.05, 0.05, 0.05, 0.75)
 SIZE_PX, MARGIN_PX = 240, 8
 """Size of the box of a rig, and its distance from others, in pixels at scale 1."""
