@@ -14,7 +14,8 @@ from .view_drawing import redraw
 GROUPS = ("clean", "reconstruct")
 """Settings of the buttons that change the frames of a range only."""
 MIN_DRAG_PX = 4
-"""Distance in pixels at scale 1 up to which a press is a click: Blender's own is 3."""
+"""Distance in pixels at scale 1 from which a press is a drag. By definition of Blender's own
+threshold for the mouse, 3, and one more."""
 
 
 class WorkingRange(NamedTuple):

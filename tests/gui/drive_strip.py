@@ -14,12 +14,21 @@ from pathlib import Path
 import bgui
 import bpy
 import numpy as np
-from driver_scene import empty_scene, lose_arm, settle, unfold_alone, until_done
+from driver_scene import (
+    N_BONES,
+    N_FRAMES,
+    empty_scene,
+    large_action,
+    lose_arm,
+    made_up_confidence,
+    settle,
+    time_uploads,
+    unfold_alone,
+    until_done,
+)
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
-N_BONES, N_FRAMES = 100, 10_000
 N_TIMES = 20
-GENERATED = 5
 LOOKED_AT = 151
 
 
@@ -74,17 +83,6 @@ def look_at(armature):
     bpy.context.scene.frame_set(LOOKED_AT)
     view.view_location = armature.matrix_world @ armature.pose.bones[0].head
     view.view_rotation, view.view_distance = (0.76, 0.6, 0.15, 0.2), 4.0
-
-
-def made_up_confidence(armature):
-    """Key a confidence that falls twice, as *Reconstruct* would."""
-    source = armature.animation_data.action, armature.animation_data.action_slot
-    frames = np.arange(*source[0].frame_range) + 0.0
-    low = 1.0 - 0.8 * np.exp(-(((frames - 60.0) / 12.0) ** 2))
-    medium = 1.0 - 0.4 * np.exp(-(((frames - 200.0) / 15.0) ** 2))
-    load("actions.reliability_curves").write_reliability(
-        armature, *source, frames, {"LeftArm": low, "RightLeg": medium}
-    )
 
 
 def hold_the_key(armature):
@@ -200,61 +198,6 @@ def see_raw_curves(armature):
     space.use_normalization = False
     for bone in armature.pose.bones:
         compat.select_bone(bone, True)
-
-
-def large_action():
-    """Make an armature with an action of 100 bones and 10,000 frames, and 5 % generated."""
-    with bgui.override("WINDOW"):
-        bpy.ops.object.mode_set(mode="OBJECT")
-        armature = bpy.data.objects.new("large", bpy.data.armatures.new("large"))
-        bpy.context.scene.collection.objects.link(armature)
-        bpy.context.view_layer.objects.active = armature
-        bpy.ops.object.mode_set(mode="EDIT")
-        for index in range(N_BONES):
-            bone = armature.data.edit_bones.new(f"bone{index}")
-            bone.head, bone.tail = (index, 0, 0), (index, 0, 1)
-        bpy.ops.object.mode_set(mode="OBJECT")
-    random = np.random.default_rng(1)
-    frames = np.arange(1.0, N_FRAMES + 1.0)
-    keys = np.stack([frames, np.ones(N_FRAMES)], axis=1).astype(np.float32).ravel()
-    compat = load("blender.compat")
-    action, slot = compat.new_action("large", armature)
-    bag = compat.ensure_channelbag(action, slot)
-    for bone in armature.pose.bones:
-        for index in range(4):
-            path = f'pose.bones["{bone.name}"].rotation_quaternion'
-            curve = compat.new_curve(bag, path, index, bone.name)
-            curve.keyframe_points.add(N_FRAMES)
-            curve.keyframe_points.foreach_set("co", keys)
-            types = np.where(random.random(N_FRAMES) < 0.0005, GENERATED, 0).astype(np.uint8)
-            curve.keyframe_points.foreach_set("type", types)
-    compat.assign(armature, action, slot)
-    sure = {bone.name: random.random(N_FRAMES // 20).repeat(20) for bone in armature.pose.bones}
-    load("actions.reliability_curves").write_reliability(armature, action, slot, frames, sure)
-    contacts = random.random((N_FRAMES // 10, 2)).repeat(10, axis=0) > 0.5
-    load("actions.contact_keys").write_contacts(armature, action, slot, frames, contacts)
-    return armature
-
-
-def time_uploads():
-    """Return a list that gets the milliseconds of each upload to the GPU from now on."""
-    uploads = []
-
-    def timed(make):
-        def upload(*given):
-            started = time.perf_counter()
-            made = make(*given)
-            uploads.append(1000.0 * (time.perf_counter() - started))
-            return made
-
-        return upload
-
-    for module, name in (
-        (load("drawing.strip_drawing"), "_make_batch"),
-        (load("drawing.strip_labels"), "_make_image"),
-    ):
-        setattr(module, name, timed(getattr(module, name)))
-    return uploads
 
 
 def measure():
