@@ -32,7 +32,9 @@ def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) ->
     if StripRow.CONFIDENCE in strip.rows:
         column.label(text=StripRow.CONFIDENCE.value)
         draw_marks(column, MARKS[StripRow.CONFIDENCE], columns=3)
-    others = (mark for row in strip.rows if row is not StripRow.CONFIDENCE for mark in MARKS[row])
+    others = (
+        mark for row in strip.rows if row is not StripRow.CONFIDENCE for mark in MARKS[row]
+    )
     draw_marks(column, dict.fromkeys(others), columns=2)
 
 

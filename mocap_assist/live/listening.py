@@ -65,13 +65,13 @@ class Listening:
         return self in _on
 
     @property
-    def heard(self) -> ListenerState:
+    def stream_state(self) -> ListenerState:
         """What is known of the stream."""
         return self.listener.state
 
     def state(self) -> str:
         """Return the available commands in a few words."""
-        return MODES[self.session.mode] if self.heard.counts.frames else WAITING
+        return MODES[self.session.mode] if self.stream_state.counts.frames else WAITING
 
     def poll(self, context: bpy.types.Context) -> None:
         """Receive new frames, execute their commands, and show the result."""
@@ -105,7 +105,7 @@ class Listening:
 
     def _texts(self) -> list[str]:
         """Return what the status bar shows."""
-        texts = (self.message, self.state(), issue_text(self.heard))
+        texts = (self.message, self.state(), issue_text(self.stream_state))
         return [text for text in texts if text]
 
     def _show(self, context: bpy.types.Context) -> None:

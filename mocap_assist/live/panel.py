@@ -17,7 +17,7 @@ RECORD = "mocap_assist.record_live"
 
 
 class PerformPanel(PanelMixin):
-    """The buttons Listen and Record Live, the port, and what is heard."""
+    """The buttons Listen and Record Live, the port, and what is stream_state."""
 
     bl_label = "Perform"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}
@@ -46,7 +46,7 @@ class PerformPanel(PanelMixin):
         draw_sentence(layout, context, listening.state())
         if listening.message:
             draw_sentence(layout, context, listening.message, icon="INFO")
-        stream = listening.heard
+        stream = listening.stream_state
         if sender := sender_text(stream):
             draw_sentence(layout, context, sender)
         if issue := issue_text(stream):

@@ -170,7 +170,7 @@ def time_uploads():
     uploads = []
 
     def timed(make):
-        def upours(*given):
+        def upload(*given):
             started = time.perf_counter()
             made = make(*given)
             uploads.append(1000.0 * (time.perf_counter() - started))

@@ -91,7 +91,7 @@ class StreamReader:
     """
 
     def __init__(self, decoder: FrameDecoder | None = None) -> None:
-        self.heard = StreamCounts()
+        self.counts = StreamCounts()
         self._decoder = decoder or JointLines()
         self._steps = deque[float](maxlen=N_RATE_STEPS)
         self._late: list[float] = []
@@ -118,10 +118,10 @@ class StreamReader:
         n_remaining = self._decoder.max_parts
         for datagram in datagrams:
             if n_remaining <= 0:
-                self.heard.skipped += max(datagram.count(b"\n"), 1)
+                self.counts.skipped += max(datagram.count(b"\n"), 1)
                 continue
             parts = self._decoder.parts(datagram)
-            self.heard.skipped += max(len(parts) - n_remaining, 0)
+            self.counts.skipped += max(len(parts) - n_remaining, 0)
             yield from self._frames(parts[:n_remaining], arrived)
             n_remaining = max(n_remaining - len(parts), 0)
 
@@ -130,8 +130,8 @@ class StreamReader:
             try:
                 frames = list(self._decoder.decode(part, arrived))
             except MocapAssistError as error:
-                self.heard.unreadable += 1
-                self.heard.why = str(error)
+                self.counts.unreadable += 1
+                self.counts.why = str(error)
                 continue
             for frame in frames:
                 if self._accepts(frame):
@@ -141,16 +141,16 @@ class StreamReader:
         elapsed = frame.time - self._time
         starts_stream = elapsed > BODY_TIMEOUT_S or elapsed <= -NEW_STREAM_S
         if frame.body != self._body and not starts_stream:
-            self.heard.others += 1
+            self.counts.others += 1
             return False
         if not (starts_stream or elapsed > 0.0 or self._restarts(frame.time)):
-            self.heard.late += 1
+            self.counts.late += 1
             return False
         if 0.0 < elapsed <= BODY_TIMEOUT_S:
             self._steps.append(elapsed)
         self._body, self._time = frame.body, frame.time
         self._late.clear()
-        self.heard.frames += 1
+        self.counts.frames += 1
         return True
 
     def _restarts(self, time: float) -> bool:

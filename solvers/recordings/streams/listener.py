@@ -72,7 +72,7 @@ class StreamListener:
     @property
     def counts(self) -> StreamCounts:
         """Number of received frames, and why others were dropped."""
-        return self._reader.heard
+        return self._reader.counts
 
     @property
     def state(self) -> ListenerState:

@@ -145,7 +145,7 @@ def test_invalid_datagrams_are_counted_only(listen, load, window, port, event):
 
     assert button.modal(window.context, event("TIMER")) == {"PASS_THROUGH"}
 
-    statistics = load("mocap_assist.live.listening").current().heard
+    statistics = load("mocap_assist.live.listening").current().stream_state
     assert (statistics.counts.frames, statistics.counts.unreadable) == (0, 3)
 
 

@@ -59,6 +59,6 @@ def test_a_flood_is_decoded_up_to_a_bound(walk, protocol):
 
     list(reader.read(*packets.datagrams * 2000))
 
-    decoded = reader.heard.frames + reader.heard.late + reader.heard.unreadable
+    decoded = reader.counts.frames + reader.counts.late + reader.counts.unreadable
     assert decoded <= decoder.max_parts
-    assert reader.heard.skipped >= 2000 - decoder.max_parts
+    assert reader.counts.skipped >= 2000 - decoder.max_parts
