@@ -20,7 +20,7 @@ from tests.benchmarks.sensitivity.constants import (
     constants_in,
     constants_of,
 )
-from tests.benchmarks.sensitivity.fixed_constants import patterns, reason
+from tests.benchmarks.sensitivity.fixed_constants import GUARD, patterns, reason
 
 SOURCE = re.compile(
     r"\[[A-Z]\w*\d\d|doi:|eq\. |\bet al\.|learned by|make sensitivity|sweep"
@@ -117,6 +117,22 @@ def test_constants_that_move_no_error_name_their_case():
         if re.search(r"\bno\s+error", constant.text)
     ]
     assert not nameless
+
+
+def test_guards_name_a_test_that_exists():
+    tests = {
+        name
+        for path in (ROOT / "tests").rglob("test_*.py")
+        for name in re.findall(r"^def (test_\w+)", path.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+    unguarded = [
+        constant.key
+        for family in FAMILIES
+        for constant in constants_of(family)
+        if reason(constant.key) == GUARD
+        and not tests.issuperset(re.findall(r"`(test_\w+)`", constant.text) or [""])
+    ]
+    assert not unguarded
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -27,21 +27,23 @@ from .recording import DepthRecording
 DEFAULT_FOREGROUND = ForegroundSettings()
 SAMPLES_PER_SECOND, MAX_SAMPLES = 6.0, 12_000
 """Frames a second, in hertz, from which the scene is learned, and their maximum number. They
-guard the run time and the memory of long recordings."""
+bound the run time and the memory of long recordings."""
 COARSE_WIDTH = 160
 """Columns of the image in which bodies are detected, pixels. It bounds the run time. Chosen by
 hand: x0.5 costs nothing, x2 fails."""
-MAX_BODY_COVERAGE, MIN_BODY_FRACTION = 0.5, 0.75
-"""Fractions: an image is actor-only if less of it has depth, and more of that belongs to one
-body. They guard recordings whose room was removed by another program."""
+MAJORITY = 0.5
+"""By definition, the fraction of most images, and of most pixels: an image is actor-only if
+less of it has depth, and more of that belongs to a body."""
 MIN_MOVING_FRACTION = 0.1
 """A body with fewer pixels in front of the room counts as furniture. It guards rooms with
-furniture as large as a person."""
+furniture as large as a person (`test_find_actor_works_in_a_room_with_default_settings`)."""
 STATURE_RANGE_M = (0.6, 2.6)
-"""Plausible height of an actor whose feet are visible. It guards against wrong units."""
+"""Plausible height of an actor whose feet are visible. It guards against wrong units
+(`test_find_actor_reports_the_height_from_a_wrong_focal_length`)."""
 MIN_CROPPED_FRACTION = 0.05
 """Minimum fraction of the actor in the lowest image row if the feet are outside the image. It
-guards actors too near to the camera for their feet."""
+guards actors too near to the camera for their feet
+(`test_find_actor_works_in_a_room_with_default_settings`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,13 +164,10 @@ def _choose_method(
         if not (depth > 0.0).any():
             continue
         bodies = find_bodies(depth, recording.camera.every(step), settings.min_body_area)
-        fractions = np.bincount(bodies.labels[depth > 0.0], minlength=2) / (depth > 0.0).sum()
-        is_only_body.append(
-            (depth > 0.0).mean() < MAX_BODY_COVERAGE and 1.0 - fractions[0] >= MIN_BODY_FRACTION
-        )
-    recorded = (
-        bool(is_only_body) and np.mean(is_only_body) > 0.5 and find_floor(recording) is None
-    )
+        is_body = bodies.labels[depth > 0.0] > 0
+        is_only_body.append((depth > 0.0).mean() < MAJORITY < is_body.mean())
+    recorded = bool(is_only_body) and np.mean(is_only_body) > MAJORITY
+    recorded = recorded and find_floor(recording) is None
     return ForegroundMethod.RECORDED if recorded else ForegroundMethod.AUTOMATIC
 
 
@@ -221,7 +220,7 @@ class _PersonFinder:
 
     def is_cropped(self) -> bool:
         """Whether the lower image edge cuts the largest body in most frames."""
-        return bool(self._is_cropped) and float(np.mean(self._is_cropped)) > 0.5
+        return bool(self._is_cropped) and float(np.mean(self._is_cropped)) > MAJORITY
 
     def warnings(self) -> list[str]:
         """Return warnings about the actor's body."""

@@ -17,19 +17,20 @@ Chosen by hand: first, x0.5 costs 2.8 %, x2 gains 2.6 %; second, x0.5 costs 1.3 
 2.1 %."""
 MAX_COMPONENT_DISTANCE_M = 0.5
 """A small component, such as a hand held forward, belongs to a body within this distance. It
-guards bodies that an arm or a hole in the depth divides."""
+guards bodies that an arm or a hole in the depth divides
+(`test_find_actor_keeps_a_recording_of_the_actor_alone`)."""
 MAX_LIMB_FRACTION, MAX_LIMB_GAP_M = 0.4, 0.3
 """A component counts as a limb of a body, such as an occluded leg, up to this fraction of its
-area and this gap. They guard bodies that furniture in front of them divides."""
+area and this gap. They guard bodies that furniture in front of them divides
+(`test_two_people_next_to_each_other_are_two_bodies`,
+`test_find_actor_works_in_a_room_with_default_settings`)."""
 MIN_COMPONENT_M2 = 1e-3
 """Smaller components count as noise. Chosen by hand: x0.5 gains 2.4 %, x2 costs 0.9 %."""
 MAX_FULL_PIXELS, COARSE_WIDTH = 20_000, 200
 """Number of pixels above which the image is subsampled, and its width then, pixels. They bound
-the run time. Chosen by hand: first, x0.5 costs nothing, x2 costs nothing; second, x0.5 costs
-0.4 %, x2 costs 2.4 %."""
+the run time. Chosen by hand: second, x0.5 costs 0.4 %, x2 costs 2.4 %."""
 POINT_STEP = 12
-"""Every n-th point represents a body in distance tests. It bounds the run time. Chosen by hand:
-x0.5 costs nothing, x2 costs nothing."""
+"""Every n-th point represents a body in distance tests. It bounds the run time."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,13 +6,13 @@ from .camera import Camera
 
 MAX_LOG_ASPECT = 0.06
 """Maximum relative difference of the focal lengths: pixels of real cameras are square. It
-guards against a wrong calibration."""
+guards against a wrong calibration (`test_check_intrinsics_warns_about_another_image_size`)."""
 MAX_CENTER_OFFSET = 0.2
 """Maximum distance from principal point to image center, as a fraction of the image size. It
-guards against a wrong calibration."""
+guards against a wrong calibration (`test_check_intrinsics_warns_about_another_image_size`)."""
 FIELD_OF_VIEW_RANGE_DEG = (38.0, 130.0)
 """Along the longer side: Kinects see 57 and 70, Azure Kinects 65 to 120. It guards against a
-wrong calibration."""
+wrong calibration (`test_check_intrinsics_warns_about_another_image_size`)."""
 
 
 def field_of_view(camera: Camera) -> float:

@@ -24,7 +24,7 @@ FIT_TOLERANCES = (1.0, 0.7, 0.5, 0.5)
 hand: x0.5 gains 34.4 %, x2 costs 50.0 %."""
 BELOW_TOLERANCES = 3.0
 """Points more than this many tolerances below a plane vote against it: a factor. It guards
-rooms with a table top larger than the visible floor."""
+rooms with a table top larger than the visible floor (`test_find_floor_rejects_a_table`)."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,20 +18,23 @@ from .floor import FloorPlane
 from .recording import DepthImage, DepthRecording
 
 MAX_BACKGROUND_FRAMES = 60
-"""Number of images, evenly spaced, from which the background is learned. It bounds the memory.
-Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+"""Number of images, evenly spaced, from which the background is learned. It bounds the memory."""
 NOISE_FACTOR = 4.0
 """Multiple of the sensor's noise, a standard deviation, that counts as significant. It guards
-noisy walls, which would be in front of themselves; more misses an actor near them."""
+noisy walls, which would be in front of themselves; more misses an actor near them
+(`test_noise_of_a_wall_is_no_actor_and_an_actor_near_it_is`)."""
 NOISE_WINDOW_M = 0.5
-"""Readings within this distance of the background depth count as its noise. It guards an
-actor who stays in place: without it he is taken for noise, and half of his pixels are lost."""
+"""Readings within this distance of the background depth count as its noise. It guards an actor
+who stays in place: without it he is taken for noise, and half of his pixels are lost
+(`test_actor_on_the_spot_is_no_noise_of_the_wall_behind_him`)."""
 BACKGROUND_QUANTILE = 0.9
 """Quantile of a pixel's depths that shows the room behind a moving actor, a fraction. It guards
-pixels that he covers in most frames; more takes stray readings behind a wall for the room."""
+pixels that he covers in most frames; more takes stray readings behind a wall for the room
+(`test_room_is_found_behind_long_stays_and_before_outliers`)."""
 MAX_ACTOR_DISTANCE_M = 1.2
 """A body farther from the expected position of the actor is another person. It guards images in
-which only another person is visible."""
+which only another person is visible
+(`test_person_far_from_where_the_actor_is_expected_is_not_the_actor`)."""
 
 
 class ForegroundMethod(Choice):

@@ -11,13 +11,15 @@ from .bodies import LabeledBodies
 
 MAX_SPEED_M_S = 4.0
 """Maximum speed of a body's center. It guards recordings of several people: a runner stays one
-person, a bystander another."""
+person, a bystander another (`test_person_who_appears_far_from_one_who_left_is_another`)."""
 MAX_GAP_S = 1.0
 """A body that reappears after a longer gap counts as another person. It guards recordings in
-which an actor leaves and another one enters."""
+which an actor leaves and another one enters
+(`test_actor_is_the_same_person_after_returning_elsewhere`)."""
 MAX_JUMP_M = 0.3
 """Maximum jump of the center of the visible surface between two samples. It guards recordings
-of several people who pass in front of each other."""
+of several people who pass in front of each other
+(`test_person_who_appears_far_from_one_who_left_is_another`)."""
 
 
 @dataclass

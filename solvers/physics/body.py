@@ -31,10 +31,6 @@ MIN_MASS_KG = 0.05
 """Mass of a joint without a segment, for legs of 0.9 m. Chosen by hand: x0.5 costs nothing, x2
 costs 1.1 %."""
 
-MAX_STILL_RAD = 1e-3
-"""Radians: a joint without a role that rotates less is part of the one above. It guards rigs
-with fingers and helper bones that rest, which would be segments of little mass."""
-
 MIN_SIZE, MAX_SIZE = 0.05, 20.0
 """Bounds of the size of a body: leg length relative to 0.9 m, from a doll to a giant. They
 guard takes in a wrong unit."""
@@ -212,7 +208,7 @@ def _find_moving_joints(
     chains = [{joint, *skeleton.ancestors(joint)} for joint in joints]
     base = max(set.intersection(*chains))
     candidates = {joint for chain in chains for joint in chain if joint > base}
-    is_still = still_joints(motion, MAX_STILL_RAD)
+    is_still = still_joints(motion)
     order, frames, stack = [], {}, [(base, JointFrame(-1, np.zeros(3), IDENTITY))]
     while stack:
         joint, frame = stack.pop()

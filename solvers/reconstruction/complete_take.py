@@ -11,6 +11,7 @@ from ..progress import Progress
 from ..signals import fill_gaps, smooth_gaussian
 from .pose_completion import CompletedJoints, PostureSettings, blend_gaps, complete_joints
 from .pose_library import PostureLibrary
+from .reliability import WRONG_RELIABILITY
 
 OBSERVED_RELIABILITY, REPLACED_RELIABILITY = 0.5, 0.2
 """Joints more reliable than the first keep their observed positions. Joints less reliable than
@@ -20,11 +21,11 @@ HALF_WEIGHT_M = 0.15
 """Distance (m) from the smoothed path at which the weight of the library pose is halved.
 Sensors that err by more have a reliability near 0. Chosen by hand: x0.5 costs 5.0 %, x2 gains
 2.4 %."""
-WRONG_RELIABILITY, UNCERTAIN_RELIABILITY = 0.02, 0.07
-"""Reliabilities between which `HALF_WEIGHT_M` fades in: below the first it has no effect, above
-the second it applies in full. On intact takes of UI-PRMD, joints of reliability 0.1 to 0.5 are
-10 cm off, joints below 0.05 are 40 cm off. Chosen by hand: x10 of the first costs 4.4 %, x0.1
-of the second 4.2 %."""
+UNCERTAIN_RELIABILITY = 0.07
+"""Reliability from which `HALF_WEIGHT_M` applies in full; at `WRONG_RELIABILITY` it has no
+effect. On intact takes of UI-PRMD, joints of reliability 0.1 to 0.5 are 10 cm off, joints below
+0.05 are 40 cm off. Chosen by hand: x0.1 costs 4.2 %. It guards joints that are only uncertain:
+`test_wrong_joint_is_replaced_and_an_uncertain_one_stays_near`."""
 SMOOTHING_S = 0.1
 """Standard deviation (s) of the Gaussian that smooths observed positions. Chosen by hand: x0.5
 costs 2.9 %, x2 gains 2.3 %."""

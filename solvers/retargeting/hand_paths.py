@@ -9,7 +9,7 @@ from ..arrays import Array
 from ..motion import WorldPoses
 from ..signals import smooth_gaussian, smoothstep
 from .body import SIDES
-from .limbs import Limb, Transfer
+from .limbs import SMOOTHING_S, Limb, Transfer
 from .placement import leg_length
 
 LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION = 0.2, 0.4
@@ -23,17 +23,14 @@ ground. Chosen by hand: x0.5 costs nothing, x2 costs 0.1 %."""
 SUPPORT_SPEED, PASSING_SPEED = 0.25, 1.0
 """Speeds in leg lengths per second: low hands slower than the first support themselves on the
 ground; hands faster than the second only pass. They guard hands that sweep over the ground,
-which would be pulled to the place of the source's."""
-SPEED_SMOOTHING_S = 0.1
-"""Standard deviation of the Gaussian that smooths the speed. It guards a hand that turns in a
-sweep over the ground: it stands for an instant, as if it supported the body."""
-REACH_FRACTIONS = (1.0, 0.9)
-"""Distances of a support from the shoulder, in arm lengths, at which it has no influence and
-all of it. They guard supports out of reach."""
+which would be pulled to the place of the source's
+(`test_hand_that_rolls_on_the_ground_supports_the_body`,
+`test_hand_that_sweeps_over_the_ground_does_not_support_where_it_turns`)."""
 MEETING_FRACTION, INDEPENDENT_FRACTION = 0.15, 0.4
 """Distances of both hands, as fractions of the arm length: below the first they meet, above the
-second they are independent. The first guards hands that nearly touch, which would keep part
-of the distance from other arms. Second chosen by hand: x0.5 costs nothing, x2 gains 0.4 %."""
+second they are independent. Second chosen by hand: x0.5 costs nothing, x2 gains 0.4 %. The
+first guards hands that nearly touch, which would keep part of the distance from other arms
+(`test_hands_that_meet_in_the_source_meet`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,8 +82,7 @@ def find_hand_paths(transfer: Transfer, poses: WorldPoses) -> list[HandPath]:
             continue
         length, hand = target.limb_length(arm), positions[:, source_arm[2]]
         scale = length / source.limb_length(source_arm)
-        shoulder = poses.positions[:, arm[0]]
-        wanted = shoulder + scale * (hand - positions[:, source_arm[0]])
+        wanted = poses.positions[:, arm[0]] + scale * (hand - positions[:, source_arm[0]])
         least_heights = None
         if placement.floors is not None:
             (floor, ground), leg = placement.floors, leg_length(source)
@@ -94,9 +90,7 @@ def find_hand_paths(transfer: Transfer, poses: WorldPoses) -> list[HandPath]:
             rise = placement.rise * leg
             support = placement.points(hand)
             support[:, 2] = ground + rise * height
-            distance = np.linalg.norm(support - shoulder, axis=1) / length
             weights = ground_weights(hand / leg, height, transfer.frame_rate)
-            weights[:, :2] *= smoothstep(distance, *REACH_FRACTIONS)[:, None]
             wanted = wanted + weights * (support - wanted)
             least_heights = (
                 ground + rise * np.minimum(elbow_height, 0.0),
@@ -113,7 +107,7 @@ def ground_weights(hand: Array, height: Array, frame_rate: float) -> Array:
     it is, the more the place does. `hand` and `height` are in leg lengths.
     """
     velocity = np.gradient(hand, axis=0) * frame_rate if len(hand) > 1 else 0.0 * hand
-    speed = smooth_gaussian(np.linalg.norm(velocity, axis=1), SPEED_SMOOTHING_S * frame_rate)
+    speed = smooth_gaussian(np.linalg.norm(velocity, axis=1), SMOOTHING_S * frame_rate)
     supports = smoothstep(height, *reversed(SUPPORT_HEIGHT_FRACTIONS)) * smoothstep(
         speed, PASSING_SPEED, SUPPORT_SPEED
     )

@@ -8,11 +8,7 @@ from ..motion_fitting.goals import MIN_BEND, bone_directions
 from ..rotations import normalize, rotate
 from ..signals import smooth_gaussian
 from .body import HumanoidBody
-from .limbs import Limb
-
-SMOOTHING_S = 0.1
-"""Standard deviation of the Gaussian that smooths the axis. It guards limbs that are nearly
-straight, whose axis is noise."""
+from .limbs import SMOOTHING_S, Limb
 
 
 def limb_hinge(body: HumanoidBody, fitted: FittedMotion, limb: Limb, usual: Array) -> Array:

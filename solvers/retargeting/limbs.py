@@ -15,6 +15,12 @@ BLEND_S = 0.5
 """Seconds over which the correction of a limb begins and ends. Chosen by hand: for feet x0.5
 gains 0.2 %, but 0.3 s makes knees jerk a tenth more in walks; for hands x0.5 costs 3.1 %; x2
 costs nothing."""
+SMOOTHING_S = 0.1
+"""Standard deviation of the Gaussian that smooths what a limb of the source shows: the speed of
+its hand, and the axis about which it bends. It guards a hand that turns in a sweep over the
+ground, where it stands for an instant as if it supported the body
+(`test_hand_that_sweeps_over_the_ground_does_not_support_where_it_turns`), and limbs that are
+nearly straight, whose axis is noise."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,8 +33,8 @@ SWING_M, STANCE_M = 0.005, 0.01
 feet, which must not slide. Chosen by hand: first, x0.5 gains 4.6 %, x2 costs 4.7 %; second,
 x0.5 gains 0.2 %, x2 costs 0.6 %."""
 SLIDE_M_S = 0.005
-"""Meters per second, for a leg of 0.9 m, by which a foot may slide more than the source's.
-Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+"""Meters per second, for a leg of 0.9 m, by which a foot may slide more than the source's. It
+guards standing feet (`test_feet_do_not_sink_or_slide_more_than_the_source`)."""
 DEPTH_M = 0.001
 """Meters, for a leg of 0.9 m, of a sole below the ground. Chosen by hand: x0.5 gains 1.5 %, x2
 gains 0.7 %."""

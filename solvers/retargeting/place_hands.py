@@ -28,13 +28,15 @@ nothing and lets hands that support the body slide."""
 EXACT_FRACTION = 0.002
 """Arm lengths by which hands that meet may be off their distance, and wrists below their least
 height. It guards hands that clap, which would stay apart on broad shoulders, and those of a
-body that lies down, which would sink lower than the source's."""
+body that lies down, which would sink lower than the source's
+(`test_hands_that_meet_in_the_source_meet`)."""
 ARM_RAD = np.radians(20.0)
 """Radians by which shoulders and elbows may turn. Chosen by hand: x0.5 costs nothing, x2 costs
 0.9 %."""
 RESERVE_RAD = np.radians(5.0)
 """Radians of flexion kept in an elbow, unless it is straighter already. It guards arms that
-reach for what is too far, which would snap straight."""
+reach for what is too far, which would snap straight
+(`test_arms_too_short_for_hands_to_meet_do_not_snap`)."""
 ELBOW_AXES = {"left": np.array([0.0, 0.0, -1.0]), "right": np.array([0.0, 0.0, 1.0])}
 """In the T-pose, in which forearms bend forward."""
 

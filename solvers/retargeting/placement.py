@@ -13,13 +13,16 @@ ANKLE_HEIGHT_FRACTION = 0.08
 MAX_DEPTH_FRACTION, MAX_ANKLE_FRACTION = 0.02, 0.25
 """Limits for a rig that stands on height 0, in leg lengths: depth of its lowest joint below the
 ground, and height of its ankles above it. They guard rigs with the tips of their toes below
-height 0, and rigs with height 0 at their hips or ankles."""
+height 0, and rigs with height 0 at their hips or ankles
+(`test_rig_with_its_origin_elsewhere_does_not_rest_on_the_ground`)."""
 FLOOR_TOLERANCE_FRACTION = 0.15
 """Measured heights of the ground below this, in leg lengths, are treated as 0. It guards an
-actor on a stage, who stays on it, and sensors whose ankles are off by some centimeters."""
+actor on a stage, who stays on it, and sensors whose ankles are off by some centimeters
+(`test_ground_nearly_at_zero_is_at_zero_and_a_stage_is_not`)."""
 FLAT_FOOT_PERCENTILE = 20.0
 """Percentile of the ankle heights in contact that is the height of a flat foot. It guards takes
-that are mostly danced on tiptoe, and frames in which an ankle is too low."""
+that are mostly danced on tiptoe, and frames in which an ankle is too low
+(`test_ankle_height_is_that_of_flat_feet_if_most_contacts_are_on_tiptoe`)."""
 
 
 @dataclass(frozen=True, eq=False)

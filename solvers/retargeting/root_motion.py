@@ -12,8 +12,9 @@ from .body import MOTION, hips_of, hold_gaps
 
 UP = np.array([0.0, 0.0, 1.0])
 MAX_TILT_RAD = np.radians(60.0)
-"""Tilt of the hips above which they do not define the facing direction. It guards
-actors who get up: the root would turn in one frame."""
+"""Tilt of the hips above which they do not define the facing direction. It guards actors who
+get up: the root would turn in one frame
+(`test_root_rotates_smoothly_while_an_actor_gets_up`)."""
 
 
 @dataclass(frozen=True, eq=False)

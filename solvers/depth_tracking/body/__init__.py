@@ -21,8 +21,15 @@ from .normal_equations import (
     solve_step,
     sum_equations,
 )
-from .pose_from_joints import LIMIT_WEIGHT, MAX_STEP, pose_from_frames
-from .pose_priors import joint_limits, natural_stance, predict_pose, stay_near
+from .pose_from_joints import pose_from_frames
+from .pose_priors import (
+    LIMIT_WEIGHT,
+    MAX_STEP,
+    joint_limits,
+    natural_stance,
+    predict_pose,
+    stay_near,
+)
 from .ray_capsules import MIN_DEPTH_M, BodyImage, cast_rays
 from .segment_kinematics import N_SEGMENTS, joint_positions, segment_frames, segment_twists
 from .shape import MEASURES, N_LENGTHS, resize_body, shape_jacobian

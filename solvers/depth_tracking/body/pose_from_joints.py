@@ -11,7 +11,7 @@ from .normal_equations import (
     solve_step,
     sum_equations,
 )
-from .pose_priors import joint_limits, stay_near
+from .pose_priors import LIMIT_WEIGHT, MAX_STEP, joint_limits, stay_near
 from .segment_kinematics import segment_frames, segment_twists
 from .tables import END_SEGMENTS, JOINTS, SEGMENTS
 
@@ -20,12 +20,6 @@ _YAW = COORDINATES.index("yaw")
 _REST_WEIGHT = 1e-3
 """Weight per square radian of the rest pose. Chosen by hand: x0.5 gains 0.3 %, x2 costs
 1.2 %."""
-LIMIT_WEIGHT = 1.0
-"""Weight per square radian beyond the joint limits, also in fits to depth pixels. Chosen by
-hand there: x0.5 costs 16.1 %, x2 gains 2.6 %."""
-MAX_STEP = 0.5
-"""Maximum change of a coordinate in one step, radians or meters, also in fits to depth pixels.
-Chosen by hand there: x0.5 gains 2.6 %, x2 gains 2.6 %."""
 _FRAME_WEIGHT = 100.0
 """Weight per square meter of a joint's distance. Chosen by hand: x0.5 costs 0.6 %, x2 gains
 0.2 %."""

@@ -29,9 +29,6 @@ from ..tracking import (
 )
 
 _YAW = COORDINATES.index("yaw")
-_N_PREVIOUS_SCORES = 30
-"""Number of frames whose median score is the typical one, a second of a depth camera. Chosen by
-hand: x0.5 costs nothing, x2 costs nothing."""
 _DETECTION_WEIGHT = 1.0
 """Weak weight that keeps the refinement near the detected pose. Chosen by hand: x0.5 costs
 nothing, x2 costs 17.6 %."""
@@ -152,7 +149,7 @@ def track_with_restarts(
     frames = list(order)
     poses = np.full((actor.depth.n_frames, N_COORDINATES), np.nan)
     scores = np.full(actor.depth.n_frames, np.nan)
-    policy = _RestartPolicy(actor.recovery)
+    policy = _RestartPolicy(actor.recovery, actor.depth.frame_rate)
     trajectory: list[Array] = [] if start is None else [start]
     restarts = []
     for done, frame in enumerate(frames):
@@ -185,11 +182,11 @@ def track_with_restarts(
 
 
 class _RestartPolicy:
-    """Decides when the detector runs, from the previous scores."""
+    """Decides when the detector runs, from the scores of the last second."""
 
-    def __init__(self, settings: RecoverySettings) -> None:
+    def __init__(self, settings: RecoverySettings, frame_rate: float) -> None:
         self._settings = settings
-        self._previous_scores: deque[float] = deque(maxlen=_N_PREVIOUS_SCORES)
+        self._previous_scores: deque[float] = deque(maxlen=max(round(frame_rate), 1))
         self._frames_since_detection = settings.check_every
 
     def should_detect(self, quality: FitQuality) -> bool:

@@ -25,9 +25,10 @@ REFERENCE_RATE_HZ = 30.0
 _CONSTRAINT_WEIGHT = 1e8
 """Weight per square radian of a pose that must not change. By definition of a constraint, any
 value as large gives the same."""
-_WINDOW_FRAMES, _OVERLAP_FRAMES = 600, 60
-"""Frames per window, and overlap with the neighbors. It bounds the memory: the normal equations
-of a take grow with its length."""
+_WINDOW_FRAMES = 600
+"""Frames per window; a tenth of them overlaps with each neighbor. It bounds the memory: the
+normal equations of a take grow with its length."""
+_OVERLAP_FRAMES = _WINDOW_FRAMES // 10
 
 
 def smooth_poses(

@@ -13,7 +13,7 @@ from ...depth_scene import Camera, DepthRecording
 
 MIN_AREA_M2 = 0.02
 """Minimum visible surface of an actor: half a forearm. It guards images in which the actor is
-out of view."""
+out of view (`test_observation_of_a_few_pixels_is_empty`)."""
 
 
 @dataclass(frozen=True, eq=False)

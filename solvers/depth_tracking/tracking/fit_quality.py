@@ -13,7 +13,7 @@ JOINT_SEGMENTS: Integers = np.array([*range(N_SEGMENTS), *END_SEGMENTS])
 """Segment that carries each of `JOINTS`."""
 MAX_DEPTH_ERROR_M = 0.1
 """A pixel with a larger depth error does not count as fitting. It guards images in which
-something stands in front of the actor."""
+something stands in front of the actor (`test_offset_pose_has_failed_and_true_pose_has_not`)."""
 _CONFIDENCE_STD_M = 0.06
 """Standard deviation of a joint position that halves its confidence. Chosen by hand: x0.5 costs
 11.2 %, x2 costs 1.6 %."""

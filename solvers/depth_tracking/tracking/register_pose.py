@@ -32,10 +32,9 @@ Likelihood = Callable[[Hypothesis, Observation, TrackerSettings], SurfaceRows]
 
 _MIN_STEP = 1e-3
 """A shorter step, radians or meters, ends the search. It bounds the run time."""
-_DAMPING_INCREASE, _DAMPING_DECREASE = 5.0, 0.3
-"""Factors of the damping after a step that is refused, and that is accepted. Chosen by hand:
-first, x0.5 costs nothing, x2 costs 27.1 %. The second bounds the run time: how soon steps are
-long again after a refusal."""
+_DAMPING_FACTOR = 5.0
+"""Factor of the damping after a step that is refused; an accepted one divides by it. Chosen by
+hand: x0.5 costs nothing, x2 costs 27.1 %."""
 _METERS_PER_RADIAN = 0.5
 """Ratio of the limits of a step: of the hips in meters, and of rotations. By definition half a
 meter, the length of a thigh or upper body, so that both move the next joints equally far."""
@@ -139,9 +138,9 @@ def _descend(objective: _Objective, pose: Array, iterations: int) -> Registered:
             break
         trial = objective.evaluate(best.pose + _limited(change, settings))
         if not settings.accept_only_better or trial.equations.cost <= best.equations.cost:
-            best, damping = trial, max(damping * _DAMPING_DECREASE, settings.damping)
+            best, damping = trial, max(damping / _DAMPING_FACTOR, settings.damping)
         else:
-            damping = max(damping, 1.0) * _DAMPING_INCREASE
+            damping = max(damping, 1.0) * _DAMPING_FACTOR
         best = replace(best, iterations=iteration + 1)
     return best
 

@@ -16,14 +16,15 @@ ADULT_STATURE_M = 1.75
 """Stature of that adult. By definition."""
 MAX_BODY_SCALE, MIN_BODY_SCALE = 3.0, 0.2
 """Scales of a body relative to that adult beyond which the unit must be wrong. They guard
-against wrong units."""
+against wrong units (`test_body_has_human_size_for_any_default_unit`)."""
 MIN_RELIABILITY = 0.6
-"""Joints above this reliability determine the lengths, if there are enough of them. It
-guards actors who are hidden most of the time, with limbs of wrong lengths."""
+"""Joints above this reliability determine the lengths, if there are enough of them. It guards
+actors who are hidden most of the time, with limbs of wrong lengths
+(`test_unreliable_frames_do_not_change_bone_lengths`)."""
 MIN_RELIABLE_FRAMES = 15
 """Number of reliable frames that determine the length of a bone, half a second of a depth
-camera. It guards bones that are reliable in too few frames: all frames count then. Chosen by
-hand: x0.5 costs nothing, x2 costs nothing."""
+camera. It guards bones that are reliable in too few frames: all frames count then
+(`test_few_reliable_frames_do_not_decide_bone_lengths`)."""
 
 
 def segment_lengths(positions: Array) -> Array:

@@ -13,7 +13,8 @@ Real = TypeVar("Real", np.float32, np.float64)
 
 RATE_WINDOW_S = 0.1
 """Seconds to each side over which a rate is measured. It guards high frame rates, at which the
-difference of two frames is noise."""
+difference of two frames is noise
+(`test_noise_of_directions_hardly_changes_rates_at_high_frame_rates`)."""
 PARENT_INDICES = np.maximum(PARENTS, 0)
 SUBSTITUTES = {"spine": "chest", "chest": "spine", "leftToes": "", "rightToes": ""}
 """Joint whose direction a missing bone takes, if not its parent; empty: forward."""

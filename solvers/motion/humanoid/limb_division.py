@@ -27,13 +27,10 @@ MIN_SPREAD_FRACTION = 0.03
 by hand on the rigs of `tests/solvers/motion`."""
 
 
-NO_FOOT_MISFIT = 0.25
-"""Added to the misfit, the logarithm of a length, of an ankle that ends a leg of four joints or
-more: its last one is rather the toes. Chosen by hand on the rigs of `tests/solvers/motion`."""
-
 FOOT_MISFIT = 0.25
-"""Added to the misfit, the logarithm of a length, of an ankle after a bone that points away
-from the leg: that bone is the foot. Chosen by hand on the rigs of `tests/solvers/motion`."""
+"""Added to the misfit, the logarithm of a length, of an ankle that ends a leg of four joints or
+more, whose last one is rather the toes, and of one after a bone that points away from the leg,
+which is the foot. Chosen by hand on the rigs of `tests/solvers/motion`."""
 MAX_SHANK_COSINE = 0.7
 """Cosine between a bone and the leg above it, up to which it is a foot. Chosen by hand: 45
 degrees; feet stand at 60 to 90 degrees to the shank."""
@@ -63,7 +60,7 @@ def divide_leg(
     joints = without_end_sites(skeleton, leg)
     excess = _log_excess(skeleton, leg, len(joints), MAX_FOOT_FRACTION * height)
     if len(joints) > 3 and joints[-1] == leg[-1]:
-        excess[-1] += NO_FOOT_MISFIT
+        excess[-1] += FOOT_MISFIT
     if len(joints) > 3:
         excess[3:] += FOOT_MISFIT * _is_foot(skeleton, joints)[3:]
     return _divide(skeleton, joints, LEG_FRACTIONS, height, np.zeros(len(joints)), excess)

@@ -10,8 +10,7 @@ from ...rotations import fit_rotations, matrix_from_quaternion
 from ..skeletons import Skeleton, Tracks, rest_direction
 
 N_ITERATIONS = 5
-"""Iterations of the Procrustes analysis. It bounds the run time. Chosen by hand: x0.5 costs
-nothing, x2 costs nothing."""
+"""Iterations of the Procrustes analysis. It bounds the run time."""
 
 
 def skeleton_from_points(tracks: Tracks, parents: Sequence[int]) -> Skeleton:

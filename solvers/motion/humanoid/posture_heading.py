@@ -29,14 +29,16 @@ HALF_LATERAL_JOINTS = tuple(
 are less parallel to the heading: a chest is not in the middle of its shoulders."""
 HEADING_SMOOTHING_S = 0.1
 """Standard deviation of the Gaussian that smooths the heading. It guards hips and shoulders
-with jitter, which would rotate the complete body."""
+with jitter, which would rotate the complete body (`test_jitter_does_not_rotate_the_body`)."""
 
 REVERSAL_WINDOW_S = 1.0
 """Window over which opposite headings are compared with the mean, to detect swaps. It guards
-sensors that swap left and right for some frames."""
+sensors that swap left and right for some frames
+(`test_left_right_swaps_do_not_change_the_heading`)."""
 MIN_AGREEMENT = 0.3
 """Length of the mean of unit vectors, a ratio, above which they agree: 0 is random, 1
-identical. It guards spinning actors, whose headings have no mean."""
+identical. It guards spinning actors, whose headings have no mean
+(`test_heading_of_a_spinning_actor_is_followed`)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,7 +37,8 @@ HAND_ENDS = ("HandLeft", "HandRight")
 SIDES = ("left", "right")
 MAX_HAND_END_M = 0.13
 """Maximum distance of the end of a hand from the wrist. It guards against hands without a palm;
-a hand is 0.108 of the height (Winter 2009)."""
+a hand is 0.108 of the height (Winter 2009)
+(`test_hand_ends_at_the_palm_not_at_the_finger_tips`)."""
 
 
 def posture_joint_indices(names: Sequence[str]) -> dict[str, int]:

@@ -15,8 +15,9 @@ from .motion import Motion
 from .tracks import Tracks
 
 STOPBAND_DB = 60.0
-"""Attenuation of frequencies above the new Nyquist frequency, decibels. It guards
-shaking limbs and jitter, which would become slow movements."""
+"""Attenuation of frequencies above the new Nyquist frequency, decibels. It guards shaking limbs
+and jitter, which would become slow movements
+(`test_movement_too_fast_for_the_new_rate_leaves_no_alias`)."""
 
 PASSBAND = 0.7
 """Edge of the passband, as a fraction of the new Nyquist frequency. Chosen by hand: x0.5 costs

@@ -12,8 +12,8 @@ from .motion import Motion
 from .tracks import Tracks
 
 N_CONTEXT_FRAMES = 8
-"""Frames on each side from which the typical step of each joint is estimated. Chosen by hand:
-x0.5 costs nothing, x2 costs nothing."""
+"""Frames on each side from which the typical step of each joint is estimated. It guards takes
+with repeated frames (`test_fast_movement_in_repeated_frames_is_no_shot_boundary`)."""
 HALF_FRACTION, MAJORITY_FRACTION = 0.5, 0.7
 """Fractions of the joints that jump at a boundary. Chosen by hand: x0.5 costs nothing, x2 costs
 7.1 %."""
@@ -27,15 +27,16 @@ MIN_STEP_RAD = np.radians(1.0)
 costs 7.1 %."""
 MIN_STEP_M = 0.04
 """Meters, likewise. It guards actors who stand still: a dropped camera frame moves all points
-of a body by a few centimeters."""
+of a body by a few centimeters
+(`test_dropped_camera_frame_of_an_actor_who_stands_is_no_shot_boundary`)."""
 MIN_JOINTS = 6
 """With fewer joints, a common jump of nearly all of them is not significant. It guards props
-and single bones. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+and single bones (`test_prop_that_is_put_elsewhere_is_no_shot_boundary`)."""
 MIN_MOTION = 1e-6
 """Radians or meters: a joint with smaller steps does not move. It guards a division."""
 MIN_SHOT_S = 0.25
 """A shorter shot shows no movement that can be distinguished from noise. It guards takes whose
-body jumps away for a few frames and returns."""
+body jumps away for a few frames and returns (`test_transient_jump_of_a_body_is_no_cut`)."""
 
 
 def find_shot_boundaries(recording: Motion | Tracks) -> tuple[int, ...]:

@@ -15,7 +15,7 @@ MAX_DISTANCE_M = 1e9
 against damaged files."""
 MIN_BONE_M = 1e-3
 """Meters: a shorter bone has no direction. It guards joints at one position up to the rounding
-of a file or a device."""
+of a file or a device (`test_coincident_joints_define_no_direction`)."""
 
 
 @dataclass(frozen=True, eq=False)

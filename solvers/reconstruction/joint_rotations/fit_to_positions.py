@@ -15,11 +15,8 @@ POSITION_M = 0.02
 """Meters by which a reliable joint may miss its observed position. Chosen by hand: x0.5 costs
 0.1 %, x2 costs 0.3 %."""
 ROTATION_RAD = 0.2
-"""Radians by which a joint may turn from where its bone was aimed. Chosen by hand: x0.5 costs
-0.3 %, x2 costs 0.1 %."""
-ROOT_M = 0.2
-"""Meters by which the root may leave its observed position. It guards frames without a known
-joint: x0.5 and x2 change nothing."""
+"""Radians by which a joint may turn from where its bone was aimed, and meters by which the root
+may leave its observed position. Chosen by hand: x0.5 costs 0.3 %, x2 costs 0.1 %."""
 FADE_S = 0.1
 """Seconds in which a change fades that no position asks for. Chosen by hand: x0.5 gains 0.1 %,
 x2 costs 0.1 %."""
@@ -77,7 +74,7 @@ def _fit_piece(motion: Motion, positions: Array, weights: Array, progress: Progr
         for joint in followed
     ]
     tolerances = dict.fromkeys(turning, ROTATION_RAD)
-    goals.append(FollowSource.of_joints(start, ROOT_M, tolerances, FADE_S))
+    goals.append(FollowSource.of_joints(start, ROTATION_RAD, tolerances, FADE_S))
     return fit_motion(start, goals, progress, "Fitting the skeleton").motion
 
 

@@ -20,10 +20,10 @@ x0.5 costs 1.2 %, x2 gains 0.2 %."""
 REST_WEIGHT = 0.02
 """Weight of zero axial rotation relative to the trunk; a flexed limb has weight 1. Chosen by
 hand: x10 costs 2 % on one take; 0 has no solution for a limb that is never flexed."""
-LIBRARY_WEIGHT, OBSERVED_FRACTION = 0.2, 0.1
-"""Weight of the library's axial rotation for missing limbs, and the fraction of it for observed
-ones, whose flexion before and after determines more. By hand: x10 of the first costs 0.4 %; 0
-of the second leaves a straight limb without rotation (`test_library_twists`)."""
+LIBRARY_WEIGHT = 0.2
+"""Weight of the library's axial rotation for missing limbs; observed ones, whose flexion before
+and after determines more, have `REST_WEIGHT`. By hand: x10 costs 0.4 %. It guards missing
+limbs, which would rest."""
 ACTOR_BIAS_S = 0.03
 """Time (s) of flexed frames at which the actor's deviation from the library gets half weight.
 It guards limbs that hardly flex: 0 removes the library's rotation (`test_library_twists`)."""
@@ -132,7 +132,7 @@ def rotations_from_flexion(
     if hinges.ignore_flexion:
         return _rotate_about_axis(rotations, axis, np.angle(library_twists))
     expected = ExpectedTwists(
-        library_twists, LIBRARY_WEIGHT * (1.0 - (1.0 - OBSERVED_FRACTION) * limb_reliability)
+        library_twists, LIBRARY_WEIGHT + (REST_WEIGHT - LIBRARY_WEIGHT) * limb_reliability
     )
     return twist_to_normal(
         rotations,

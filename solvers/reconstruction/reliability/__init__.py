@@ -8,9 +8,10 @@ from .scores import (
     memory_frames,
     posture_reliability,
 )
-from .settings import ReliabilityMethod, ReliabilitySettings
+from .settings import WRONG_RELIABILITY, ReliabilityMethod, ReliabilitySettings
 
 __all__ = [
+    "WRONG_RELIABILITY",
     "Reliability",
     "ReliabilityMethod",
     "ReliabilitySettings",

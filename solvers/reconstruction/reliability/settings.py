@@ -7,6 +7,11 @@ from ...settings import Choice, Settings, setting
 
 SENSOR_RATE_HZ = 30.0
 """Frame rate (Hz) of the cameras for which [SHJT13] gives its thresholds."""
+WRONG_RELIABILITY = 0.02
+"""Reliability up to which a joint is wrong: nothing shows where it is. It is also the minimum
+weight of a joint in a correction, which has no solution for a joint of weight 0. Chosen by
+hand: x10 costs 4.4 %. It guards joints that are far off:
+`test_wrong_joint_is_replaced_and_an_uncertain_one_stays_near`."""
 
 
 class ReliabilityMethod(Choice):

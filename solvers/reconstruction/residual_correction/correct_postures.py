@@ -19,15 +19,17 @@ from ..joint_rotations import (
     find_anchors,
     positions_from_postures,
 )
-from ..reliability import Reliability, measure_reliability, posture_reliability
+from ..reliability import (
+    WRONG_RELIABILITY,
+    Reliability,
+    measure_reliability,
+    posture_reliability,
+)
 from .inputs import SmoothedPostures, smooth_postures
 from .prediction import Prediction
 from .residual_prior import ResidualPrior
 from .smooth_trajectories import TrajectoryFilter, smooth_trajectories
 
-MIN_WEIGHT = 0.02
-"""Weight of an unreliable joint, so that gaps are interpolated smoothly. Chosen by hand: x1000
-costs 20 %; 0 has no solution for a joint that is never reliable."""
 CONFIDENCE_DISTANCE_M = 0.05
 """Confidence is, by definition, the probability that a joint is within this distance (m) of its
 true position."""
@@ -221,7 +223,7 @@ def subtract_offsets(
     if shift is not None:
         predicted += shift
     return CorrectedPostures(
-        smoother(predicted, np.maximum(weights, MIN_WEIGHT)),
+        smoother(predicted, np.maximum(weights, WRONG_RELIABILITY)),
         prediction,
         prediction.variances + prior.constant_variances(constant=settings.shift),
         shift,
@@ -238,6 +240,6 @@ def shift_in_world(smooth: SmoothedPostures, mean: Array) -> Array:
 
 def mean_offset(prediction: Prediction, weights: Array) -> Array:
     """Return the mean offset of each joint over the take, shape (20, 3)."""
-    joint_weights = np.maximum(weights, MIN_WEIGHT)[..., None]
+    joint_weights = np.maximum(weights, WRONG_RELIABILITY)[..., None]
     mean = (joint_weights * prediction.offsets).sum(axis=0) / joint_weights.sum(axis=0)
     return np.asarray(mean)

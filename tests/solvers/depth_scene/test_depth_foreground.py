@@ -7,6 +7,7 @@ import pytest
 from depth_rooms import in_room, room, tilted
 from numpy.testing import assert_allclose
 
+from solvers.depth_scene.actor import find_actor
 from solvers.depth_scene.bodies import find_bodies
 from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.floor import find_floor
@@ -84,6 +85,40 @@ def test_cut_out_actor_keeps_the_more_visible_person(actor):
     bodies = find_bodies(recording.frame(40), recording.camera, 0.08)
     assert len(bodies.areas) == 2
     assert agreement(actor_only.frame(40) > 0.0, actor.frame(40) > 0.0) > 0.98
+
+
+def test_two_people_next_to_each_other_are_two_bodies():
+    depth = np.zeros((240, 320), dtype=np.float32)
+    depth[60:180, 60:100] = depth[60:180, 120:160] = 3.0
+
+    assert len(find_bodies(depth, KINECT, 0.08).areas) == 2
+
+
+def test_room_whose_floor_is_out_of_view_is_not_the_actor():
+    def read(frame: int) -> np.ndarray:
+        depth = np.full((240, 320), 4.0, dtype=np.float32)
+        depth[60:180, 10 * frame : 10 * frame + 60] = 2.5
+        return depth
+
+    found = find_actor(DepthRecording(KINECT, 24, 30.0, read))
+
+    assert found.method is ForegroundMethod.AUTOMATIC
+    assert found.recording.frame(12).astype(bool).mean() < 0.2
+
+
+def test_person_far_from_where_the_actor_is_expected_is_not_the_actor():
+    depth = np.zeros((240, 320), dtype=np.float32)
+    depth[60:180, 60:100] = 3.0
+    alone = DepthRecording(KINECT, 1, 30.0, lambda frame: depth)
+    at, elsewhere = np.array([[-0.8, 0.0, 3.0]]), np.array([[1.2, 0.0, 3.0]])
+
+    near, far = (
+        cut_out_actor(alone, AS_RECORDED, trajectory=expected).frame(0)
+        for expected in (at, elsewhere)
+    )
+
+    assert (near > 0.0).sum() == 120 * 40
+    assert not far.any()
 
 
 def test_cut_out_actor_returns_empty_images_without_a_person():

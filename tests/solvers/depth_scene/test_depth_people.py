@@ -75,6 +75,17 @@ def test_actor_is_the_same_person_after_returning_elsewhere():
     np.testing.assert_allclose(tracked.trajectory[105:, 0], 2.5)
 
 
+def test_person_who_appears_far_from_one_who_left_is_another():
+    """Both together would show more surface than the bystander, who is the actor."""
+    tracked = track(
+        (0.5, lambda time: (-3.0, 0.0, 3.0) if time < 2.0 else None),
+        (0.5, lambda time: (3.0, 0.0, 3.0) if time >= 2.0 else None),
+        (0.4, standing(0.0)),
+    )
+
+    np.testing.assert_allclose(tracked.trajectory[:, 0], 0.0)
+
+
 def test_trajectory_bridges_a_short_occlusion():
     tracked = track((0.5, lambda time: None if 2.0 < time < 2.6 else (time, 0.0, 3.0)))
 

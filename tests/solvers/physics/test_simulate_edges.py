@@ -77,12 +77,13 @@ def test_simulate_raises_when_the_root_is_never_observed():
         simulate(WALK.with_poses(root_positions=roots))
 
 
-def test_simulate_raises_for_a_wrong_unit():
+@pytest.mark.parametrize("scale", [0.01, 100.0])
+def test_simulate_raises_for_a_wrong_unit(scale):
     skeleton = WALK.skeleton
-    ant = Skeleton(skeleton.names, skeleton.parents, 0.01 * skeleton.offsets)
+    body = Skeleton(skeleton.names, skeleton.parents, scale * skeleton.offsets)
 
     with pytest.raises(InvalidMotionError, match="is not plausible; set the scale of the"):
-        simulate(Motion(ant, WALK.rotations, 0.01 * WALK.root_positions, 30.0))
+        simulate(Motion(body, WALK.rotations, scale * WALK.root_positions, 30.0))
 
 
 def test_simulate_raises_for_a_low_frame_rate():

@@ -21,6 +21,7 @@ from solvers.reconstruction import (
     reconstruct,
     reconstruct_postures,
 )
+from solvers.reconstruction.complete_take import replacement_weights
 from solvers.reconstruction.pose_completion import complete_postures
 from solvers.reconstruction.published.posture_reconstruction import search_as_published
 from solvers.reconstruction.published.residual_reconstruction import (
@@ -193,3 +194,13 @@ def test_causal_joints_ignore_later_frames_except_for_the_body(walk, method, one
         )
         far[causal] = float(np.abs(one - other).max())
     assert far[True] < 3e-4 < 1e-3 < far[False]
+
+
+def test_wrong_joint_is_replaced_and_an_uncertain_one_stays_near():
+    """A library pose half a meter off replaces a joint only if nothing shows where it is."""
+    reliability, distance = np.array([[0.0, 0.1]]), np.full((1, 2), 0.5)
+
+    wrong, uncertain = replacement_weights(distance > 0.0, reliability, distance)[0]
+
+    assert wrong == 1.0
+    assert uncertain < 0.1
