@@ -15,7 +15,8 @@ from .stroke_gestures import Clap, Wave
 
 MAX_BREAK_S = 0.5
 """Seconds without a frame, or without hands, after which all gestures are reset. It guards
-gestures that would begin before a break of the stream and end after it."""
+gestures that would begin before a break of the stream and end after it
+(`test_hand_that_is_up_before_and_after_a_break_is_not_held`)."""
 DEFAULT_SETTINGS = GestureSettings()
 
 

@@ -17,11 +17,11 @@ MIN_FORWARD = 0.3
 without it the exercises of UI-PRMD zoom 43 times."""
 MIN_ZOOM_HEIGHT, MAX_ZOOM_HEIGHT = -0.75, 0.35
 """Range of heights of zooming hands above the shoulders, in arm lengths. Chosen by hand:
-without the second the exercises of UI-PRMD zoom 145 times, without the first MSR Action3D
-once."""
+without the second the exercises of UI-PRMD zoom 145 times, without the first MSR Action3D once
+(`test_exercises_give_no_command`)."""
 MIN_ZOOM_GAP, MAX_ZOOM_GAP = 0.25, 2.2
 """Range of distances of zooming hands, in arm lengths. Chosen by hand: without it an exercise
-of KIMORE zooms."""
+of KIMORE zooms (`test_hands_that_touch_do_not_zoom`)."""
 STRAIGHT_REACH = 0.85
 """Reach, in arm lengths, at which an arm counts as straight. Chosen by hand: with 0.7 the
 exercises of UI-PRMD turn the view 54 times."""

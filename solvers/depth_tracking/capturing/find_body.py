@@ -17,10 +17,10 @@ STATURES_M = (1.45, 1.6, 1.75, 1.9)
 """Statures in meters that are tried. Chosen by hand: x0.5 costs 14.3 %, x2 is no stature."""
 N_SIZE_FRAMES, N_STATURE_FRAMES = 12, 3
 """Number of frames compared by visible surface, and of frames used to test statures. They bound
-the run time. Chosen by hand: x0.5 and x2 of either cost nothing."""
+the run time."""
 CLIP_FRAMES = 90
 """Number of frames tracked to refine the body, three seconds of a depth camera. It bounds the
-run time. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+run time."""
 
 
 def find_body(

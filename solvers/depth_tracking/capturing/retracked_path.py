@@ -16,14 +16,16 @@ from .smooth_pass import measure_fit
 
 _MIN_CONFIDENCE = 0.2
 """Minimum confidence of a joint in the comparison. It guards corrections of an occluded limb:
-old and new motion would agree at once, wherever it is."""
+old and new motion would agree at once, wherever it is
+(`test_motions_do_not_agree_where_an_occluded_arm_differs`)."""
 _MIN_AGREEING_FRAMES = 4
 """Minimum number of consecutive frames where both motions agree. It guards a blend of less than
-this many frames, a setting: motions that only cross in a frame are not the same."""
+this many frames, a setting: motions that only cross in a frame are not the same
+(`test_path_may_fit_a_little_worse_than_the_old_motion`)."""
 _SCORE_TOLERANCE = 0.015
 """Fraction by which the score of the new path may be lower than that of the previous motion. It
 guards corrections that the images hardly show: the path would end at the first frame that fits
-worse by chance."""
+worse by chance (`test_path_may_fit_a_little_worse_than_the_old_motion`)."""
 
 
 @dataclass(frozen=True, kw_only=True)

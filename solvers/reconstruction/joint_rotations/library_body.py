@@ -26,7 +26,8 @@ CORRECTED_BONES = (SPINE, CHEST, HEAD, *ARMS, *LEGS, *TOES)
 """Bones whose directions differ between trackers in the same pose."""
 HALF_WEIGHT_COUNT = 20.0
 """Number of observations at which a measured offset of bone axes gets half its weight. It
-guards bones that were never observed, which would have no rotation."""
+guards bones that are observed in a few frames only
+(`test_bone_axis_corrections_recover_known_rotations`)."""
 
 
 @dataclass(frozen=True, eq=False)

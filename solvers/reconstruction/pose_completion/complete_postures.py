@@ -50,13 +50,10 @@ MODEL_ERROR_M = 0.03
 nothing, x2 gains 0.2 %."""
 CORRECTION_FRAMES = 150
 """Frames of the take, evenly spaced, to which the bone axes of the library are fitted. It
-bounds the run time: x0.5 and x2 change no figure by 0.5 %."""
-CORRECTION_NEIGHBORS = 3
-"""Number of poses of the library that each of these frames is compared with. Chosen by hand:
-x0.5 costs nothing, x2 costs nothing."""
+bounds the run time."""
 CORRECTION_ROUNDS = 2
-"""Number of times that the nearest poses are looked up again with the corrected axes. Chosen by
-hand: x0.5 costs nothing, x2 costs nothing."""
+"""Number of times that the nearest poses are looked up with the corrected axes. It bounds the
+run time."""
 
 
 class CompletedPostures(NamedTuple):
@@ -181,12 +178,11 @@ def _fit_library_to_actor(
     )
     for _ in range(CORRECTION_ROUNDS):
         index = index_postures(body, library.groups)
-        indices, _ = nearest_postures(index, query_sample, CORRECTION_NEIGHBORS)
-        each = indices.shape[1]
+        nearest, _ = nearest_postures(index, query_sample, 1)
         corrections = bone_axis_corrections(
-            np.repeat(query_sample.postures, each, axis=0),
-            np.repeat(query_sample.reliability, each, axis=0) / each,
-            directions[indices.reshape(-1)].astype(np.float64),
+            query_sample.postures,
+            query_sample.reliability,
+            directions[nearest[:, 0]].astype(np.float64),
             lengths,
         )
         body = build_body_postures(directions, changes, lengths, corrections)

@@ -8,8 +8,7 @@ from ...arrays import Array
 from ...motion.humanoid import N_JOINTS, PARENTS, segment_lengths
 
 N_ROUNDS = 30
-"""Number of passes over all bones. It bounds the run time. Chosen by hand: x0.5 costs nothing,
-x2 costs nothing."""
+"""Number of passes over all bones. It bounds the run time."""
 
 MIN_LENGTH_M = 1e-6
 """Meters: length of a bone whose ends are at one place. It guards a division."""

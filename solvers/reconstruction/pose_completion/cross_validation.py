@@ -14,8 +14,7 @@ Synthesis = Callable[[Integers, Array], Array]
 LIMBS = ((4, 5, 6, 7), (8, 9, 10, 11), (12, 13, 14, 15), (16, 17, 18, 19), (3,))
 """Arms, legs and head, as indices into `POSTURE_JOINTS`."""
 MAX_FRAMES = 60
-"""Frames, evenly spaced, in which a limb is held out. It bounds the run time. Chosen by hand:
-x0.5 costs nothing, x2 costs nothing."""
+"""Frames, evenly spaced, in which a limb is held out. It bounds the run time."""
 MIN_RELIABILITY = 0.5
 """Reliability above which a joint is compared. Chosen by hand: x0.5 costs 0.1 %, x2 costs
 0.3 %."""

@@ -8,10 +8,10 @@ from ...motion.humanoid import ADULT_BONE_LENGTHS_M, positions_from_directions
 
 MIN_POSTURES = 5000
 """Minimum number of poses for clustering; smaller libraries are searched completely. It bounds
-the run time of searches. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+the run time of searches."""
 POSTURES_PER_GROUP = 250
 """Mean number of poses in a group. It bounds the run time: a query skips groups that are far
-away. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+away."""
 N_ROUNDS = 6
 """Number of iterations of k-means. It bounds the run time of indexing: groups that have not
 converged only make searches slower."""

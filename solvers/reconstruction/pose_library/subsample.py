@@ -9,7 +9,7 @@ from ...progress import Progress, unwatched
 
 N_COMPONENTS = 24
 """Number of principal components for distances; they retain all but millimeters. It bounds the
-run time. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+run time."""
 
 
 def subsample_postures(

@@ -13,16 +13,18 @@ from .terms import vector_lengths
 
 MAX_SWAP_S = 1.0
 """Maximum duration (s) of a swap. It guards an actor who turned around while he was lost: after
-a longer time nothing shows which side is correct."""
+a longer time nothing shows which side is correct
+(`test_sides_that_stay_swapped_for_longer_than_a_second_are_left_alone`)."""
 MAX_GAP_S = 0.25
 """Maximum gap (s) across which a step of a joint is measured. It guards an actor who turns
-while his body is lost: without it his sides are swapped."""
+while his body is lost: without it his sides are swapped
+(`test_turn_of_an_occluded_body_is_no_swap`)."""
 MAX_STEP_RATIO = 0.5
 """Maximum ratio of the steps with sides swapped to the steps as tracked. Chosen by hand: x0.5
 gains 1.4 %, x2 gains 2.7 %."""
 MIN_GAIN_M = 0.08
 """Minimum reduction (m) of the mean step by swapping sides. It guards limbs side by side, whose
-steps say nothing."""
+steps say nothing (`test_legs_side_by_side_are_not_swapped`)."""
 LIMBS = ("UpperArm", "LowerArm", "UpperLeg", "LowerLeg")
 SIDE_WORDS = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"))
 

@@ -10,7 +10,8 @@ MAX_JUMP_S = 0.2
 6.2 %."""
 MIN_JUMP_M = 0.05
 """Minimum step (m) of a jump at any frame rate. It guards recordings of 120 Hz and more:
-without it a wobble of 2 cm is a jump."""
+without it a wobble of 2 cm is a jump
+(`test_wobbles_of_two_centimeters_are_no_jumps_at_high_rates`)."""
 MIN_ACCELERATION = 100.0
 """Minimum acceleration (m/s²) of a jump, to reach its speed within one frame. Chosen by hand:
 x0.5 costs nothing, x2 costs 0.6 %."""

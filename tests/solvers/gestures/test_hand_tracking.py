@@ -74,5 +74,5 @@ def test_both_arms_are_required_but_not_hips_and_head(t_pose):
 
 
 def test_joints_in_one_point_give_no_hands(t_pose):
-    assert HandEstimator(GestureSettings()).read(0.0, 0.0 * t_pose, CONFIDENT) is None
+    assert HandEstimator(GestureSettings()).read(0.0, 0.05 * t_pose, CONFIDENT) is None
     assert HandEstimator(GestureSettings()).read(0.0, np.zeros((20, 3)), CONFIDENT) is None

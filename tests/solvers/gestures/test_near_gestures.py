@@ -1,7 +1,9 @@
 """Movements that nearly are gestures, and were taken for them on recordings."""
 
+import numpy as np
+
 from solvers.gestures.events import Gesture
-from solvers.gestures.recognition import recognize_gestures
+from solvers.gestures.recognition import GestureRecognizer, recognize_gestures
 from solvers.samples import perform_gestures
 from solvers.samples.performance import GESTURES
 
@@ -29,3 +31,14 @@ def test_hands_that_touch_do_not_zoom(monkeypatch):
     monkeypatch.setitem(GESTURES, "zoom in", (*held, *GESTURES["zoom in"][3:]))
 
     assert Gesture.ZOOM not in recognized("zoom in")
+
+
+def test_hand_that_is_up_before_and_after_a_break_is_not_held():
+    made = perform_gestures(["hand up"])
+    event = recognize_gestures(made.times, made.positions, made.confidence)[0]
+    raised = made.positions[np.searchsorted(made.times, event.time)]
+    recognizer = GestureRecognizer()
+    for time in np.linspace(0.0, 0.5, 16):
+        recognizer.update(time, raised, np.ones(20))
+
+    assert recognizer.update(3.0, raised, np.ones(20)) == ()
