@@ -18,7 +18,8 @@ from .floor import FloorPlane
 from .recording import DepthImage, DepthRecording
 
 MAX_BACKGROUND_FRAMES = 60
-"""Number of images, evenly spaced, from which the background is learned. It bounds the memory."""
+"""Number of images, evenly spaced, from which the background is learned. It bounds the
+memory."""
 NOISE_FACTOR = 4.0
 """Multiple of the sensor's noise, a standard deviation, that counts as significant. It guards
 noisy walls, which would be in front of themselves; more misses an actor near them

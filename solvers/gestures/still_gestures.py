@@ -21,7 +21,8 @@ without the second the exercises of UI-PRMD zoom 145 times, without the first MS
 (`test_exercises_give_no_command`)."""
 MIN_ZOOM_GAP, MAX_ZOOM_GAP = 0.25, 2.2
 """Range of distances of zooming hands, in arm lengths. Chosen by hand: without it an exercise
-of KIMORE zooms (`test_hands_that_touch_do_not_zoom`)."""
+of KIMORE zooms (`test_hands_that_touch_do_not_zoom`,
+`test_arms_that_are_spread_wide_do_not_zoom`)."""
 STRAIGHT_REACH = 0.85
 """Reach, in arm lengths, at which an arm counts as straight. Chosen by hand: with 0.7 the
 exercises of UI-PRMD turn the view 54 times."""
@@ -39,7 +40,8 @@ FILTER_TIME_S = 0.12
 turns of MSR Action3D are lost."""
 MAX_DRAG_RATE = 4.0
 """Maximum change per second of the angle in radians, or of the logarithm of the gap. It guards
-claps and waves that begin with still hands: faster hands do not drag the view."""
+claps and waves that begin with still hands: faster hands do not drag the view
+(`test_clap_of_still_hands_does_not_zoom`)."""
 
 
 class StillnessTimer:

@@ -33,15 +33,15 @@ costs 1.1 %."""
 
 MIN_SIZE, MAX_SIZE = 0.05, 20.0
 """Bounds of the size of a body: leg length relative to 0.9 m, from a doll to a giant. They
-guard takes in a wrong unit."""
+guard takes in a wrong unit (`test_simulate_raises_for_a_wrong_unit`)."""
 
 MIN_FRAME_RATE_HZ = 5.0
-"""Minimum frame rate. It guards takes with a few poses a second, between which no path is
-known."""
+"""Minimum frame rate. It guards takes with a few poses a second, between which no path is known
+(`test_simulate_raises_for_a_low_frame_rate`)."""
 
 MIN_LENGTH_M = 0.01
 """Meters, for legs of 0.9 m: a shorter segment is a sphere. It guards rigs with bones of zero
-length, which have no direction."""
+length, which have no direction (`test_other_skeleton_is_simulated_bone_by_bone`)."""
 
 
 class JointFrame(NamedTuple):

@@ -27,7 +27,7 @@ costs 4.9 %."""
 
 MAX_HOVER_M = 0.25
 """Meters, for legs of 0.9 m: a body that stays higher is not on this ground. It guards takes on
-a platform or in camera space."""
+a platform or in camera space (`test_body_far_above_the_ground_is_unchanged_and_reported`)."""
 
 
 def joints_of_ends(body: PhysicsBody) -> NDArray[np.intp]:

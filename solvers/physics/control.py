@@ -22,7 +22,8 @@ REGULARIZATION = 1e-3
 the load. Chosen by hand: x0.5 gains 4.0 %, x2 gains 1.3 %."""
 ARM_REGULARIZATION = 100.0
 """Factor on the regularization for arms and head: legs carry the body where they can. Chosen by
-hand: without it feet of HDM05 slide 12.7 cm/s instead of 10.9 where actors use their hands."""
+hand: without it feet of HDM05 slide 12.7 cm/s instead of 10.9 where actors use their hands
+(`test_legs_carry_the_body_where_arms_touch_too`)."""
 
 HELP_LEVER_M = 1.0
 """Chosen by hand: x0.5 costs 6.5 %, x2 costs 2.1 %."""

@@ -15,7 +15,8 @@ by hand: x0.5 costs 0.3 %, x2 gains 0.5 %."""
 MIN_LOAD, FULL_LOAD = 0.05, 0.15
 """Fractions of the weight: a foot with the first starts to stand; with the second it stands.
 Chosen by hand: first, x0.5 costs 0.1 %, x2 costs nothing. The second guards the free leg of an
-actor who rests on the other one: higher lets it slip, lower holds a foot that only touches."""
+actor who rests on the other one: higher lets it slip, lower holds a foot that only touches
+(`test_foot_of_the_free_leg_stands_and_one_that_touches_moves`)."""
 
 HOLD_SPEED_M_S, RELEASE_SPEED_M_S = 0.3, 0.5
 """Meters per second, for legs of 0.9 m: a loaded sole is held below the first speed and slips

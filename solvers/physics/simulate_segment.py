@@ -38,7 +38,8 @@ by hand: x0.5 gains 0.2 %, x2 costs 8.4 %."""
 
 MAX_JUMP_M, MAX_SPEED_M_S = 0.05, 12.0
 """Meters, for legs of 0.9 m, and meters per second. A greater mean joint displacement between
-frames is a discontinuity. They guard takes with joined clips, or with a T-pose at the start."""
+frames is a discontinuity. They guard takes with joined clips, or with a T-pose at the start
+(`test_segments_between_jumps_are_simulated_separately`)."""
 
 STANCE_SPEED_M_S, SWING_SPEED_M_S = 0.3, 0.8
 """Meters per second, for legs of 0.9 m: a sole slower than the first in the target gets full

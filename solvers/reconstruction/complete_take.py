@@ -11,12 +11,12 @@ from ..progress import Progress
 from ..signals import fill_gaps, smooth_gaussian
 from .pose_completion import CompletedJoints, PostureSettings, blend_gaps, complete_joints
 from .pose_library import PostureLibrary
-from .reliability import WRONG_RELIABILITY
+from .reliability import REPLACED_RELIABILITY, WRONG_RELIABILITY
 
-OBSERVED_RELIABILITY, REPLACED_RELIABILITY = 0.5, 0.2
-"""Joints more reliable than the first keep their observed positions. Joints less reliable than
-the second take the positions of the library poses; in between, both are blended. Chosen by
-hand: first, x0.5 costs 8.2 %, x2 gains 2.9 %; second, x0.5 costs 2.2 %, x2 gains 3.2 %."""
+OBSERVED_RELIABILITY = 0.5
+"""More reliable joints keep their observed positions. Joints below `REPLACED_RELIABILITY` take
+the positions of the library poses; in between, both are blended. Chosen by hand: x0.5 costs
+8.2 %, x2 gains 2.9 %."""
 HALF_WEIGHT_M = 0.15
 """Distance (m) from the smoothed path at which the weight of the library pose is halved.
 Sensors that err by more have a reliability near 0. Chosen by hand: x0.5 costs 5.0 %, x2 gains

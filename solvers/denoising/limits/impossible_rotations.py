@@ -10,9 +10,6 @@ from .clamp_to_limits import limit_excess
 MIN_IMPOSSIBLE_EXCESS = np.radians(10.0)
 """Radians: a joint this far beyond its limits was not really observed. Chosen by hand: x0.5
 costs nothing, x2 costs 33.3 %."""
-MIN_FOLLOWED_EXCESS = np.radians(1.0)
-"""Radians: an estimate this far beyond the limits follows an impossible rotation. Above 0 it
-guards against rounding."""
 MAX_EXCESS_FRACTION = 0.5
 """Limits that a joint exceeds in a larger fraction of the frames belong to another body. Chosen
 by hand: x0.5 costs 33.3 %, x2 costs nothing."""
@@ -38,7 +35,7 @@ def find_impossible_rotations(
     """
     impossible = limit_excess(recording, limits) > MIN_IMPOSSIBLE_EXCESS
     foreign = impossible.sum(axis=0) > MAX_EXCESS_FRACTION * recording.observed.sum(axis=0)
-    followed = limit_excess(estimate, limits) > MIN_FOLLOWED_EXCESS
+    followed = limit_excess(estimate, limits) > 0.0
     result = np.zeros(impossible.shape, dtype=np.bool_)
     for joint in np.flatnonzero(impossible.any(axis=0) & ~foreign):
         for start, stop in find_runs(impossible[:, joint]):

@@ -16,11 +16,11 @@ SWAP_GROUPS = ("Leg", "LegEnd", "Foot"), ("Shoulder", "UpperArm", "LowerArm", "H
 HEADING_OFFSETS = (0.0, np.pi / 3.0, -np.pi / 3.0, np.pi)
 """Heading offsets from the detected heading, radians."""
 STRIDES = (0.35, -0.35)
-"""Forward rotation of the left thigh and backward rotation of the right one, radians. It guards
-detections with both legs in front of each other."""
+"""Forward rotation of the left thigh and backward rotation of the right one, radians: starts of
+trials, by definition with either leg in front."""
 UNSIDED_ROUNDS = 3
 """Number of rounds of a fit without side labels. It bounds the run time: most of these trials
-are discarded. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+are discarded."""
 
 
 def trial_poses(

@@ -27,6 +27,7 @@ from ..pose_library import (
     nearest_postures,
 )
 from ..pose_space import EnergyTargets, PostureSpaces, local_pca
+from ..reliability import REPLACED_RELIABILITY
 from .constrain_lengths import constrain_lengths
 from .cross_validation import SynthesisErrors, cross_validate_limbs
 from .probable_posture import probable_postures
@@ -38,13 +39,9 @@ from .residual_smoother import (
 )
 from .settings import PostureSettings
 
-REUSED_RELIABILITY = 0.3
-"""Reliability of confident joints of one round in the search of the next, and below which a
-joint takes the position of that round. Chosen by hand: x0.001 gains 0.02 %, x1000 costs
-0.1 %."""
 HALF_CONFIDENCE_M = 0.05
-"""Standard deviation (m) at which that reliability, or the confidence, is halved. Chosen by
-hand: x0.5 gains 0.3 %, x2 costs 0.1 %."""
+"""Standard deviation (m) at which the confidence of a joint is halved. Chosen by hand: x0.5
+gains 0.3 %, x2 costs 0.1 %."""
 MODEL_ERROR_M = 0.03
 """Standard deviation (m) of a pose on which all neighbors agree. Chosen by hand: x0.5 costs
 nothing, x2 gains 0.2 %."""
@@ -152,9 +149,9 @@ def complete_from_fitted(
             chosen, take.postures - offset, take, errors.size, settings, past
         )
         if number + 1 < rounds:
-            missing = (reliability < REUSED_RELIABILITY)[..., None]
+            missing = (reliability < REPLACED_RELIABILITY)[..., None]
             targets = np.where(missing, corrected.values, take.postures - offset)
-            reused = REUSED_RELIABILITY / (1.0 + (corrected.spread / HALF_CONFIDENCE_M) ** 2)
+            reused = REPLACED_RELIABILITY / (1.0 + (corrected.spread / HALF_CONFIDENCE_M) ** 2)
             given = np.maximum(given, reused)
     spread_ratio = corrected.spread / errors.size
     spread = spread_ratio * np.hypot(chosen.spread, MODEL_ERROR_M)

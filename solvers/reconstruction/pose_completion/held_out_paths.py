@@ -5,16 +5,10 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 
-MIN_WINDOWS = 8
-"""Number of hidden windows that tell enough, and of the most similar ones at least. Chosen by
-hand: x0.5 and x2 change 0.1 %."""
 SIMILAR_FRACTION = 0.2
 """Fraction, a ratio, of the hidden windows that count: those whose ends move most like those of
 the gap. Chosen by hand: x0.5 and x2 change 0.1 % of one figure
 (`test_resting_joint_stays_where_it_was_though_the_library_errs`)."""
-MIN_HIDDEN = 3
-"""Minimum number of frames that a window hides. Chosen by hand: x0.5 costs nothing, x2 changes
-0.2 % of one figure."""
 MIN_MOVEMENT_M = 0.05
 """Smallest movement (m, on each axis) that is not rest. Chosen by hand on subjects 1 and 3 of
 UI-PRMD: x3 costs 0.2 % (`test_library_pose_dominates_inside_a_long_gap`)."""
@@ -73,10 +67,10 @@ def _stays(
     """Return the fraction of hidden windows whose interpolated path is within a tolerance."""
     counts = np.concatenate([[0], np.cumsum(reliable)])
     n_missing = gap.stop - gap.start
-    while n_missing >= MIN_HIDDEN:
+    while n_missing:
         span = n_missing + 4  # the window and two frames on each side
         starts = np.flatnonzero(counts[span:] - counts[:-span] == span)
-        if len(starts) >= MIN_WINDOWS:
+        if len(starts):
             break
         n_missing //= 2
     else:
@@ -92,7 +86,7 @@ def _stays(
     ]
     wanted = _end_features(tracked[around][None], n_missing)
     distances = np.linalg.norm(_end_features(ends, n_missing) - wanted, axis=-1)
-    n_similar = max(MIN_WINDOWS, round(SIMILAR_FRACTION * len(starts)))
+    n_similar = max(round(SIMILAR_FRACTION * len(starts)), 1)
     similar = np.argsort(distances, kind="stable")[:n_similar]
     n_stays = int((squares[similar] < tolerance**2).sum())
     return (n_stays + 1.0) / (len(similar) + 2.0)

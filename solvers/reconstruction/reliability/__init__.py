@@ -8,9 +8,15 @@ from .scores import (
     memory_frames,
     posture_reliability,
 )
-from .settings import WRONG_RELIABILITY, ReliabilityMethod, ReliabilitySettings
+from .settings import (
+    REPLACED_RELIABILITY,
+    WRONG_RELIABILITY,
+    ReliabilityMethod,
+    ReliabilitySettings,
+)
 
 __all__ = [
+    "REPLACED_RELIABILITY",
     "WRONG_RELIABILITY",
     "Reliability",
     "ReliabilityMethod",

@@ -5,7 +5,7 @@ import numpy as np
 from solvers.gestures.events import Gesture
 from solvers.gestures.recognition import GestureRecognizer, recognize_gestures
 from solvers.samples import perform_gestures
-from solvers.samples.performance import GESTURES
+from solvers.samples.performance import CLAP_READY, CLAPPED, FAR, GESTURES, REST
 
 
 def recognized(name: str) -> list[Gesture]:
@@ -31,6 +31,30 @@ def test_hands_that_touch_do_not_zoom(monkeypatch):
     monkeypatch.setitem(GESTURES, "zoom in", (*held, *GESTURES["zoom in"][3:]))
 
     assert Gesture.ZOOM not in recognized("zoom in")
+
+
+def test_hands_that_meet_behind_the_back_do_not_clap(monkeypatch):
+    apart, behind = (0.4, 0.1, -0.6), (-0.3, -0.15, -0.7)
+    meet = ((0.5, apart, apart), (0.25, behind, behind), (0.1, behind, behind))
+    monkeypatch.setitem(GESTURES, "clap", (*meet, (0.3, apart, apart), *GESTURES["clap"][4:]))
+
+    assert recognized("clap") == []
+
+
+def test_arms_that_are_spread_wide_do_not_zoom(monkeypatch):
+    wide, less = (0.85, 0.45, -0.2), (0.7, 0.6, -0.2)
+    held = ((0.7, wide, wide), (1.0, wide, wide), (0.4, less, less), None, (0.6, REST, REST))
+    monkeypatch.setitem(GESTURES, "zoom in", held)
+
+    assert recognized("zoom in") == []
+
+
+def test_clap_of_still_hands_does_not_zoom(monkeypatch):
+    clap = ((0.12, CLAPPED, CLAPPED), (0.1, CLAPPED, CLAPPED), (0.3, CLAP_READY, CLAP_READY))
+    held = ((0.7, FAR, FAR), (1.0, FAR, FAR), *clap, *GESTURES["clap"][4:])
+    monkeypatch.setitem(GESTURES, "clap", held)
+
+    assert recognized("clap") == [Gesture.CAPTURE_START]
 
 
 def test_hand_that_is_up_before_and_after_a_break_is_not_held():

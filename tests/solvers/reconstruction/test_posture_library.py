@@ -143,7 +143,7 @@ def test_build_raises_without_postures():
 
 
 def test_bone_axis_corrections_recover_known_rotations(walk, library):
-    """Rotate the bones of the observed body by given angles; one frame shows hardly anything."""
+    """Rotate the bones of the observed body by given angles; one frame shows hardly any."""
     lengths = estimate_bone_lengths(walk)
     rotations = np.tile(np.eye(3), (20, 1, 1))
     cos, sin = np.cos(0.3), np.sin(0.3)

@@ -7,8 +7,6 @@ import numpy as np
 
 from solvers.depth_scene import Camera, DepthRecording
 from solvers.depth_tracking import capture
-from solvers.depth_tracking.detection import detect_pose
-from solvers.depth_tracking.forest import load_pixel_forest
 
 from ...depth.depth_sequences import sequence
 from ..takes import missed_or_false, point_error
@@ -16,8 +14,6 @@ from ..takes import missed_or_false, point_error
 TAKE, FRAMES = "walk_side", range(20, 40, 4)
 """Eight frames a second, of every second row and column."""
 FRAME_RATE_HZ = 7.5
-DETECTED_FRAMES = (0, 5, 30, 55)
-"""Seen from the side, one leg in front of the other."""
 ACCURATE_M = 0.1
 """Joints within it count as found, as in the benchmark of depth tracking."""
 
@@ -27,25 +23,16 @@ def prepare() -> dict[str, Any]:
     one = sequence(TAKE)
     images = np.stack([one.depth.frame(frame)[::2, ::2] for frame in FRAMES])
     truth = one.joints[list(FRAMES)]
-    detected = [
-        (np.ascontiguousarray(one.depth.frame(frame)[::2, ::2]), one.joints[frame])
-        for frame in DETECTED_FRAMES
-    ]
     return {
         "camera": one.depth.camera.every(2),
         "images": images,
         "body": one.typical_body,
         "truth": truth,
-        "detected": detected,
     }
 
 
-def measure(
-    camera: Camera, images: Any, body: Any, truth: Any, detected: Any
-) -> dict[str, float]:
+def measure(camera: Camera, images: Any, body: Any, truth: Any) -> dict[str, float]:
     """Error of the joints, and flags of low confidence that are wrong."""
-    forest = load_pixel_forest()
-    poses = [detect_pose(image, camera, body, forest).joints for image, _ in detected]
     read: Callable[[int], Any] = images.__getitem__
     found = capture(DepthRecording(camera, len(images), FRAME_RATE_HZ, read), body)
     positions = found.joints.positions
@@ -56,5 +43,4 @@ def measure(
         "joints off %": 1.0 + float(100.0 * wrong.mean()),
         "flags missed or false %": 1.0 + missed_or_false(found.low_confidence, wrong),
         "second difference mm": float(1000.0 * change.mean()),
-        "detected: error mm": point_error(np.stack(poses), np.stack([at for _, at in detected])),
     }
