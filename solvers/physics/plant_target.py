@@ -51,10 +51,6 @@ HIP_RAD, KNEE_RAD, ANKLE_RAD = np.radians([2.5, 6.0, 15.0])
 """Radians by which the joints of a leg may turn. Chosen by hand: knees of x0.5 let walking feet
 slide 1 % farther."""
 
-RESERVE_RAD = 0.05
-"""Radians of flexion: a knee that is bent less may not straighten. It guards straight legs
-against bending the wrong way."""
-
 NEAR_M = 0.1
 """Meters, for legs of 0.9 m, above the ground: other parts of the body that come nearer may not
 sink. It bounds the run time."""
@@ -106,7 +102,7 @@ def plant_target_feet(
         ]
         for side, chain in held.items():
             goals += _foot_goals(body, fitted, side, weights[:, SIDES.index(side)], ground)
-            goals.append(knee_limit(fitted, *chain[1:], RESERVE_RAD))
+            goals.append(knee_limit(fitted, *chain[1:], 0.0))
         goals += _ground_goals(body, fitted, tuple(held), ground)
         return fit_motion(fitted, goals, progress).motion
 

@@ -26,7 +26,8 @@ from .target import blend_motions, fade_around, fill_motion_gaps
 DEFAULT_SETTINGS = SimulateSettings()
 MAX_LOST_FRACTION = 0.3
 """Fraction of frames that the body may fail to follow; with more, the result is the take. It
-guards takes that no body can follow."""
+guards takes that no body can follow
+(`test_body_far_above_the_ground_is_unchanged_and_reported`)."""
 
 
 @dataclass(frozen=True, eq=False)

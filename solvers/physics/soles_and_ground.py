@@ -20,7 +20,8 @@ from .body import Capsule, PhysicsBody
 
 MIN_CONTACT_S = 0.5
 """Minimum total contact in seconds of a take that stands on the ground. It guards takes of a
-leap or a dive, whose lowest feet are not on it."""
+leap or a dive, whose lowest feet are not on it
+(`test_brief_contact_does_not_show_the_ground`)."""
 STANCE_PERCENTILE = 25.0
 """Percentile of the heights of a foot in contact at which it stands flat. Chosen by hand: x0.5
 costs 1.4 %, x2 costs 0.1 %."""
@@ -34,7 +35,8 @@ HEEL_OFFSET_M = 0.04
 """Chosen by hand: x0.5 gains 1.7 %, x2 costs 2.5 %."""
 FOOT_LENGTH_M, TOE_LENGTH_M = 0.14, 0.05
 """Meters, for legs of 0.9 m, of feet without a toe joint, and of toes. Chosen by hand: second,
-x0.5 costs 3.6 %, x2 costs 6.5 %; the first is a guard of rigs whose feet end at the ankle."""
+x0.5 costs 3.6 %, x2 costs 6.5 %; the first is a guard of rigs whose feet end at the ankle
+(`test_feet_without_toes_reach_ahead_of_their_ankles`)."""
 HEEL_HALF_WIDTH_M, BALL_HALF_WIDTH_M = 0.015, 0.03
 """Chosen by hand: first, x0.5 gains 0.1 %, x2 costs 4.3 %; second, x0.5 gains 1.2 %, x2 costs
 2.8 %."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.motion import Motion, find_humanoid_map, forward_kinematics
+from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
 from solvers.physics import SimulateSettings, simulate
 from solvers.physics.body import build_physics_body
 from solvers.physics.body_surface import SIDES, find_leg_chain, lowest_points, select_foot_ends
@@ -15,7 +15,7 @@ from solvers.physics.foot_placement import (
 )
 from solvers.physics.foot_support import detect_target_contacts, distribute_load
 from solvers.physics.plant_target import plant_target_feet
-from solvers.physics.soles_and_ground import add_soles
+from solvers.physics.soles_and_ground import add_soles, has_long_contact
 from solvers.rotations.representations import (
     multiply,
     quaternion_from_rotation_vector,
@@ -179,6 +179,30 @@ def test_planting_changes_nothing_without_planted_feet(walk, body):
     result = plant_target_feet(body, walk, np.zeros((walk.n_frames - 1, 2)), 0.0)
 
     assert result is walk
+
+
+def test_feet_without_toes_reach_ahead_of_their_ankles(walk):
+    names, parents = walk.skeleton.names, walk.skeleton.parents
+    kept = [joint for joint, name in enumerate(names) if "Toe" not in name]
+    above = tuple(kept.index(parents[joint]) if joint else -1 for joint in kept)
+    skeleton = Skeleton(
+        tuple(names[joint] for joint in kept), above, walk.skeleton.offsets[kept]
+    )
+    motion = Motion(skeleton, walk.rotations[:, kept], walk.root_positions, walk.frame_rate)
+    humanoid = find_humanoid_map(skeleton)
+
+    body = add_soles(build_physics_body(motion, humanoid), motion, humanoid, 0.0)
+
+    ankle = forward_kinematics(motion).positions[:, [skeleton.index("LeftFoot")]]
+    ends = lowest_points(body, motion)[:, select_foot_ends(body, "left")] - ankle
+    assert np.linalg.norm(ends[..., :2], axis=-1).max() > 0.12 * body.size
+
+
+def test_brief_contact_does_not_show_the_ground(walk):
+    humanoid = find_humanoid_map(walk.skeleton)
+
+    assert has_long_contact(walk, humanoid)
+    assert not has_long_contact(walk.slice(0, 18), humanoid)
 
 
 def test_lowest_part_of_the_sole_bears_the_load():
