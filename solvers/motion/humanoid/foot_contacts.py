@@ -27,14 +27,12 @@ MEDIAN_LENGTH = 1.538
 definition."""
 
 SPEED_NOISE = 0.15
-"""Meters per second: feet are smoothed until noise moves them no faster along each axis. Chosen
-by hand: x0.7 and x1.7 change F1 of noisy captures by less than 0.02, of others by nothing
-(`test_jitter_changes_little`)."""
+"""Meters per second: noise moves smoothed feet no faster along each axis. Chosen by hand: x0.7
+and x1.7 change F1 of noisy captures by less than 0.02 (`test_jitter_changes_little`)."""
 
 GROUND_WINDOW_S = 0.5
-"""Seconds before and after a frame in which the lower foot stands on a level that counts as
-ground. It guards feet that swing in the air: they are nowhere as long
-(`test_stances_of_a_fifth_of_a_second_keep_their_length`)."""
+"""Seconds before and after a frame in which the lower foot stands on ground. It guards feet that
+swing in the air (`test_stances_of_a_fifth_of_a_second_keep_their_length`)."""
 
 MAX_CLIMB_M = 0.3
 """Maximum height of ground above the lowest of the take. It guards feet that hang or rest in
