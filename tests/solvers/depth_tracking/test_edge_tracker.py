@@ -201,7 +201,7 @@ def test_load_restores_a_saved_prior(tmp_path):
     assert loaded.trained_on == "two waves"
     arrays = LAYOUT.read(tmp_path / "prior.npz")
     LAYOUT.write(tmp_path / "bad.npz", arrays | {"coordinates": np.array(["other parts"] * 30)})
-    with pytest.raises(InvalidFileError, match="other parts"):
+    with pytest.raises(InvalidFileError, match="other body parts"):
         load_motion_prior(tmp_path / "bad.npz")
     with pytest.raises(InvalidMotionError, match="no pose to learn"):
         motion_prior_from_poses([])
