@@ -15,6 +15,8 @@ import bpy
 from driver_scene import empty_scene, settle, unfold_alone
 
 SENDER = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+MAX_REPEATS = 6
+"""Number of performances in which the solver starts, on a busy machine too."""
 PACKAGE = "bl_ext.user_default.mocap_assist"
 
 
@@ -86,8 +88,11 @@ def record_live():
     bgui.move(*middle_of_view())
     job = bpy.context.window_manager.mocap_assist_job
     assert job.running
-    yield from perform("hand up", "wave right", "wave left")
-    assert job.message.startswith("Recording the actor. JSON from 127.0.0.1:")
+    for _ in range(MAX_REPEATS):
+        yield from perform("hand up", "wave right", "wave left")
+        if job.message.startswith("Recording"):
+            break
+    assert job.message.startswith("Recording the actor. JSON from 127.0.0.1:"), job.message
     bgui.shot("7-recording.png")
     yield from perform("hand up")
     bgui.shot("8-hand-up.png")
@@ -109,8 +114,12 @@ def record_bones():
     yield from bgui.scan()
     yield from bgui.click(*bgui.at("mocap_assist.record_live"))
     bgui.move(*middle_of_view())
-    yield from send(walk, "VMC")
     job = bpy.context.window_manager.mocap_assist_job
+    for _ in range(MAX_REPEATS):
+        yield from send(walk, "VMC")
+        if job.message.startswith("Recording"):
+            break
+    yield from send(walk, "VMC")
     assert job.message.startswith("Recording the actor. VMC from 127.0.0.1:"), job.message
     bgui.shot("9-bones.png")
     yield from bgui.key("Escape")
@@ -125,4 +134,4 @@ def middle_of_view():
     return region.x + region.width // 3, region.y + region.height // 2
 
 
-bgui.run(steps, timeout=200)
+bgui.run(steps, timeout=400)

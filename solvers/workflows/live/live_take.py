@@ -72,13 +72,14 @@ class LiveTake:
         InvalidMotionError
             The joints are not those of a body, or the actor was hardly observed.
         """
-        arrived = [frame for frame in frames if isinstance(frame, LiveFrame)]
+        received = list(frames)
+        arrived = [frame for frame in received if isinstance(frame, LiveFrame)]
         if self._started is None:
             self._calibrate(arrived)
             return []
         self.n_skipped += max(len(arrived) - MAX_WAITING, 0)
-        if arrived:
-            self.has_other_body = arrived[-1].names != self.names
+        if received:
+            self.has_other_body = not arrived or arrived[-1].names != self.names
         poses = [self._started.add(frame) for frame in arrived[-MAX_WAITING:]]
         return [pose for pose in poses if pose is not None]
 

@@ -57,11 +57,13 @@ class PoseTake:
         InvalidMotionError
             The bones are not those of a body.
         """
-        arrived = [frame for frame in frames if isinstance(frame, PoseFrame)]
+        received = list(frames)
+        arrived = [frame for frame in received if isinstance(frame, PoseFrame)]
         if self.calibration is None:
             self._calibrate(arrived)
             return []
         self.n_skipped += max(len(arrived) - MAX_WAITING, 0)
+        self.has_other_body = bool(received) and not arrived
         poses = [self._take(frame) for frame in arrived[-MAX_WAITING:]]
         return [pose for pose in poses if pose is not None]
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Skeleton
-from solvers.recordings.live import PoseFrame
+from solvers.recordings.live import PoseFrame, joints_from_pose
 from solvers.samples import GaitSettings, walking_gait
 from solvers.workflows import LiveTakeSettings, PoseTake
 
@@ -80,6 +80,8 @@ def test_other_bones_are_left_out_and_noticed(started, frames):
     assert started.has_other_body
     assert len(started.add([frames[32]])) == 1
     assert not started.has_other_body
+    assert started.add([joints_from_pose(frames[33])]) == []
+    assert started.has_other_body
 
 
 def test_frames_that_wait_too_long_are_skipped(started, frames):
