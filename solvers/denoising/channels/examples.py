@@ -15,9 +15,6 @@ from .encode import encode
 BLOCK_S = 60.0
 """Seconds encoded at a time. The few windows across two blocks are skipped. It bounds the
 memory."""
-MULTIPLE_TOLERANCE = 0.02
-"""Relative difference up to which a frame rate counts as a multiple of another. It guards frame
-rates that are rounded in files."""
 
 
 class ExampleChannels:
@@ -102,19 +99,17 @@ class Moments:
 def _resample(values: Array, frame_rate: float, target_rate: float) -> list[Array]:
     """Return channels at another frame rate.
 
-    A multiple of the target rate is split into interleaved takes, so that no frame is lost;
-    other rates are interpolated by cubic splines.
+    A multiple of the target rate is split into interleaved takes, so that no frame is lost.
+    Other rates are first interpolated by cubic splines, at the nearest multiple.
     """
-    step = frame_rate / target_rate
-    if step >= 1.0 and abs(step - round(step)) < MULTIPLE_TOLERANCE * step:
-        return [values[start :: round(step)] for start in range(round(step))]
-    if len(values) < 2:
-        return [values]
-    from scipy.interpolate import CubicSpline  # slow to import: only when needed
+    n_takes = max(round(frame_rate / target_rate), 1)
+    rate = n_takes * target_rate
+    if frame_rate != rate and len(values) > 1:
+        from scipy.interpolate import CubicSpline  # slow to import: only when needed
 
-    times = np.arange(0.0, (len(values) - 1) * target_rate / frame_rate + 1e-9) / target_rate
-    spline = CubicSpline(np.arange(len(values)) / frame_rate, values, axis=0)
-    return [np.asarray(spline(times))]
+        times = np.arange(0.0, (len(values) - 1) * rate / frame_rate + 1e-9) / rate
+        values = CubicSpline(np.arange(len(values)) / frame_rate, values, axis=0)(times)
+    return [values[start::n_takes] for start in range(n_takes)]
 
 
 def _usable_segments(example: Motion | Tracks) -> list[tuple[int, int]]:

@@ -22,9 +22,8 @@ UNWRAP_S = 0.05
 """Standard deviation of the kernel that removes jitter of headings before they are unwrapped,
 seconds. It guards noisy takes: a sample alone must not decide on a turn."""
 GAP_WEIGHT = 1e-3
-"""Weight of a frame that was not observed, relative to one that was. Chosen by hand:
-x1000, which counts gaps as observed, costs 0.3 % on one take; 0 has no solution in a gap wider
-than the kernel."""
+"""Weight of a frame that was not observed, relative to one that was. It guards gaps wider than
+the kernel, where 0 has no solution; x1000 counts gaps as observed."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,20 +8,18 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...signals import find_runs
 from ..averaging import MIN_NOISE
+from ..window_priors import N_OVERLAPS
 from .bridges import N_FEATURES, Bridge
 
 MIN_GAP_S = 0.25
 """Seconds: the estimate by the take's own patterns fills shorter gaps. Chosen by hand on the
 development takes of the first press."""
 OWN_RIDGE = 100.0
-"""Evidence for the general relation, in frames at RATE, each counted N_TRIALS times. Chosen by
-hand on the development takes of the first press: x0.5 and x2 move 0.5 %."""
+"""Evidence for the general relation, in frames at RATE, each counted N_OVERLAPS times. Chosen
+by hand on the development takes of the first press: x0.5 and x2 move 0.5 %."""
 TRIAL_RATE_HZ = 30.0
 """Hertz: trial gaps of faster recordings are described at about this rate. By definition that
 of the patterns of Clean."""
-N_TRIALS = 6
-"""Number of trial gaps that start within the length of one. It bounds the run time. Chosen by
-hand: x0.5 costs nothing, x2 costs nothing."""
 MAX_TRIALS = 120
 """Trial gaps in a take, and one more in each stretch without gaps. It bounds the run time."""
 N_FOLDS = 5
@@ -88,7 +86,8 @@ def try_gaps(
         if tried < MIN_GAP_S * frame_rate:
             continue
         n_trials = min(
-            N_TRIALS * (stop - start) // tried, 1 + MAX_TRIALS * (stop - start) // len(known)
+            N_OVERLAPS * (stop - start) // tried,
+            1 + MAX_TRIALS * (stop - start) // len(known),
         )
         firsts = np.unique(np.linspace(start + 1, stop - tried - 1, n_trials).astype(int))
         bridges += [Bridge(first, first + tried, frame_rate, step) for first in firsts.tolist()]

@@ -10,9 +10,9 @@ x0.5 costs 4.5 %, x2 costs 4.0 %."""
 INLIER_STD_FLOOR = 0.5
 """Degrees or centimeters: standard deviation of an inlier, in addition to noise and prediction.
 Chosen by hand: x0.5 costs 8.5 %, x2 gains 9.4 %."""
-INITIAL_OUTLIER_RATE = 0.03
-"""Fraction of outliers before the first estimate. Chosen by hand: x0.5 costs nothing, x2 costs
-5.7 %."""
+MIN_OUTLIER_RATE = 1e-4
+"""Fraction of outliers before the first estimate, and the smallest one. It guards a division:
+up to 0.3 at the start, errors differ by less than 0.5 %."""
 
 
 def compute_inlier_probability(error: Array, variance: Array, rate: float) -> Array:

@@ -8,16 +8,13 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...progress import Progress, within
 from ...signals import estimate_noise, fill_channel_gaps, remove_outliers, shrink_noise
+from ..averaging import MIN_NOISE
 from ..channels import Channels, Estimate
 from ..motion_model import MAX_CONSTANT_RANGE
+from ..outliers import OFFSET_DEVIATION
 from ..window_priors import FilterBases, FilterBasesSettings, WindowPrior, Windows
 from .estimate_channels import estimate_channels
-from .prior_selection import (
-    UNKNOWN_DEVIATION,
-    build_examples_prior,
-    build_take_prior,
-    select_prior,
-)
+from .prior_selection import build_examples_prior, build_take_prior, select_prior
 
 MAX_GROUP_CHANNELS = 96
 """Channels solved together; rigs with more are split between joints. Chosen by hand: x0.5 gains
@@ -28,9 +25,6 @@ gains 2.0 %, x2 gains 2.1 %."""
 FIRST_GUESS_EFFICIENCY = 0.2
 """Of the median of overlapping differences, relative to a standard deviation. Chosen by hand:
 x0.5 gains 0.2 %, x2 costs 0.9 %."""
-MIN_NOISE = 0.01
-"""Smallest noise, degrees or centimeters. Chosen by hand: x0.5 costs nothing, x2 costs
-0.1 %."""
 POOR_FIT_FRACTION = 0.2
 """Fraction of plain smoothness above which the examples are reported to fit badly. By
 definition of the report: it only decides its sentence."""
@@ -70,7 +64,7 @@ def estimate_in_groups(
     parts = (
         take.values.copy(),
         np.isfinite(take.noisy).astype(float),
-        np.where(is_unknown, UNKNOWN_DEVIATION, 0.0),
+        np.where(is_unknown, OFFSET_DEVIATION, 0.0),
         np.full_like(take.noisy, np.nan),
     )
     in_examples = _find_example_channels(channels, bases)

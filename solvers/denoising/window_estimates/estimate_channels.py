@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...progress import Progress, unwatched
 from ...signals import shrink_noise
 from ..channels import Estimate
-from ..outliers import INITIAL_OUTLIER_RATE, compute_inlier_probability
+from ..outliers import MIN_OUTLIER_RATE, compute_inlier_probability
 from ..window_priors import WindowPrior, Windows
 from .covariance import adapt_covariance, covariance_from_prior
 from .filter_pass import filter_windows
@@ -32,9 +32,6 @@ gains 2.4 %."""
 MAX_LEVERAGE = 0.98
 """Largest fraction of its own weight in an estimate that a sample is corrected for. Chosen by
 hand: a limit of 0.99998 gains 0.1 %, one of 0.8 costs 0.1 %; 1 divides by zero."""
-MAX_PRIOR_DEVIATIONS = 4.0
-"""Limit of an estimate beyond the observed range, in standard deviations of the prior. It
-guards long gaps against runaway estimates: x0.1 costs 0.1 %, x0.001 costs 2.1 %."""
 NOISE_BOUNDS = (0.5, 1.1)
 """Range of the estimated noise, relative to the first estimate. Chosen by hand: x0.5 costs
 8.2 %, x2 costs 3.8 %."""
@@ -119,12 +116,11 @@ class _PosteriorState:
         self.prior = prior.truncated(windows.length)
         self.set_windows(windows)
         self.estimate, self.mean = start, prior.mean
-        self.bounds = _bounds(start, prior)
         self.first_noise = self.noise = noise
         self.covariance = covariance_from_prior(self.prior, windows.length)
         self.filters = list[Filter]()
         self.may_be_right = self.observed & ~is_error
-        self.weight, self.rate = self.may_be_right.astype(float), INITIAL_OUTLIER_RATE
+        self.weight, self.rate = self.may_be_right.astype(float), MIN_OUTLIER_RATE
         self.variance = np.zeros_like(noisy)
         self.leave_one_out_ratio = np.ones_like(noisy)
         """Variance without the sample, relative to `variance`, the variance with it."""
@@ -146,7 +142,7 @@ class _PosteriorState:
         outlier_fraction = (
             1.0 - float(self.weight[self.observed].mean()) if self.observed.any() else 0.0
         )
-        self.rate = float(np.clip(outlier_fraction, 1e-4, 1.0 - 1e-4))
+        self.rate = float(np.clip(outlier_fraction, MIN_OUTLIER_RATE, 1.0 - MIN_OUTLIER_RATE))
 
     def update_filters(self, factor: float = 1.0, *, reuse_gapped: bool = False) -> None:
         """Build the filters for the noise, inflated by this factor.
@@ -178,9 +174,8 @@ class _PosteriorState:
         """Update the estimate, noise and prior; return the root mean square change."""
         blended = self.estimate + self.weight * (self.samples - self.estimate) - self.mean
         filtered = filter_windows(blended, self.filters, self.windows, with_moments=adapts)
-        # If nearly all samples are missing, windows that depend on each other can drift.
-        new_values = filtered.total / self.total_weight + self.mean
-        before, self.estimate = self.estimate, np.clip(new_values, *self.bounds)
+        before = self.estimate
+        self.estimate = filtered.total / self.total_weight + self.mean
         if adapts:
             shift = self.estimate.mean(axis=0) - self.mean
             self.mean = self.mean + self.prior.mean_adaptation * shift
@@ -208,14 +203,6 @@ class _PosteriorState:
             iterations,
             converged,
         )
-
-
-def _bounds(start: Array, prior: WindowPrior) -> tuple[Array, Array]:
-    """Return the lower and upper bound of each channel's estimate, shape (n_channels,)."""
-    low = np.minimum(start.min(axis=0), prior.mean)
-    high = np.maximum(start.max(axis=0), prior.mean)
-    margin = MAX_PRIOR_DEVIATIONS * prior.deviation
-    return low - margin, high + margin
 
 
 def _estimate_noise(error: Array, weight: Array, variance: Array, first_noise: Array) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ..averaging import MIN_NOISE
 
 KERNEL_WIDTH = 4.0
 """Root mean square difference of two mean poses, degrees or centimeters per channel, at which
@@ -24,8 +25,6 @@ Chosen by hand: x0.5 gains 0.1 %, x2 costs 0.1 %."""
 MAX_NEIGHBORS = 300
 """Clips, nearest first, that predict the mean pose: others are too different to matter. It
 bounds the run time of large libraries."""
-MIN_VARIANCE = 1e-3
-"""Smallest variance of a mean, square degrees or centimeters. It guards a division."""
 DEFAULT_DEVIATION = 8.0
 """Standard deviation of mean poses, degrees or centimeters, if there are too few examples.
 It guards a single example, which would make an actor's posture seem certain."""
@@ -59,7 +58,7 @@ def estimate_mean_pose(
     own_variance = (
         variance * CORRELATION_FRAMES * (inverse_count - 1.0 / n_frames)
         + noise * inverse_count
-        + MIN_VARIANCE
+        + MIN_NOISE**2
     )
     own_fraction = prior_variance / (prior_variance + own_variance)
     return predicted + own_fraction * np.where(
@@ -76,7 +75,7 @@ def _predict_mean_pose(
     prior_variance = (
         VARIANCE_INFLATION
         * np.maximum(means.var(axis=0), (DEFAULT_DEVIATION / n_distinct) ** 2)
-        + MIN_VARIANCE
+        + MIN_NOISE**2
     )
     if not observed.any():
         return overall_mean, prior_variance

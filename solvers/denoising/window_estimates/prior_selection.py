@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...progress import Progress
+from ..outliers import OFFSET_DEVIATION
 from ..window_priors import (
     FilterBases,
     SmoothPrior,
@@ -24,7 +25,8 @@ SMOOTH_FRACTIONS = (0.003, 0.05, 0.3)
 """Weights of the smooth prior in its mixtures with the examples' prior. Chosen by hand: x0.5
 gains 1.7 %, x2 gains 1.1 %."""
 N_TRIAL_ITERATIONS = 3
-"""Iterations of a trial of each mixture. Chosen by hand: x0.5 gains 1.7 %, x2 gains 1.7 %."""
+"""Iterations of a trial of each mixture. Chosen by hand: 1 costs 0.2 %, x0.5 and x2 cost
+nothing."""
 IN_SAMPLE_PENALTY = 1.007
 """The smooth prior learns from the samples that it predicts, so its error is too small. Each
 larger fraction of it multiplies the error by this factor. Chosen by hand: x0.5 costs 6.7 %, x2
@@ -32,9 +34,6 @@ gains 0.2 %."""
 MAX_NOISE_MULTIPLE = 4.0
 """Errors beyond this many standard deviations of the noise all count the same. Chosen by hand:
 x0.5 costs nothing, x2 gains 0.9 %."""
-UNKNOWN_DEVIATION = 30.0
-"""Standard deviation, degrees or centimeters, of channels without any information: those that
-neither take nor examples show. By definition so wide that it says nothing."""
 MIN_OBSERVED_FRACTION = 0.5
 """Fraction of a take in which a channel must be observed to score the examples. Chosen by hand:
 x0.5 costs nothing, x2 gains 1.7 %."""
@@ -115,12 +114,12 @@ def build_take_prior(
 ) -> WindowPrior:
     """Return the prior of a take alone: it moves as much as the take does, and as smoothly.
 
-    Channels that were never observed may have any value. The covariance between channels is
-    learned from the take during the solve, with more weight for longer takes.
+    Channels that were never observed may be off by as much as outliers. The covariance between
+    channels is learned from the take during the solve, with more weight for longer takes.
     """
     kernels = build_smooth_kernels(bases_window, frame_rate)
     variance = np.maximum(rough.var(axis=0) - noise**2, 0.05 * noise**2 + 1e-6)
-    variance = np.where(ever_observed, variance, UNKNOWN_DEVIATION**2)
+    variance = np.where(ever_observed, variance, OFFSET_DEVIATION**2)
     weights = np.repeat(variance[None] / len(kernels), len(kernels), axis=0)
     n_windows = windows.n_frames / windows.length
     own_weight = min(n_windows / (n_windows + WINDOWS_FOR_HALF_WEIGHT), MAX_OWN_WEIGHT)

@@ -8,9 +8,10 @@ from .filter_bases import (
 )
 from .lag_covariance import LagProducts, find_leading_eigenpairs
 from .window_prior import SmoothPrior, WindowPrior, build_smooth_prior, mix_priors
-from .windows import Windows
+from .windows import N_OVERLAPS, Windows
 
 __all__ = [
+    "N_OVERLAPS",
     "FilterBases",
     "FilterBasesSettings",
     "LagProducts",

@@ -14,9 +14,6 @@ from ...arrays import Array
 SLOW_FRACTION = 0.6
 """Fraction of the coefficients, slowest first, with a joint covariance; faster ones are
 independent. Chosen by hand: x0.5 costs nothing, x2 fails."""
-FAST_VARIANCE_FLOOR = 1e-4
-"""Variance, relative to a channel's own, added to every fast coefficient. Chosen by hand: x0.5
-costs 0.2 %, x2 gains 0.2 %."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +35,7 @@ class SmoothPrior:
 
     def fast(self, n_slow: int) -> Array:
         """Return variances of the fast coefficients, (n_coefficients - n_slow, n_channels)."""
-        variances = np.einsum("lkk->kl", self.kernels)[n_slow:] + FAST_VARIANCE_FLOOR
+        variances = np.einsum("lkk->kl", self.kernels)[n_slow:]
         return np.asarray(variances @ self.weights)
 
 
@@ -108,12 +105,6 @@ class WindowPrior:
         slow[:, channels, :, channels] += fraction * change.slow(self.n_slow)
         fast = self.fast + fraction * change.fast(self.n_slow)
         return replace(self, slow=slow, fast=fast, smooth=replace(self.smooth, weights=weights))
-
-    @property
-    def deviation(self) -> Array:
-        """Standard deviation of a frame from the mean, shape (n_channels,)."""
-        variance = np.einsum("kckc->c", self.slow) + self.fast.sum(axis=0)
-        return np.asarray(np.sqrt(variance / (self.n_slow + len(self.fast))))
 
     @property
     def matrix(self) -> Array:

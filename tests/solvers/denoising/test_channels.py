@@ -106,11 +106,12 @@ def test_missing_samples_stay_missing_and_change_no_others(walk):
 
 
 def test_path_of_a_straight_walk_is_straight_across_a_gap():
-    ground_positions = np.stack([np.zeros(120), -np.arange(120) / 30.0], axis=-1)
+    """A gap of six seconds, wider than the kernel of the path."""
+    ground_positions = np.stack([np.zeros(360), -np.arange(360) / 30.0], axis=-1)
     observed = ground_positions.copy()
-    observed[40:70] = np.nan
+    observed[90:270] = np.nan
 
-    path = fit_travel_path(observed, np.full(120, 0.4), 30.0)
+    path = fit_travel_path(observed, np.full(360, 0.4), 30.0)
 
     assert_allclose(path.ground_positions, ground_positions, atol=1e-9)
     assert_allclose(path.headings, 0.4, atol=1e-9)

@@ -92,6 +92,15 @@ def test_recorded_takes_begin_anywhere(recordings, take, step):
         assert not find_edge_poses(part, ())
 
 
+def test_take_that_begins_as_a_quick_turn_ends_has_no_edge_pose(walk):
+    """Its only step of 45 degrees has no step before it that would predict it."""
+    rotations = walk.rotations.copy()
+    elbow, turn = walk.skeleton.index("LeftForeArm"), np.array([0.0, 0.0, np.radians(45.0)])
+    rotations[0, elbow] = multiply(rotations[1, elbow], quaternion_from_rotation_vector(turn))
+
+    assert not find_edge_poses(walk.with_poses(rotations), ())
+
+
 def test_spike_near_the_start_is_no_edge_pose(walk):
     assert not find_edge_poses(with_arm_in_t_pose(walk, slice(2, 5)), ())
 

@@ -1,6 +1,7 @@
 """The covariance of all windows must be exact, though the windows are never built."""
 
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,12 +9,14 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.denoising import learn_filter_bases
+from solvers.denoising.channels import ExampleChannels
 from solvers.denoising.window_priors.lag_covariance import (
     MAX_CLIP_ENDS,
     LagProducts,
     find_leading_eigenpairs,
 )
 from solvers.errors import InvalidMotionError
+from solvers.progress import unwatched
 from solvers.samples import GaitSettings, walking_gait
 
 
@@ -132,6 +135,20 @@ def test_example_has_one_mean_pose_at_any_frame_rate(swinging_leg):
 
     assert swinging_leg.frame_rate == 2 * float(bases.frame_rate)
     assert len(bases.clip_means) == 2
+
+
+def test_example_at_a_rounded_frame_rate_keeps_all_its_frames(swinging_leg):
+    """60 Hz written as 59.94: two interleaved takes at 30 Hz, as of exactly 60 Hz."""
+    rounded = replace(swinging_leg, frame_rate=59.94)
+
+    exact, almost = (
+        ExampleChannels([each], 30.0, 20, [1.0]).read(unwatched)
+        for each in (swinging_leg, rounded)
+    )
+
+    (_, takes), (_, slower) = *exact, *almost
+    assert len(takes) == len(slower) == 2
+    assert_allclose(slower[1][:60], takes[1][:60], atol=0.5)
 
 
 def test_example_of_twice_the_weight_counts_as_two():

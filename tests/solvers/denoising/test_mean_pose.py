@@ -57,8 +57,8 @@ def test_mean_is_the_product_of_two_gaussians():
 
     mean, variance = mean_pose(means, own_mean, observed, noise=4.0)
 
-    prior_variance = 2.0 * (8.0 / 2) ** 2 + 1e-3
-    own_variance = 16.0 * 10.0 * (1 / 20.0 - 1 / 100.0) + 4.0 / 20.0 + 1e-3
+    prior_variance = 2.0 * (8.0 / 2) ** 2 + 1e-6
+    own_variance = 16.0 * 10.0 * (1 / 20.0 - 1 / 100.0) + 4.0 / 20.0 + 1e-6
     posterior_variance = 1.0 / (1.0 / prior_variance + 1.0 / own_variance)
     assert_allclose(
         mean[0], posterior_variance * (0.0 / prior_variance + 50.0 / own_variance), rtol=1e-9
@@ -70,7 +70,17 @@ def test_take_never_observed_has_the_mean_of_the_examples(means):
     mean, variance = mean_pose(means, np.zeros(12), np.zeros(12))
 
     assert_allclose(mean, means.mean(axis=0), atol=1e-6)
-    assert_allclose(variance, 2.0 * np.maximum(means.var(axis=0), (8.0 / 12) ** 2) + 1e-3)
+    assert_allclose(variance, 2.0 * np.maximum(means.var(axis=0), (8.0 / 12) ** 2) + 1e-6)
+
+
+def test_copies_of_examples_change_nothing(means):
+    observed = np.ones(12)
+    observed[8:] = 0.0
+    own_mean = np.where(observed > 0.0, means[5] + 0.3, 0.0)
+
+    mean, _ = mean_pose(np.repeat(means, 3, axis=0), own_mean, observed)
+
+    assert_allclose(mean[8:], mean_pose(means, own_mean, observed)[0][8:], atol=1.0)
 
 
 def test_many_different_clips_do_not_change_the_mean_pose(means, rng):

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from solvers.denoising.window_estimates.channel_groups import MAX_GROUP_CHANNELS, group_channels
 from solvers.denoising.window_estimates.prior_selection import (
+    build_take_prior,
     score_leave_joint_out,
     score_leave_one_out,
     select_prior,
@@ -120,6 +121,16 @@ def test_selects_examples_of_the_movement_but_not_of_stillness(rng):
 
     assert fractions[0] < 0.1
     assert fractions[1] == 1.0
+
+
+def test_own_covariance_of_a_long_take_does_not_outweigh_its_smoothness(rng):
+    """Twenty minutes at 30 Hz."""
+    rough, is_seen = rng.normal(size=(36000, 3)), np.ones(3, dtype=bool)
+    windows = Windows(len(rough), LENGTH, 1.0)
+
+    prior = build_take_prior(rough, np.ones(3), is_seen, windows, LENGTH, RATE)
+
+    assert 0.2 < prior.own_weight < 0.5
 
 
 def test_groups_keep_joints_together(rng):

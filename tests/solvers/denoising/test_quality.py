@@ -220,6 +220,15 @@ def test_bone_of_constant_length_is_preferred_to_a_nearer_point(rng):
     assert ("a", "b") in {(bone.first, bone.second) for bone in measure_bone_drifts(tracks)}
 
 
+def test_markers_are_connected_by_their_distances_though_two_have_names_of_a_body(rng):
+    positions = np.cumsum(rng.normal(scale=0.05, size=(200, 4, 3)), axis=0)
+    positions[:, 1] = positions[:, 0] + [0.3, 0.0, 0.0]
+
+    bones = measure_bone_drifts(Tracks(("a", "b", "Head", "Neck"), positions, 60.0))
+
+    assert ("a", "b") in {(bone.first, bone.second) for bone in bones}
+
+
 def test_tracks_with_gaps_are_measured(rng):
     positions = np.cumsum(rng.normal(scale=0.001, size=(200, 3, 3)), axis=0)
     positions[:, 1] = positions[:, 0] + [0.3, 0.0, 0.0]

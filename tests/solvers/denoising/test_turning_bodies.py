@@ -8,7 +8,7 @@ from solvers.arrays import Array
 from solvers.denoising import denoise
 from solvers.denoising.channels import decode, encode
 from solvers.denoising.channels.rotation_vectors import continuous_rotation_vectors
-from solvers.denoising.channels.travel_path import unwrap_angles
+from solvers.denoising.channels.travel_path import UNWRAP_S, unwrap_angles
 from solvers.motion import Motion, Skeleton, forward_kinematics
 from solvers.rotations import (
     angle_between,
@@ -128,7 +128,7 @@ def test_spikes_do_not_add_up_to_turns():
     rotations[10:15] = np.nan
 
     vectors, references = continuous_rotation_vectors(rotations, 120.0)
-    unwrapped = np.degrees(unwrap_angles(np.radians(angles % 360.0), 6.0))
+    unwrapped = np.degrees(unwrap_angles(np.radians(angles % 360.0), UNWRAP_S * 120.0))
 
     assert_allclose(vectors[-1, 0], vectors[0, 0], atol=1e-9)
     assert np.isnan(vectors[10:15]).all()
