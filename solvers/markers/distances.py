@@ -19,10 +19,9 @@ freely, any of whose distances are those of another one at times."""
 MAX_FRAMES = 400
 """Frames, evenly spaced, from which distances are learned. It bounds the run time. Chosen by
 hand: x0.5 costs nothing, x2 costs nothing."""
-MIN_FRAMES = 30
-"""Number of these frames in which both markers must be observed, or half of a short take. It
-guards pairs that are hardly observed together. Chosen by hand: x0.5 costs nothing, x2 costs
-nothing."""
+MIN_OBSERVED_FRACTION = 0.2
+"""Minimum fraction of frames with both markers of a pair. It guards a marker seen in a few
+frames, in which no distance has time to vary: it would join a cluster."""
 MAX_MISFIT = 8.0
 """Maximum squared error of one distance, relative to its spread, over two: it limits outliers.
 Chosen by hand: x0.5 costs 27.3 %, x2 costs nothing."""
@@ -82,7 +81,7 @@ def learn_distances(positions: Array) -> Distances:
     sample = positions[::step]
     n_markers = positions.shape[1]
     median, spread = np.full((2, n_markers, n_markers), np.nan)
-    enough = min(MIN_FRAMES, max(1, len(sample) // 2))
+    enough = max(1.0, MIN_OBSERVED_FRACTION * len(sample))
     for marker in range(n_markers):
         separation = np.linalg.norm(sample - sample[:, [marker]], axis=-1)
         middle = nan_median(separation)

@@ -11,18 +11,12 @@ from ..motion import Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from ..signals import MAD_TO_SIGMA
-from .distances import nan_median
+from .distances import MIN_OBSERVED_FRACTION, nan_median
 from .rigid_transform import fit_rigid_transform
 
 UNLINKED_M = 1.0
 """Linkage distance of pairs that are never observed together. It guards such pairs from sharing
 a cluster: it is farther than any cluster is wide."""
-N_ITERATIONS = 4
-"""Alternations of fits and medians that give the shape of a cluster. Chosen by hand: x0.5 costs
-nothing, x2 costs nothing."""
-MIN_OBSERVED_FRACTION = 0.2
-"""Minimum fraction of frames with both markers of a pair. It guards a marker seen in a few
-frames, in which no distance has time to vary: it would join a cluster."""
 SPREAD_PERCENTILES = (2.0, 50.0, 98.0)
 """Percentiles of a distance that measure its spread. The outer two bound two standard
 deviations, by definition."""
@@ -143,17 +137,15 @@ def _groups(median: Array, spread: Array, settings: ClusterSettings) -> list[lis
 
 
 def _cluster(tracks: Tracks, members: list[int], median: Array, spread: Array) -> Cluster:
-    """Return the cluster with its median shape, by alternating fits and medians."""
+    """Return the cluster with its median shape, of all frames fitted to the middle one."""
     positions = tracks.positions[:, members]
     complete = positions[np.isfinite(positions).all(axis=(1, 2))]
     if len(complete) and len(members) > 2:
-        template = complete[len(complete) // 2]
-        for _ in range(N_ITERATIONS):
-            template = template - template.mean(axis=0)
-            rotations, translations = fit_rigid_transform(template, complete)
-            template = nan_median(
-                np.einsum("fji,fpj->fpi", rotations, complete - translations[:, None])
-            )
+        middle = complete[len(complete) // 2]
+        rotations, translations = fit_rigid_transform(middle - middle.mean(axis=0), complete)
+        template = nan_median(
+            np.einsum("fji,fpj->fpi", rotations, complete - translations[:, None])
+        )
     else:
         template = _from_distances(median[np.ix_(members, members)])
     inside = spread[np.ix_(members, members)]
