@@ -29,9 +29,6 @@ N_AXES = 8
 %."""
 N_WORDS = 64
 """Number of codewords of a part. Chosen by hand: x0.5 gains 0.9 %, x2 costs 0.9 %."""
-FRAMES_PER_WORD = 4
-"""Minimum number of training frames of a codeword; fewer frames get fewer words. It guards
-libraries of a few short clips, whose words would be single frames."""
 N_NEAREST = 3
 """Number of words with a nonzero weight in one frame. Chosen by hand: x0.5 costs 0.3 %, x2
 gains 0.3 %."""
@@ -144,7 +141,7 @@ def learn_vocabulary(clips: list[ClipPostures]) -> Vocabulary:
     _, axes = np.linalg.eigh(np.einsum("fpd,fpe->pde", deviations, deviations) / len(samples))
     axes = axes[..., ::-1][..., :N_AXES]
     features = np.einsum("fpd,pdk->fpk", deviations, axes)
-    n_words = max(min(N_WORDS, len(samples) // FRAMES_PER_WORD), 1)
+    n_words = min(N_WORDS, len(samples))
     words = np.stack([_learn_words(features[:, part], n_words, rng) for part in range(N_PARTS)])
     nearest = np.stack([
         ((features[:, part, None] - words[part]) ** 2).sum(axis=-1).min(axis=-1)

@@ -113,6 +113,18 @@ def test_clips_are_reranked_by_their_nearest_neighbors():
     assert_allclose(reranking.rerank_by_neighbors(distances, between, 3), expected, rtol=1e-5)
 
 
+def test_reciprocal_neighbor_counts_more_than_another_one():
+    """The first clip is among the two nearest of the second, but not of the third one."""
+    places = np.array([0.0, 1.0, -1.1, -1.6, -1.7, 5.0], dtype=np.float32)
+    between = np.abs(places[:, None] - places)
+    first = [
+        reranking.rerank_by_neighbors(np.array(distances, dtype=np.float32), between, 2)[0]
+        for distances in ((1.0, 0.9, 1.1, 1.0, 1.0, 1.0), (1.0, 1.1, 0.9, 1.0, 1.0, 1.0))
+    ]
+
+    assert first[0] < first[1] - 0.01
+
+
 def test_near_duplicate_of_the_query_stays_first():
     distances = np.array([0.05, 0.5, 0.52, 0.55], dtype=np.float32)
     between = np.array(
