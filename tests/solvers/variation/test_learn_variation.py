@@ -8,7 +8,12 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import Motion, Skeleton, resample
-from solvers.rotations.representations import IDENTITY, multiply
+from solvers.rotations.representations import (
+    IDENTITY,
+    multiply,
+    quaternion_from_rotation_vector,
+    rotation_vector_from_quaternion,
+)
 from solvers.variation import (
     VaryMethod,
     VarySettings,
@@ -141,6 +146,21 @@ def test_single_clip_varies_only_by_borrowed_variation(walks):
         == "There is only one example; its variation is borrowed from other motions."
     )
     assert_allclose(generic.joints.mean(axis=0), separate.joints[0], atol=1e-12)
+
+
+def test_variation_of_hardly_moving_clips_is_not_scaled_up_to_that_of_a_walk(walks):
+    quiet = [
+        replace(each, rotations=quaternion_from_rotation_vector(
+            0.05 * rotation_vector_from_quaternion(each.rotations)
+        ))
+        for each in walks[1:]
+    ]  # fmt: skip
+
+    own = learn_variation_model(quiet)
+
+    borrowed = borrow_variation(walks[0], [own])
+
+    assert borrowed.joints.std(axis=0).mean() < 3.0 * own.joints.std(axis=0).mean()
 
 
 def test_generic_model_does_not_move_joints_at_rest(walks):

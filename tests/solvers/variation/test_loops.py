@@ -10,7 +10,11 @@ from scipy.signal import find_peaks
 from solvers.feet import PlantSettings
 from solvers.motion import forward_kinematics
 from solvers.recordings import read_bvh
-from solvers.rotations.representations import multiply, rotation_vector_from_quaternion
+from solvers.rotations.representations import (
+    multiply,
+    quaternion_from_rotation_vector,
+    rotation_vector_from_quaternion,
+)
 from solvers.samples import GaitSettings, walking_gait
 from solvers.variation import (
     VarySettings,
@@ -125,6 +129,18 @@ def test_detect_loop_rejects_half_a_cycle(walks):
     assert not detect_loop(half, headings_from_motion(half))
     assert detect_loop(walks[0], headings_from_motion(walks[0]))
     assert not any(one.loops for one in draw_variants(learn_variation_model([half]), 1))
+
+
+def test_detect_loop_rejects_a_swing_that_comes_back_the_other_way(walks):
+    """All limbs swing out and back: the first pose again, at the opposite velocity."""
+    angles = 0.6 * np.sin(np.pi * np.linspace(0.0, 1.0, 40))
+    swing = quaternion_from_rotation_vector(angles[:, None, None] * [1.0, 0.0, 0.0])
+    rotations = np.repeat(walks[0].rotations[:1], 40, axis=0)
+    rotations[:, 1:] = multiply(rotations[:, 1:], swing)
+    roots = np.repeat(walks[0].root_positions[:1], 40, axis=0)
+    motion = walks[0].with_poses(rotations, roots)
+
+    assert not detect_loop(motion, headings_from_motion(motion))
 
 
 def test_close_loop_splits_the_gap_of_a_ramp():
