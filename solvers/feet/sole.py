@@ -27,7 +27,7 @@ jittering tip should not carry a resting foot. Chosen by hand: x0.5 gains 0.2 %,
 0.1 %."""
 MAX_REST_SPEED = 0.15
 """Meters per second below which the entire foot rests on the floor. Chosen by hand: x0.5 gains
-2.8 %, x2 gains 0.3 %."""
+2.4 %, x2 gains 0.8 %."""
 SMOOTHING_S = 0.03
 """Seconds over which speeds and heights are smoothed before they are compared. Chosen by hand:
 x0.5 costs 0.9 %, x2 gains 1.5 %."""

@@ -15,15 +15,9 @@ MAX_ROUNDS = 16
 """Number of steps. It bounds the time; most takes need two to seven."""
 MAX_HALVINGS = 8
 """Number of times that a step is halved which makes the cost higher. It bounds the time."""
-MAX_STEP_RAD = 1.0
-"""Radians by which any joint turns in one step. It guards limbs that have to go far, which
-would bend the wrong way."""
 SMALL_DECREASE = 1e-2
-"""Relative decrease of the cost by a whole step that ends the fit, a ratio. Chosen by hand:
-x0.5 costs nothing, x2 costs nothing."""
-NEGLIGIBLE_COST = 1e-4
-"""Decrease of the cost for each frame that ends the fit: that of a residual of a hundredth of
-its tolerance. It guards fits that meet all goals."""
+"""Relative decrease of the cost by a whole step that ends the fit, a ratio. It bounds the
+time: from 1e-9 to 0.1 the errors of planted feet differ by less than 0.1 %."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +57,10 @@ def fit_motion(
         Raised by `progress`.
     """
     fitted, equations, damping = start, _equations(start, goals), 1.0
-    negligible = NEGLIGIBLE_COST * start.motion.n_frames
+    negligible = np.finfo(np.float64).eps * start.motion.n_frames
     for number in range(1, MAX_ROUNDS + 1):
         progress(number / (MAX_ROUNDS + 1), message)
         step = equations.step
-        turns = step[:, 3 * fitted.root_moves :]
-        damping = min(damping, MAX_STEP_RAD / max(float(np.abs(turns).max()), 1e-9))
         for _ in range(MAX_HALVINGS):
             trial = fitted.moved(damping * step)
             tried = _equations(trial, goals)

@@ -7,6 +7,7 @@ import numpy as np
 from ...arrays import Array
 from ...motion import Skeleton
 from ...motion.humanoid import UP
+from ...motion.skeletons import MIN_BONE_M
 from ...rotations import inverse, rotate
 from .. import FittedMotion, NormalEquations
 
@@ -17,8 +18,6 @@ MIN_BEND = np.sin(np.radians(10.0))
 """Sine of the flexion at which the axis that a limb shows counts as much as its usual one; with
 a mean flexion below it is unknown. It guards straight limbs, whose bones have an angle by
 noise, and knees that bend backward by a few degrees."""
-MIN_FOOT_M = 0.01
-"""Meters: a shorter foot has no direction. It guards feet whose ends are at the ankle."""
 HINGE_RAD = np.radians(1.0)
 """Radians by which a hinge may pass its limit. It guards knees, elbows and toes against bending
 the wrong way."""
@@ -76,7 +75,7 @@ def _axis_across_foot(skeleton: Skeleton, ankle: int) -> Array:
     forward = rest[children[0]] - rest[ankle] if children else FORWARD
     across = np.cross(UP, forward)
     length = float(np.linalg.norm(across))
-    return np.asarray(across / length if length > MIN_FOOT_M else np.cross(UP, FORWARD))
+    return np.asarray(across / length if length > MIN_BONE_M else np.cross(UP, FORWARD))
 
 
 def hinge_limit(

@@ -78,6 +78,13 @@ def test_body_on_its_back_keeps_its_sliding_feet(tilt):
     assert (planted.motion.rotations == lying.rotations).all()
 
 
+def test_root_that_drops_through_the_floor_for_a_frame_does_not_lower_the_ground():
+    lying = lie_on_the_back(0.0)
+    lying.root_positions[10, 2] -= 1.0
+
+    assert not plant_feet(lying).contacts.any()
+
+
 def test_no_contact_is_shorter_because_the_actor_lies_down(monkeypatch):
     """The hips leave the floor for two frames, which are too short for a contact."""
     lying = lie_on_the_back(0.0)

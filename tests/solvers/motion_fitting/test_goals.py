@@ -175,14 +175,14 @@ def test_a_point_out_of_reach_is_approached_without_stretching(start):
 def test_a_knee_keeps_its_limit(start):
     _, knee, ankle = start.joints
     axis = hinge_axis(start, knee, ankle)
-    limit = HingeLimit(knee, ankle, axis, np.full(N_FRAMES, 0.8), 1e-3)
+    limit = HingeLimit(knee, ankle, axis, np.full(N_FRAMES, 0.8))
     n = start.n_variables
 
     fit = fit_motion(start, [limit, FollowSource(np.full(n, 0.5), np.full(n, 0.05))])
 
     after = FittedMotion(start.source, fit.motion, start.joints)
     assert (hinge_flexion(start, knee, ankle, axis) < 0.8).any()
-    assert (hinge_flexion(after, knee, ankle, axis) > 0.79).all()
+    assert (hinge_flexion(after, knee, ankle, axis) > 0.75).all()
 
 
 @pytest.mark.parametrize("flexion", [0.0, 0.02, 0.5, 2.9, -0.5])
