@@ -21,6 +21,7 @@ from tests.benchmarks.sensitivity.constants import (
     constants_of,
 )
 from tests.benchmarks.sensitivity.fixed_constants import GUARD, patterns, reason
+from tests.benchmarks.sensitivity.guards import GUARDS, WITHOUT
 
 SOURCE = re.compile(
     r"\[[A-Z]\w*\d\d|doi:|eq\. |\bet al\.|learned by|make sensitivity|sweep"
@@ -76,6 +77,15 @@ def test_each_pattern_of_what_is_not_tuned_matches_a_constant():
         pattern for pattern in patterns() if not any(fnmatchcase(key, pattern) for key in keys)
     ]
     assert not unused
+
+
+def test_each_guard_is_a_constant_with_a_test():
+    keys = {each.key for family in FAMILIES for each in constants_of(family)}
+    assert not {*GUARDS, *WITHOUT} - keys
+    for key, guard in GUARDS.items():
+        file, _, test = guard.test.partition("::")
+        source = (ROOT / "tests" / "solvers" / file).read_text(encoding="utf-8")
+        assert f"\ndef {test}(" in source, key
 
 
 @pytest.mark.parametrize(

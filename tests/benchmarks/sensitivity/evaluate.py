@@ -1,9 +1,9 @@
-"""Run a metric with one constant scaled, in a process of its own.
+"""Run a metric with another value of one constant, in a process of its own.
 
 The process that asks never imports a solver. A child imports the solvers afresh, and the one
 module that is varied is compiled from a syntax tree in which the value of the constant is
 replaced. So names that other modules imported, default arguments and the defaults of frozen
-settings all see the scaled value.
+settings all see the other value.
 """
 
 import ast
@@ -19,7 +19,7 @@ from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from multiprocessing.connection import Connection
 from typing import Any
 
-from .constants import Constant, assigned_values, scaled
+from .constants import Constant, assigned_values
 
 TIMEOUT_S = 90.0
 FORK = multiprocessing.get_context("fork")
@@ -40,10 +40,10 @@ def prepare(family: str) -> bytes:
 
 
 def evaluate(
-    family: str, inputs: bytes, constant: Constant | None = None, factor: float = 1.0
+    family: str, inputs: bytes, constant: Constant | None = None, value: Any = None
 ) -> Outcome:
-    """Return the figures of a family's metric with one constant scaled."""
-    outcome = _in_child(_measure, (family, inputs, constant, factor))
+    """Return the figures of a family's metric with another value of one constant."""
+    outcome = _in_child(_measure, (family, inputs, constant, value))
     return outcome if isinstance(outcome, Outcome) else Outcome(failure=str(outcome))
 
 
@@ -82,9 +82,9 @@ def _prepare(family: str) -> bytes:
     return pickle.dumps(_metric(family).prepare())
 
 
-def _measure(family: str, inputs: bytes, constant: Constant | None, factor: float) -> Outcome:
+def _measure(family: str, inputs: bytes, constant: Constant | None, value: Any) -> Outcome:
     if constant is not None:
-        sys.meta_path.insert(0, _Scaling(constant, factor))
+        replace_on_import(constant, value)
     metric = _metric(family)
     data = pickle.loads(inputs)
     started = time.process_time()
@@ -94,33 +94,38 @@ def _measure(family: str, inputs: bytes, constant: Constant | None, factor: floa
     return Outcome(dict(figures), time.process_time() - started)
 
 
-class _Scaling(MetaPathFinder):
-    """Finds the module of the constant, and has it compiled with the scaled value."""
+def replace_on_import(constant: Constant, value: Any) -> None:
+    """Give a constant another value in this process, which has not imported its module yet."""
+    sys.meta_path.insert(0, _Replacing(constant, value))
 
-    def __init__(self, constant: Constant, factor: float) -> None:
-        self._constant, self._factor = constant, factor
+
+class _Replacing(MetaPathFinder):
+    """Finds the module of the constant, and has it compiled with the other value."""
+
+    def __init__(self, constant: Constant, value: Any) -> None:
+        self._constant, self._value = constant, value
 
     def find_spec(self, fullname: str, path: Any, target: Any = None) -> ModuleSpec | None:
         if fullname != self._constant.module:
             return None
         spec = PathFinder.find_spec(fullname, path, target)
         assert spec is not None and spec.origin is not None
-        spec.loader = _ScaledLoader(fullname, spec.origin, self._constant, self._factor)
+        spec.loader = _ReplacingLoader(fullname, spec.origin, self._constant, self._value)
         return spec
 
 
-class _ScaledLoader(SourceFileLoader):
-    def __init__(self, name: str, path: str, constant: Constant, factor: float) -> None:
+class _ReplacingLoader(SourceFileLoader):
+    def __init__(self, name: str, path: str, constant: Constant, value: Any) -> None:
         super().__init__(name, path)
-        self._constant, self._factor = constant, factor
+        self._constant, self._value = constant, value
 
     def get_code(self, fullname: str) -> Any:
         tree = ast.parse(self.get_data(self.path))
-        value = scaled(self._constant.value, self._factor)
+        value = ast.parse(repr(self._value).replace("inf", "1e999"), mode="eval").body
         for node in tree.body:
             for name, expression in assigned_values(node).items():
                 if name == self._constant.name:
-                    _replace(node, expression, ast.parse(repr(value), mode="eval").body)
+                    _replace(node, expression, value)
         return compile(ast.fix_missing_locations(tree), self.path, "exec")
 
 

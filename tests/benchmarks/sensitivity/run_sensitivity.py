@@ -22,6 +22,7 @@ from . import evaluate as children
 from .constants import FAMILIES, ROOT, Constant, constants_of, scaled
 from .evaluate import Outcome
 from .fixed_constants import reason
+from .guards import WITHOUT
 from .tables import Row, family_text, write_docs
 
 BUILD = ROOT / "build" / "sensitivity"
@@ -57,6 +58,9 @@ def vary(family: str, only: str = "", again: bool = False) -> list[Row]:
     for constant in _varied(family):
         if only in constant.key and _is_new(constant, stored):
             outcomes = [_outcome(family, inputs, constant, factor) for factor in FACTORS]
+            if constant.key in WITHOUT:
+                value = WITHOUT[constant.key]
+                outcomes.append(children.evaluate(family, inputs, constant, value))
             stored[constant.key] = {
                 "value": repr(constant.value),
                 "outcomes": [asdict(each) for each in outcomes],
@@ -87,11 +91,13 @@ def _varied(family: str) -> list[Constant]:
 def _outcome(family: str, inputs: bytes, constant: Constant, factor: float) -> Outcome:
     if scaled(constant.value, factor) == constant.value:
         return Outcome(failure="no smaller whole number")
-    return children.evaluate(family, inputs, constant, factor)
+    return children.evaluate(family, inputs, constant, scaled(constant.value, factor))
 
 
 def _is_new(constant: Constant, stored: dict[str, Any]) -> bool:
-    return stored.get(constant.key, {}).get("value") != repr(constant.value)
+    found = stored.get(constant.key, {})
+    n_outcomes = len(FACTORS) + (constant.key in WITHOUT)
+    return found.get("value") != repr(constant.value) or len(found["outcomes"]) != n_outcomes
 
 
 def _stored(family: str, baseline: Outcome) -> dict[str, Any]:

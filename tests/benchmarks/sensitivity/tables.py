@@ -9,6 +9,7 @@ from ..shared.tables import wrapped
 from .constants import ROOT, Constant, constants_of
 from .evaluate import Outcome
 from .fixed_constants import reason
+from .guards import WITHOUT
 
 DOCUMENT = ROOT / "docs" / "benchmarks" / "sensitivity.md"
 MOVES_PERCENT = 0.5
@@ -24,12 +25,14 @@ MARK = "<!-- below: make sensitivity ARGUMENTS=--docs -->"
 
 @dataclass(frozen=True)
 class Row:
-    """One constant and what its family measured with half and with twice of it."""
+    """One constant and what its family measured with half, with twice and without it."""
 
     constant: Constant
     baseline: Outcome
     half: Outcome
     twice: Outcome
+    without: Outcome | None = None
+    """With the value without effect, for a constant of `WITHOUT`."""
 
     @property
     def changes(self) -> tuple[float, float]:
@@ -48,8 +51,24 @@ class Row:
 
     @property
     def moves(self) -> bool:
-        """Whether any error changes by more than MOVES_PERCENT."""
+        """Whether any error changes by more than MOVES_PERCENT at half or twice of it."""
         return abs(self.most_moved[1]) > MOVES_PERCENT
+
+    @property
+    def most_moved_without(self) -> tuple[str, float]:
+        """Name and change, percent, of the error that changed most without it."""
+        found = self._each(self.without).items() if self.without else ()
+        return max(found, key=lambda pair: abs(pair[1]), default=("", 0.0))
+
+    @property
+    def change_without(self) -> float:
+        """Mean change of all errors without it, percent; NaN if that was not measured."""
+        return self._mean(self.without) if self.without else math.nan
+
+    @property
+    def is_needed(self) -> bool:
+        """Whether the errors hardly change with its value, but do without it."""
+        return not self.moves and abs(self.most_moved_without[1]) > MOVES_PERCENT
 
     @property
     def failures(self) -> dict[str, str]:
@@ -86,7 +105,8 @@ def family_text(family: str, rows: Sequence[Row]) -> str:
     moving = sorted((row for row in rows if row.moves), key=_size, reverse=True)
     shown = [row for row in moving if _size(row) >= SHOWN_PERCENT]
     hardly = [row for row in moving if _size(row) < SHOWN_PERCENT]
-    still = [row for row in rows if not row.moves and not row.failures]
+    needed = [row for row in rows if row.is_needed]
+    still = [row for row in rows if not (row.moves or row.failures or row.is_needed)]
     modules = sorted({_module(row) for row in [*hardly, *still]})
     errors = len(rows[0].baseline.figures)
     n_varied = sum(not reason(each.key) for each in constants_of(family))
@@ -101,8 +121,16 @@ def family_text(family: str, rows: Sequence[Row]) -> str:
         *(_line(row) for row in shown),
         "",
         f"{len(hardly)} constants move one error, but the mean by less than"
-        f" {SHOWN_PERCENT:g} %; {len(still)} move none.",
+        f" {SHOWN_PERCENT:g} %; {len(needed)} move none by half or twice, but without them;"
+        f" {len(still)} move none.",
     ]
+    if needed:
+        lines += [
+            "",
+            "| constant | value | unit | without | mean | most moved |",
+            "|---|---|---|---|---|---|",
+            *(_line_without(row) for row in needed),
+        ]
     if modules:
         lines += [
             "",
@@ -153,6 +181,15 @@ def _line(row: Row) -> str:
     return (
         f"| `{_short(row.constant)}` | {_number(row.constant.value)} | {row.constant.unit} "
         f"| {half} | {twice} | {name} {percent(change)} |"
+    )
+
+
+def _line_without(row: Row) -> str:
+    name, change = row.most_moved_without
+    constant, without = row.constant, WITHOUT[row.constant.key]
+    return (
+        f"| `{_short(constant)}` | {_number(constant.value)} | {constant.unit} "
+        f"| {_number(without)} | {percent(row.change_without)} | {name} {percent(change)} |"
     )
 
 

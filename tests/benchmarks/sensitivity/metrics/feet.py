@@ -4,6 +4,7 @@ import numpy as np
 
 from solvers.arrays import Array, Flags
 from solvers.denoising import plant_feet
+from solvers.feet import PlantSettings
 from solvers.feet.legs import find_legs
 from solvers.motion import Motion, detect_contacts, forward_kinematics
 from solvers.rotations.representations import IDENTITY, angle_between
@@ -53,6 +54,12 @@ def measure(takes: dict[str, tuple[Motion, Motion, Flags, Flags]]) -> dict[str, 
         both = truly[1:] & truly[:-1]
         figures[f"{name}: slide cm/s"] = 100.0 * float(speed[both].mean()) * given.frame_rate
         figures[f"{name}: knee 1000 deg/s2"] = _knees(planted, legs)
+        if "kick" in name:
+            loose = plant_feet(given, contacts, settings=PlantSettings(spare_knees=False))
+            figures[f"{name}, loose knees: moved cm"] = _distance(
+                _feet(loose.motion, legs), before
+            )
+            figures[f"{name}, loose knees: knee 1000 deg/s2"] = _knees(loose.motion, legs)
         figures[f"{name}: moved cm"] = _distance(after, before)
         if "skating" not in name:
             figures[f"{name}: error cm"] = _distance(after, wanted, truly)

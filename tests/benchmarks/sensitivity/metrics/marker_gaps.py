@@ -1,4 +1,4 @@
-"""Gaps of optical markers in two takes, of one marker or five, and of a take that jitters."""
+"""Gaps of optical markers in two takes, of one marker or five: jittery, fast and slow."""
 
 import numpy as np
 
@@ -37,6 +37,8 @@ def prepare() -> dict[str, object]:
                 _disturb(positions, rng)
             name = f"{file.rpartition('/')[2]}, {number} for {seconds:g} s"
             cases[name] = truth, truth.with_positions(positions)
+            if number > 1:
+                cases[f"{name}, slow"] = _every_fourth(*cases[name])
     return {"cases": cases}
 
 
@@ -53,6 +55,13 @@ def measure(cases: dict[str, tuple[Tracks, Tracks]]) -> dict[str, float]:
         off = np.abs(result.confidence - deserved)[gone]
         figures[f"{name}: confidence off %"] = 100.0 * float(off.mean())
     return figures
+
+
+def _every_fourth(*takes: Tracks) -> tuple[Tracks, ...]:
+    """Return takes at a quarter of their rate, 30 and 16 Hz, where movement looks jumpy."""
+    return tuple(
+        Tracks(each.names, each.positions[::4].copy(), each.frame_rate / 4) for each in takes
+    )
 
 
 def _disturb(positions: np.ndarray, rng: np.random.Generator) -> None:

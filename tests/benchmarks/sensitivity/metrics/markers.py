@@ -13,6 +13,8 @@ from ..takes import point_error, variety
 
 JOINTS = ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")
 N_GAPS, GAP_FRAMES = 10, 15
+SPARSE_FRAMES = 20
+"""Last frames, of which a third of all markers is missing at random."""
 
 
 def prepare() -> dict[str, Any]:
@@ -27,6 +29,7 @@ def prepare() -> dict[str, Any]:
     for marker in rng.choice(marked.n_points, N_GAPS, replace=False):
         first = int(rng.integers(0, len(given) - GAP_FRAMES))
         given[first : first + GAP_FRAMES, marker] = np.nan
+    given[-SPARSE_FRAMES:][rng.random((SPARSE_FRAMES, marked.n_points)) < 0.3] = np.nan
     return {"given": marked.with_positions(given), "truth": truth}
 
 

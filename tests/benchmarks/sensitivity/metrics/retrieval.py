@@ -1,4 +1,4 @@
-"""Similar clips of damaged queries of eight classes."""
+"""Similar clips of damaged queries of twelve classes."""
 
 import numpy as np
 
@@ -8,23 +8,23 @@ from solvers.samples import CorruptionSettings, corrupt
 
 from ..takes import hdm05, joint_tracks, walk
 
-CLASSES = (
-    "depositFloorR", "elbowToKnee1RepsLelbowStart", "grabHighR", "hopBothLegs1hops",
-    "kickLFront1Reps", "squat1Reps", "throwBasketball", "rotateArmsBothBackward1Reps",
-)  # fmt: skip
-N_CLIPS = 3
+CLASSES = {
+    "depositFloorR": 5, "elbowToKnee1RepsLelbowStart": 5, "grabHighR": 3,
+    "hopBothLegs1hops": 11, "jogLeftCircle4StepsRstart": 1, "kickLFront1Reps": 5,
+    "lieDownFloor": 3, "rotateArmsBothBackward1Reps": 3, "sneak2StepsLStart": 2,
+    "squat1Reps": 11, "throwBasketball": 2,
+}  # fmt: skip
+"""Clips of each class in the library; the next one of it is the query."""
 
 
 def prepare() -> dict[str, object]:
-    """Fill a library with three clips of each class, and damage one more of each as query."""
+    """Fill a library with clips of each class, and damage one more of each as query."""
     clips, queries = [], []
-    for label in CLASSES:
+    for label, n_clips in CLASSES.items():
         clips += [
-            (f"{label} {number}", hdm05(label, number)) for number in range(1, N_CLIPS + 1)
+            (f"{label} {number}", hdm05(label, number)) for number in range(1, n_clips + 1)
         ]
-        if label in ("throwBasketball",):
-            continue
-        query = hdm05(label, N_CLIPS + 1)
+        query = hdm05(label, n_clips + 1)
         noisy = corrupt(query, CorruptionSettings(jitter=3.0))
         queries.append((label, noisy))
         queries.append((label, joint_tracks(query.slice(2, max(query.n_frames - 6, 12)))))
