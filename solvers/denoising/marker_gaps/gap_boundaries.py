@@ -12,10 +12,10 @@ MAX_TRAINING_FRAMES = 200
 time of long takes with many gaps: x0.2 gains 1.2 %."""
 MAX_TRAINING_RATE_HZ = 60.0
 """Hertz: bodies move too slowly for more frames per second to add information. Chosen by hand:
-x0.5 costs 8.1 %, x2 gains 0.7 %."""
+x0.5 costs 5.5 %, x2 gains 0.5 %."""
 BOUNDARY_FRAMES = (1, 2, 3, 5, 8)
 """Distances in frames from a gap that are always training frames. Chosen by hand: x0.5 costs
-1.0 %, x2 costs 3.5 %."""
+0.6 %, x2 costs 2.4 %."""
 FADE_TIME_S = 0.2
 """Seconds over which the error at a boundary fades. Chosen by hand: x0.5 costs 1.4 %, x2 gains
 0.4 %."""

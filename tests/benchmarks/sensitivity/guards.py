@@ -20,10 +20,6 @@ class Guard(NamedTuple):
 
 WITHOUT: dict[str, Any] = {
     "denoising/averaging/average_estimates.POOLED_JOINTS": 0.0,
-    "denoising/marker_gaps/fill_markers.MAX_RELATIVE_GAP": 1e-9,
-    "denoising/marker_gaps/reference_markers.N_FITS": 1,
-    "denoising/marker_gaps/transient_outliers.MIN_SPIKE_RATIO": 0.0,
-    "denoising/marker_gaps/transient_outliers.NEIGHBORHOOD_FRAMES": 1,
     "denoising/outliers/outlier_runs.BURST_PRIOR_PSEUDOCOUNT": 1.0,
     "denoising/outliers/outlier_runs.RUN_PRIOR_PSEUDOCOUNT": 1e4,
     "denoising/outliers/outlier_runs.SPIKE_PRIOR_PSEUDOCOUNT": 1e3,
