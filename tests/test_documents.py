@@ -44,9 +44,10 @@ OTHER_LABELS = {
     "Best Matches of ...", "Issue", "No good match", "Use Best Matches in",
     "Afterwards", "Before", "Carrying", "Deepest", "Dropped", "During", "Help", "Impossible",
     "Published", "Slide", "Speed",
+    "Generic", "Humanoid", "Import Uniform Scale", "Root bone", "Scale Factor",
 }  # fmt: skip
 """In italics in the manual, in this order: labels of Blender, presets and the tab, texts with a
-name or number in them, and columns of tables."""
+name or number in them, columns of tables, and labels of game engines."""
 README_LINES = 130
 MAX_LINE_CHARACTERS = 160
 

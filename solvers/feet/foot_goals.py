@@ -22,32 +22,32 @@ from .foot_contact import FootContact
 from .plant_settings import PlantSettings
 
 ROOT_M = 0.01
-"""Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand: x0.5 costs 1.3 %, x2
-gains 0.6 % and lets the hips jerk more."""
+"""Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand: x0.5 costs 1.4 %, x2
+gains 0.5 % and lets the hips jerk more."""
 HIP_RAD = np.radians(4.0)
-"""Radians of a hip, and of toes. Chosen by hand: x0.5 costs 0.4 %, x2 costs 0.9 %."""
+"""Radians of a hip, and of toes. Chosen by hand: x0.5 costs 0.6 %, x2 costs 0.4 %."""
 KNEE_RAD, LOOSE_KNEE_RAD = np.radians(3.0), np.radians(8.0)
-"""Radians of a knee, with and without Protect Knees. Chosen by hand: x0.5 gains 0.4 %, x2 costs
-1.3 % and makes knees jerk more."""
+"""Radians of a knee, with and without Protect Knees. Chosen by hand: x0.5 costs nothing, x2
+costs 1.1 % and makes knees jerk more."""
 ANKLE_RAD = np.radians(15.0)
 """Radians of an ankle, whose foot follows its own rotation in the world. Chosen by hand: x0.5
-costs 2.6 %, x2 costs 0.3 %."""
+costs 2.2 %, x2 costs 0.5 %."""
 FOOT_RAD = np.radians(2.5)
-"""Radians of a foot in the world. Chosen by hand: x0.5 costs 2.3 %, x2 gains 1.5 % and turns
+"""Radians of a foot in the world. Chosen by hand: x0.5 costs 2.0 %, x2 gains 1.2 % and turns
 feet farther."""
 ANKLE_M = 0.012
 """Meters, for a leg of 0.9 m, by which the ankle may leave its path in contact. Chosen by hand:
-x0.5 gains 1.4 %, x2 costs 5.8 %; 0.02 moves a foot of CMU 06_01 by 17 cm, where a knee is
+x0.5 gains 1.1 %, x2 costs 5.6 %; 0.02 moves a foot of CMU 06_01 by 17 cm, where a knee is
 nearly straight."""
 CREEP_M = 0.02
 """Meters, for a leg of 0.9 m, by which a foot may creep in Max Contact Time. It guards long
 contacts in which the body drifts."""
 FLOOR_M = 0.002
 """Meters, for a leg of 0.9 m, by which a planted sole may be off the floor. Chosen by hand:
-x0.5 costs 0.5 %, x2 gains 0.6 %."""
+x0.5 costs 0.2 %, x2 gains 0.2 %."""
 MAX_TURN_RAD_S = np.radians(8.0)
-"""Radians per second by which a foot may turn while it rests flat. Chosen by hand: x0.5 costs
-0.1 %, x2 costs 0.6 %, but 2 degrees make knees before depth cameras jerk half as much again."""
+"""Radians per second by which a foot may turn while it rests flat. Chosen by hand: x0.5 gains
+0.3 %, x2 costs 0.9 %, but 2 degrees make knees before depth cameras jerk half as much again."""
 
 
 def planting_goals(

@@ -12,25 +12,25 @@ from .legs import LegJoints
 
 HEEL_FRACTION = 0.2
 """Distance of the heel behind the ankle, relative to the distance from ankle to ball. Chosen by
-hand: x0.5 gains 0.6 %, x2 costs 1.5 %."""
+hand: x0.5 gains 0.5 %, x2 costs 1.4 %."""
 LOAD_FALLOFF_M = 0.007
 """Meters, for a leg of 0.9 m: a point this far above the lowest carries 1/e of its load. Chosen
-by hand: x0.5 costs nothing, x2 gains 0.1 %."""
+by hand: x0.5 costs 0.5 %, x2 costs 0.2 %."""
 SPEED_FALLOFF = 0.1
 """Meters per second, for a leg of 0.9 m: a point this much faster than the slowest carries 1/e
-of its load. Chosen by hand: x0.5 costs nothing, x1.5 makes the worst knee of squats whose feet
-were captured badly jerk 1.5 times as much."""
+of its load. Chosen by hand: x0.5 gains 0.9 %, x2 costs 1.6 %; x1.5 makes the worst knee of
+squats whose feet were captured badly jerk 1.5 times as much."""
 MIN_RISE_M = 0.012
 """Meters, for a leg of 0.9 m, by which heel and ball are higher than the tip (or than the ankle
 above its own height at rest) when all carry the same load. Captured toes jitter, and a
-jittering tip should not carry a resting foot. Chosen by hand: x0.5 gains 0.2 %, x2 gains
-0.1 %."""
+jittering tip should not carry a resting foot. Chosen by hand: x0.5 gains 0.3 %, x2 costs 0.3
+%."""
 MAX_REST_SPEED = 0.15
 """Meters per second below which the entire foot rests on the floor. Chosen by hand: x0.5 gains
-2.4 %, x2 gains 0.8 %."""
+2.7 %, x2 gains 0.9 %."""
 SMOOTHING_S = 0.03
 """Seconds over which speeds and heights are smoothed before they are compared. Chosen by hand:
-x0.5 costs 0.9 %, x2 gains 1.5 %."""
+x0.5 costs 0.5 %, x2 gains 0.3 %."""
 
 
 def sole_points(skeleton: Skeleton, leg: LegJoints) -> tuple[BonePoint, ...]:

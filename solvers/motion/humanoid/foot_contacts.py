@@ -31,7 +31,7 @@ SPEED_NOISE = 0.15
 and x1.7 change F1 of noisy captures by less than 0.02 (`test_jitter_changes_little`)."""
 
 GROUND_WINDOW_S = 0.5
-"""Seconds before and after a frame in which the lower foot stands on ground. It guards feet that
+"""Seconds before and after a frame in which the lower foot stands. It guards feet that
 swing in the air (`test_stances_of_a_fifth_of_a_second_keep_their_length`)."""
 
 MAX_CLIMB_M = 0.3

@@ -19,24 +19,21 @@ SMOOTHING_S = 0.1
 x0.5 costs 1.2 %, x2 gains 0.2 %."""
 REST_WEIGHT = 0.02
 """Weight of zero axial rotation relative to the trunk; a flexed limb has weight 1. Chosen by
-hand: x10 costs 2 % on one take; 0 has no solution for a limb that is never flexed."""
+hand: x10 costs 2 % on one take."""
 LIBRARY_WEIGHT = 0.2
-"""Weight of the library's axial rotation for missing limbs; observed ones, whose flexion before
-and after determines more, have `REST_WEIGHT`. By hand: x10 costs 0.4 %. It guards limbs
-that are straight or missing, which would have no axial rotation
+"""Weight of the library's axial rotation for missing limbs; observed ones have `REST_WEIGHT`.
+It guards limbs that are straight or missing, which would have no axial rotation
 (`test_straight_arm_gets_the_twist_of_similar_postures`)."""
 ACTOR_BIAS_S = 0.03
 """Time (s) of flexed frames at which the actor's deviation from the library gets half weight.
 It guards limbs that hardly flex, which would lose the library's rotation
 (`test_straight_arm_gets_the_twist_of_similar_postures`)."""
-
 AGREED_WEIGHT, MIN_WEIGHT = 90.0, 1e-6
 """Weights of a certain and of an undefined angle; an equal change within `SMOOTHING_S` has
 weight 1. Chosen by hand: x0.5 and x2 change the mean by less than 0.1 %."""
 MIN_PALM_M, FULL_PALM_M = 0.02, 0.05
 """Distances (m) from wrist to palm between which the weight of the direction rises from 0 to 1.
-Chosen by hand: second, x0.5 and x2 change the mean by less than 0.1 %. The first guards against
-palms that are too short to have a direction (`test_impossible_palm_is_ignored`)."""
+The first guards against palms too short to have one (`test_impossible_palm_is_ignored`)."""
 MAX_PALM_FLEXION, FULL_PALM_FLEXION = np.radians([100.0, 70.0])
 """Palm flexions (radians) at which an observation is rejected, and up to which it is accepted.
 """

@@ -9,7 +9,7 @@ from ...errors import FileAccessError
 from ...faults import Failure, attempt
 
 
-class _Entry(NamedTuple):
+class _ScannedEntry(NamedTuple):
     path: Path
     is_folder: bool
 
@@ -29,7 +29,7 @@ def files_below(
         Returns whether a folder is one recording; it is then not searched. If that fails, the
         folder is yielded and its reader reports the reason.
     """
-    waiting = [_Entry(folder, is_folder=True)]
+    waiting = [_ScannedEntry(folder, is_folder=True)]
     while waiting:
         path, is_folder = waiting.pop()
         if not is_folder:
@@ -65,14 +65,14 @@ def is_folder(path: Path) -> bool:
         return False
 
 
-def _entries(folder: Path) -> list[_Entry]:
+def _entries(folder: Path) -> list[_ScannedEntry]:
     """Return the entries of a folder by name; raise OSError if it cannot be listed."""
     entries = []
     for path in sorted(folder.iterdir()):
         if path.name.startswith("."):
             continue
         if path.is_dir():
-            entries += [] if path.is_symlink() else [_Entry(path, is_folder=True)]
+            entries += [] if path.is_symlink() else [_ScannedEntry(path, is_folder=True)]
         elif path.is_file():
-            entries.append(_Entry(path, is_folder=False))
+            entries.append(_ScannedEntry(path, is_folder=False))
     return entries

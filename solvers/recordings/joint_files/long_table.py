@@ -42,7 +42,7 @@ MAX_POINTS = 1 << 27
 """Points of all people over all frames. It bounds the memory: 3 GB."""
 
 
-class _Columns(NamedTuple):
+class _LongColumns(NamedTuple):
     """Columns of a table, by index; None where it has no such column."""
 
     frame: int | None
@@ -79,11 +79,11 @@ class _Numbers:
         return tuple(decode_text(word) for word in words), order
 
 
-class _Table(NamedTuple):
+class _LongTable(NamedTuple):
     """Lines of a file, with numbers for words."""
 
     rows: Array
-    columns: _Columns
+    columns: _LongColumns
     joints: _Numbers
     people: _Numbers
 
@@ -150,7 +150,7 @@ def open_long_table(
     return Bodies(str(path), listed if len(listed) > 1 else (), read)
 
 
-def _read_table(path: Path | str, progress: Progress) -> _Table:
+def _read_table(path: Path | str, progress: Progress) -> _LongTable:
     reader = LineReader(path)
     first = reader.take(1)
     titles = _titles(first[0]) if first else []
@@ -166,11 +166,11 @@ def _read_table(path: Path | str, progress: Progress) -> _Table:
     separator, width = find_separator(first[0]), len(titles)
     progress = within(progress, 0.0, 0.6)
     rows = stream_cells(reader, separator, width, path, progress, converters=converters)
-    return _Table(rows, columns, joints, people)
+    return _LongTable(rows, columns, joints, people)
 
 
 def _points(
-    path: Path | str, table: _Table, frames: NDArray[np.intp], order: NDArray[np.intp]
+    path: Path | str, table: _LongTable, frames: NDArray[np.intp], order: NDArray[np.intp]
 ) -> Array:
     """Return the points of all people, shape (n_people, n_frames, n_joints, 3)."""
     joint, person = table.columns.joint, table.columns.person
@@ -196,7 +196,7 @@ def _frame_number(cell: bytes) -> bytes:
     return numbers[-1] if numbers else b""
 
 
-def _frames(rows: Array, columns: _Columns) -> tuple[NDArray[np.intp], Array | None]:
+def _frames(rows: Array, columns: _LongColumns) -> tuple[NDArray[np.intp], Array | None]:
     """Return the frame of each line, -1 where it has none, and the time of each frame.
 
     Numbers between those of the file are frames without a body.
@@ -226,7 +226,7 @@ def _titles(line: bytes) -> list[str]:
     return [decode_text(cell) for cell in split_cells(line, find_separator(line))]
 
 
-def _columns(titles: Sequence[str]) -> _Columns | None:
+def _columns(titles: Sequence[str]) -> _LongColumns | None:
     """Return the columns of such a table; None if one is missing."""
     lower = [title.strip().lower().replace(" ", "_") for title in titles]
 
@@ -246,4 +246,4 @@ def _columns(titles: Sequence[str]) -> _Columns | None:
     if joint is None or axes is None or (frame is None and time is None):
         return None
     second = None if time is None else TIMES[titles[time].lower()]
-    return _Columns(frame, time, second, joint, find(PEOPLE), axes)
+    return _LongColumns(frame, time, second, joint, find(PEOPLE), axes)

@@ -41,7 +41,7 @@ RATES = ("fps", "frame_rate", "frameRate", "FPS")
 VISIBILITY = ("visibility", "presence", "score")
 
 
-class _Content(NamedTuple):
+class _MediapipeContent(NamedTuple):
     """What a file, or the files of a take, hold."""
 
     frames: list[Array]
@@ -113,7 +113,7 @@ def read_mediapipe_json(
 
 def _read_content(
     path: Path | str, members: Iterable[JsonMember], progress: Progress
-) -> _Content:
+) -> _MediapipeContent:
     """Return landmarks and time of each frame, and the rate, of a file or the files of a take.
 
     A file without a body is a frame without one.
@@ -136,7 +136,7 @@ def _read_content(
             frames.append(np.full((N_POINTS, 4), np.nan) if found is None else found)
             times.append(time)
             progress(0.9 * member.done, "Reading")
-    return _Content(frames, times, rate)
+    return _MediapipeContent(frames, times, rate)
 
 
 def frame_time(frame: Any, location: str) -> float:

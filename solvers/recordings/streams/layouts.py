@@ -20,7 +20,7 @@ from . import mocopi, xsens
 from .humanoid import PARENTS, parent_indices, standing
 
 
-class Layout(NamedTuple):
+class StreamLayout(NamedTuple):
     """Bones of a protocol, parents first."""
 
     names: tuple[str, ...]
@@ -41,7 +41,7 @@ def _limbs(sides: dict[str, str], parts: dict[str, str]) -> dict[str, str]:
     }
 
 
-MOCOPI = Layout(mocopi.NAMES, mocopi.PARENTS, _roles(
+MOCOPI = StreamLayout(mocopi.NAMES, mocopi.PARENTS, _roles(
     {"root": "hips", "torso_1": "spine", "torso_4": "chest", "torso_7": "upperChest",
      "neck_1": "neck", "head": "head"}
     | _limbs({"l_": "left", "r_": "right"}, {
@@ -50,7 +50,7 @@ MOCOPI = Layout(mocopi.NAMES, mocopi.PARENTS, _roles(
     }),
     mocopi.NAMES,
 ))  # fmt: skip
-XSENS = Layout(xsens.NAMES, xsens.PARENTS, _roles(
+XSENS = StreamLayout(xsens.NAMES, xsens.PARENTS, _roles(
     {"Pelvis": "hips", "L5": "spine", "T12": "chest", "T8": "upperChest", "Neck": "neck",
      "Head": "head"}
     | _limbs({"Left": "left", "Right": "right"}, {
@@ -61,7 +61,7 @@ XSENS = Layout(xsens.NAMES, xsens.PARENTS, _roles(
 ))  # fmt: skip
 
 
-def humanoid_layout(roles: Sequence[str], has_upper_chest: bool = True) -> Layout:
+def humanoid_layout(roles: Sequence[str], has_upper_chest: bool = True) -> StreamLayout:
     """Return the layout of humanoid roles that a skeleton has, parents first.
 
     Without a bone for the upper chest, the chest takes its rotation, as arms and neck do.
@@ -71,11 +71,12 @@ def humanoid_layout(roles: Sequence[str], has_upper_chest: bool = True) -> Layou
         role for role in PARENTS if role in roles and not (is_merged and role == "upperChest")
     )
     played = tuple("upperChest" if is_merged and name == "chest" else name for name in names)
-    return Layout(names, tuple(parent_indices(names)), played)
+    return StreamLayout(names, tuple(parent_indices(names)), played)
 
 
 def motion_in_layout(
-    motion: Motion, layout: Layout | Callable[[Sequence[str]], Layout] = humanoid_layout
+    motion: Motion,
+    layout: StreamLayout | Callable[[Sequence[str]], StreamLayout] = humanoid_layout,
 ) -> Motion:
     """Return a motion with the bones of a layout, or of one that is made of its roles.
 
@@ -96,7 +97,7 @@ def motion_in_layout(
         )
     if not np.isfinite(motion.rotations).all() or not np.isfinite(motion.root_positions).all():
         raise InvalidMotionError("The motion has gaps. Clean it before it is sent.")
-    layout = layout if isinstance(layout, Layout) else layout(tuple(joints))
+    layout = layout if isinstance(layout, StreamLayout) else layout(tuple(joints))
     alignment = t_pose_alignment(motion.skeleton, roles)
     poses = forward_kinematics(motion)
     turned = multiply(poses.rotations, alignment)
@@ -111,7 +112,7 @@ def motion_in_layout(
 
 
 def _t_pose(
-    skeleton: Skeleton, joints: dict[str, int], alignment: Array, layout: Layout
+    skeleton: Skeleton, joints: dict[str, int], alignment: Array, layout: StreamLayout
 ) -> Skeleton:
     """Return the layout's skeleton, with the lengths of another one."""
     rest = skeleton.rest_positions

@@ -32,20 +32,20 @@ UNKNOWN = (
 )
 
 
-class _Entry(NamedTuple):
+class _ProtocolParts(NamedTuple):
     """How a protocol is recognized and decoded."""
 
     recognizes: Callable[[bytes], bool]
     decoder: Callable[[], FrameDecoder]
 
 
-PROTOCOLS: Mapping[StreamProtocol, _Entry] = {
-    StreamProtocol.VMC: _Entry(is_vmc, VmcDecoder),
-    StreamProtocol.MOCOPI: _Entry(is_mocopi, MocopiDecoder),
-    StreamProtocol.XSENS: _Entry(is_xsens, XsensDecoder),
-    StreamProtocol.JSON: _Entry(lambda head: FORMAT.encode() in head, JointLines),
-    StreamProtocol.ROKOKO: _Entry(is_rokoko, RokokoDecoder),
-    StreamProtocol.MEDIAPIPE: _Entry(is_mediapipe, MediaPipeDecoder),
+PROTOCOLS: Mapping[StreamProtocol, _ProtocolParts] = {
+    StreamProtocol.VMC: _ProtocolParts(is_vmc, VmcDecoder),
+    StreamProtocol.MOCOPI: _ProtocolParts(is_mocopi, MocopiDecoder),
+    StreamProtocol.XSENS: _ProtocolParts(is_xsens, XsensDecoder),
+    StreamProtocol.JSON: _ProtocolParts(lambda head: FORMAT.encode() in head, JointLines),
+    StreamProtocol.ROKOKO: _ProtocolParts(is_rokoko, RokokoDecoder),
+    StreamProtocol.MEDIAPIPE: _ProtocolParts(is_mediapipe, MediaPipeDecoder),
 }
 """In the order in which they are tried."""
 

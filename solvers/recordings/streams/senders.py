@@ -11,7 +11,7 @@ from ...errors import InvalidMotionError
 from ...motion import SENSOR_JOINTS, JointRecording, Motion, Sensor, Tracks, forward_kinematics
 from ...motion.humanoid import posture_joint_indices, postures_from_motion
 from ..live import MAX_JOINTS, LiveFrame, PoseFrame, encode_frame, frames_from_recording
-from .layouts import MOCOPI, XSENS, Layout, humanoid_layout, motion_in_layout
+from .layouts import MOCOPI, XSENS, StreamLayout, humanoid_layout, motion_in_layout
 from .mediapipe import encode_mediapipe
 from .mocopi import encode_frame_packet, encode_skeleton_packet
 from .protocols import StreamProtocol
@@ -141,7 +141,7 @@ def _pose(motion: Motion, frame: int, time: float) -> PoseFrame:
     return PoseFrame(time, 0, motion.skeleton, rotations, position)
 
 
-LAYOUTS: dict[StreamProtocol, Layout | Callable[[Sequence[str]], Layout]] = {
+LAYOUTS: dict[StreamProtocol, StreamLayout | Callable[[Sequence[str]], StreamLayout]] = {
     StreamProtocol.VMC: humanoid_layout,
     StreamProtocol.MOCOPI: MOCOPI,
     StreamProtocol.XSENS: XSENS,
