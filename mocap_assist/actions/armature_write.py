@@ -13,11 +13,16 @@ from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
 from ..blender import compat
-from ..blender.block_references import BlockReference, SourceReference
+from ..blender.block_references import (
+    BlockReference,
+    SourceReference,
+    changed_during_solve,
+)
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, in_thread, should_yield
 from ..scene import history
 from .bone_channels import (
+    Curves,
     animated_curves,
     bone_path,
     location_curves,
@@ -27,7 +32,7 @@ from .bone_channels import (
 from .curve_modifiers import act_on_keys
 from .curves import Channel, write_values
 from .rotation_modes import channels_from_quaternions
-from .take import ArmatureTake
+from .take import ArmatureTake, BoneChannels, BonePoses
 from .unchanged_samples import RecordedChannels, UnchangedSamples
 
 KeyTypes = Mapping[str, NDArray[np.uint8]]
@@ -81,6 +86,7 @@ def write_take(
         Named like the source with the suffix, and kept by a fake user.
     """
     here, origin = BlockReference.of(armature), SourceReference.of(source)
+    playing = _playing(armature)
     poses = yield from in_thread.steps(take.bone_poses)
     unchanged = None
     if recorded is not None:
@@ -90,52 +96,75 @@ def write_take(
     action = copy_of(original[0], suffix)
     made = SourceReference.of((action, same_slot(action, original[1])))
     indices = [index for index, name in enumerate(take.rig.bones) if name in bones]
+    armature, curves = here.find(), animated_curves(*made.find())
     try:
-        curves, bones_now = animated_curves(*made.find()), here.find().pose.bones
-        for number, index in enumerate(indices):
-            name = take.rig.bones[index]
-            keyed = take.channels[index]
-            writer = _BoneWriter(bones_now[name], curves, take.frames, key_types.get(name))
-            if keyed.rotation_keyed and index in poses.rotations:
-                writer.write_rotations(index, poses.rotations[index], unchanged)
-            if keyed.location_keyed and index in poses.locations:
-                writer.write_locations(index, poses.locations[index], unchanged)
+        for number, bone in enumerate(indices):
+            _BoneWriter.of(armature, curves, take, bone, key_types).write(poses, unchanged)
             if should_yield():
                 yield number / len(indices)
-                curves, bones_now = animated_curves(*made.find()), here.find().pose.bones
+                armature, curves = here.find(), animated_curves(*made.find())
+                if _playing(armature) != playing:
+                    raise changed_during_solve(here.name)
                 if unchanged:
                     unchanged.find_again()
-    except BaseException:  # cancelled, or a data-block was deleted between two time slices
+    except BaseException:  # cancelled, or something was changed between two time slices
         with suppress(InvalidMotionError):
             bpy.data.actions.remove(made.action.find())
         raise
     return made.find()
 
 
+def _playing(armature: bpy.types.Object) -> tuple[int, int] | None:
+    """Return what identifies the action of an armature and its slot."""
+    animation = armature.animation_data
+    if animation is None or animation.action is None:
+        return None
+    return animation.action.session_uid, animation.action_slot_handle
+
+
 class _BoneWriter(NamedTuple):
     """Writes the keys of one bone."""
 
+    number: int
+    keyed: BoneChannels
     bone: bpy.types.PoseBone
-    curves: Mapping[tuple[str, int], Channel]
+    curves: Curves
     frames: Array
     types: NDArray[np.uint8] | None
 
-    def write_rotations(
-        self, index: int, rotations: Array, unchanged: UnchangedSamples | None
-    ) -> None:
-        channels = rotation_curves(self.bone, self.curves)
-        near = sampled_rotation(self.bone, channels, self.frames[:1])
-        values = channels_from_quaternions(rotations, self.bone.rotation_mode, near)
-        if unchanged is not None:
-            values = unchanged.rotations(self.bone, index, values)
-        self._write(channels, values)
+    @classmethod
+    def of(
+        cls,
+        armature: bpy.types.Object,
+        curves: Curves,
+        take: ArmatureTake,
+        number: int,
+        key_types: KeyTypes,
+    ) -> "_BoneWriter":
+        """Look up a bone and its curves; raise InvalidMotionError if it is there no more."""
+        name = take.rig.bones[number]
+        bone = armature.pose.bones.get(name)
+        if bone is None:
+            raise changed_during_solve(armature.name)
+        return cls(
+            number, take.channels[number], bone, curves, take.frames, key_types.get(name)
+        )
 
-    def write_locations(
-        self, index: int, values: Array, unchanged: UnchangedSamples | None
-    ) -> None:
-        if unchanged is not None:
-            values = unchanged.locations(self.bone, index, values)
-        self._write(location_curves(self.bone, self.curves), values)
+    def write(self, poses: BonePoses, unchanged: UnchangedSamples | None) -> None:
+        """Replace the rotation and location keys."""
+        if self.keyed.rotation_keyed and self.number in poses.rotations:
+            channels = rotation_curves(self.bone, self.curves)
+            near = sampled_rotation(self.bone, channels, self.frames[:1])
+            rotations = poses.rotations[self.number]
+            values = channels_from_quaternions(rotations, self.bone.rotation_mode, near)
+            if unchanged is not None:
+                values = unchanged.rotations(self.bone, self.number, values)
+            self._write(channels, values)
+        if self.keyed.location_keyed and self.number in poses.locations:
+            values = poses.locations[self.number]
+            if unchanged is not None:
+                values = unchanged.locations(self.bone, self.number, values)
+            self._write(location_curves(self.bone, self.curves), values)
 
     def _write(self, channels: Mapping[int, Channel], values: Array) -> None:
         for index, channel in channels.items():

@@ -10,6 +10,14 @@ from .compat import Source
 COLLECTIONS = {"OBJECT": "objects", "SCENE": "scenes", "ACTION": "actions"}
 
 
+def changed_during_solve(target: str) -> InvalidMotionError:
+    """Return the error for an object that no longer plays what was solved."""
+    return InvalidMotionError(
+        f"The action, the rig or the frame range of {target} was changed during the solve;"
+        " nothing was written. Press the button again."
+    )
+
+
 class BlockReference(NamedTuple):
     """A data-block by its session UID, which undo and renaming keep."""
 
@@ -45,6 +53,11 @@ class SourceReference(NamedTuple):
         """Return a reference to both."""
         action, slot = source
         return cls(BlockReference.of(action), slot.handle)
+
+    def is_same(self, source: Source) -> bool:
+        """Return whether an action and a slot are these, whatever their names are."""
+        action, slot = source
+        return (action.session_uid, slot.handle) == (self.action.number, self.slot)
 
     def find(self) -> Source:
         """Return both; raise InvalidMotionError if one was deleted meanwhile."""

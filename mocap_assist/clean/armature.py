@@ -24,8 +24,8 @@ from ..actions.unchanged_samples import RecordedChannels
 from ..blender.block_references import SourceReference
 from ..blender.compat import Source
 from ..blender.time_slices import Steps, in_thread
+from ..runtime.played import Played
 from ..runtime.selection import played_source
-from ..runtime.subject import Subject
 from ..scene import history
 from .button_settings import CleanChoices, CleanOutput, Limits
 from .solve_cleaning import Cleaned, Recordings, names_of
@@ -40,6 +40,8 @@ class ArmatureReading(NamedTuple):
     played: Source
     """Action of the armature: the recorded one, or an earlier result made from it."""
     raw: ArmatureTake
+    references: Played
+    """To scene, armature and action, which stay valid over time slices."""
 
     @classmethod
     def of(
@@ -47,17 +49,16 @@ class ArmatureReading(NamedTuple):
     ) -> "Steps[ArmatureReading]":
         """Read what was recorded."""
         check_writable(armature)
-        here = Subject.of(scene, armature)
+        references = Played.of(scene, armature)
         recorded = history.cleaned_from(played_source(armature))
         raw = yield from read_take.steps(armature, scene, choices.frame_range, recorded)
-        return cls._found(here, raw)
+        return cls._found(references, raw)
 
     @classmethod
-    def _found(cls, here: Subject, raw: ArmatureTake) -> "ArmatureReading":
+    def _found(cls, references: Played, raw: ArmatureTake) -> "ArmatureReading":
         """Look everything up: pointers to Blender's data are stale after a time slice."""
-        scene, armature = here.find()
-        played = played_source(armature)
-        return cls(scene, armature, history.cleaned_from(played), played, raw)
+        scene, armature, played = references.find()
+        return cls(scene, armature, history.cleaned_from(played), played, raw, references)
 
     def limits(self, choices: CleanChoices, chosen: frozenset[str]) -> JointLimits | None:
         """Return the rig's joint limits, if the settings use them."""
@@ -90,9 +91,8 @@ class ArmatureReading(NamedTuple):
         entry: dict[str, Any],
     ) -> Steps[tuple[str, int]]:
         """Write a new action and play it; return its name and how many curves were modified."""
-        here = Subject.of(self.scene, self.armature)
         take = yield from in_thread.steps(partial(self.raw.with_recordings, cleaned.recordings))
-        now = self._found(here, self.raw)
+        now = self._found(self.references, self.raw)
         n_modified = count_modified(now.played, cleaned.moved)
         action, slot = yield from write_take.steps(
             now.armature,
@@ -102,7 +102,7 @@ class ArmatureReading(NamedTuple):
             types,
             recorded=RecordedChannels(self.raw, SourceReference.of(now.recorded)),
         )
-        now = self._found(here, self.raw)
+        now = self._found(self.references, self.raw)
         if cleaned.planted is not None:
             contacts, detected = cleaned.planted.contacts, now.contacts() is None
             write_contacts(now.armature, action, slot, take.frames, contacts, detected=detected)

@@ -23,6 +23,8 @@ class MarkerReading(NamedTuple):
     scene: bpy.types.Scene
     holder: bpy.types.Object
     raw: MarkerTake
+    here: Subject
+    """Scene and holder, which stay valid over time slices."""
 
     @classmethod
     def of(
@@ -38,7 +40,7 @@ class MarkerReading(NamedTuple):
         here = Subject.of(scene, holder)
         raw = yield from read_markers.steps(holder, scene, choices.frame_range, recorded=True)
         scene, holder = here.find()
-        return cls(scene, holder, raw)
+        return cls(scene, holder, raw, here)
 
     def limits(self, choices: CleanChoices, chosen: frozenset[str]) -> None:
         """Return None: markers have no joint limits."""
@@ -62,7 +64,8 @@ class MarkerReading(NamedTuple):
         entry: dict[str, Any],
     ) -> Steps[tuple[str, int]]:
         """Write a new action and play it; return its name, and that no curve was modified."""
-        played = yield from read_markers.steps(self.holder, self.scene, grid=self.raw.grid)
+        scene, holder = self.here.find()
+        played = yield from read_markers.steps(holder, scene, grid=self.raw.grid)
         take = played.with_recordings(cleaned.recordings)
         names = set()
         for marker, source, source_new in write_markers(take, cleaned.moved, types):

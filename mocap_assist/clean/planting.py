@@ -11,6 +11,7 @@ from ..actions.armature_write import Output, check_writable, put_to_use, write_t
 from ..actions.contact_keys import animators_contacts, write_contacts
 from ..blender.time_slices import Sliced, Steps
 from ..jobs.job import MAX_SHORT_SOLVE_FRAMES, ShortSolve
+from ..runtime.played import Played
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
@@ -46,18 +47,15 @@ def write_planted(
     solved_digest: str | None = None,
 ) -> Steps[str]:
     """Write the result as a new action and assign it; return a message."""
-    here = Subject.of(scene, armature)
+    read = Played.of(scene, armature)
     take = yield from read_take.steps(armature, scene, source=played_source(armature))
-    scene, armature = here.find()
-    played, planted = played_source(armature), result.planted
     body, *other_trees = take.recordings
-    yield from check_unchanged.steps(armature, solved_digest, body)
-    scene, armature = here.find()
-    played = played_source(armature)
+    yield from check_unchanged.steps(read.find()[1], solved_digest, body)
+    planted = result.planted
     take = take.with_recordings((planted.motion, *other_trees))
+    _, armature, played = read.find()
     action, slot = yield from write_take.steps(armature, played, take, result.moved, {})
-    scene, armature = here.find()
-    played = played_source(armature)
+    _, armature, played = read.find()
     detected = animators_contacts(played, take.frames) is None
     write_contacts(armature, action, slot, take.frames, planted.contacts, detected=detected)
     entry = {

@@ -1,13 +1,12 @@
 """The last step of Fix My Take: give the fixed motion to another armature."""
 
 from collections.abc import Callable
-from time import sleep
 from typing import Any
 
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.retargeting import RetargetSettings
 from ..blender.time_slices import Steps, runs_in_slices
-from ..jobs.job import POLL_INTERVAL_S, Job, ShortSolve, run
+from ..jobs.job import Job, run, runs_here
 from ..retarget.button_settings import RetargetBundle, RetargetChoices
 from ..retarget.retargeting import read_retarget, write_retargeted
 from ..runtime.subject import Subject
@@ -36,16 +35,13 @@ def retargeted(here: Subject, rig: str, report: dict[str, Any]) -> Steps[dict[st
 
 
 def _solved(solve: Callable[..., Any]) -> Steps[Any]:
-    """Solve in a process of its own, if it takes long; meanwhile only Esc works."""
-    if isinstance(solve, ShortSolve):
+    """Solve in a process of its own, unless it is short; meanwhile only Esc works."""
+    if runs_here(solve) or not runs_in_slices():
         return run(solve)
     job = Job(solve)
     try:
         while not job.done():
-            if runs_in_slices():
-                yield job.progress()[0]
-            else:
-                sleep(POLL_INTERVAL_S)
+            yield job.progress()[0]
     except BaseException:  # such as Esc, or another file
         job.cancel()
         job.tidy_up()

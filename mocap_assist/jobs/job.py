@@ -23,7 +23,7 @@ from .protocol import (
     read_value,
     write_value,
 )
-from .waiting_child import take_waiting
+from .waiting_child import is_waiting, take_waiting
 
 Result = TypeVar("Result")
 POLL_INTERVAL_S = 0.05  # seconds
@@ -58,6 +58,11 @@ start."""
 
 class ShortSolve(partial[Result]):
     """A solve that is short enough to run in Blender's process."""
+
+
+def runs_here(solve: Callable[..., Any]) -> bool:
+    """Return whether a press solves in Blender's process: it is short, and no other waits."""
+    return isinstance(solve, ShortSolve) and not is_waiting()
 
 
 def run(

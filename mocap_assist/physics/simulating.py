@@ -11,8 +11,9 @@ from ..actions.armature_write import Output, check_writable, put_to_use, write_t
 from ..blender.time_slices import Sliced, Steps
 from ..jobs.job import ShortSolve
 from ..runtime import redo
+from ..runtime.played import Played
 from ..runtime.selection import played_source
-from ..runtime.subject import Subject, check_unchanged
+from ..runtime.subject import check_unchanged
 from ..scene import history
 from .solve_simulating import Resimulated, simulate_take, take_of
 
@@ -50,21 +51,17 @@ def write_simulated(
 
     Raises InvalidMotionError if the armature plays another motion than the one that was solved.
     """
-    here = Subject.of(scene, armature)
+    present = Played.of(scene, armature)
     read = yield from read_take.steps(armature, scene, source=played_source(armature))
-    scene, armature = here.find()
-    played = played_source(armature)
     take = take_of(read.parts[0].motion, settings.simulating)
-    yield from check_unchanged.steps(armature, solved_digest, take)
+    yield from check_unchanged.steps(present.find()[1], solved_digest, take)
     yield from redo.remember.steps(take, result.simulated)
-    armature = here.find()[1]
-    played = played_source(armature)
+    _, armature, played = present.find()
     read = read.with_recordings((result.body, *read.recordings[1:]))
     action, slot = yield from write_take.steps(
         armature, played, read, result.moved, {}, suffix=SUFFIX
     )
-    armature = here.find()[1]
-    played = played_source(armature)
+    _, armature, played = present.find()
     history.record(action, played, _entry(settings, result))
     put_to_use(armature, action, slot, Output.ACTION)
     return f"{action.name}: {len(result.moved)} bones moved. {result.simulated.message}"

@@ -12,8 +12,7 @@ from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
 from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import SettingsMixin
 from ..blender.time_slices import Work, in_thread
-from ..jobs.job import Job, ShortSolve, run
-from ..jobs.waiting_child import is_waiting
+from ..jobs.job import Job, run, runs_here
 from ..languages import translated
 from .after_result import result_is_written
 from .navigation import is_in_status_bar, may_pass
@@ -164,8 +163,7 @@ class SolverOperator(SettingsMixin):
         )
         digest = partial(fingerprint, solve.args[0])
         problem_digest = yield from self._in_slices("Reading", in_thread, digest)
-        here = isinstance(solve, ShortSolve) and not is_waiting()  # the window stands still
-        result = run(solve) if here else (yield from self._solve(solve))
+        result = run(solve) if runs_here(solve) else (yield from self._solve(solve))
         message: str = yield from self._in_slices(
             "Writing", type(self).write_scene, *self._read_arguments(), result, problem_digest
         )

@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 import bpy
 
-from ...solvers.errors import InvalidMotionError
-from ..blender.block_references import BlockReference
+from ..blender.block_references import BlockReference, changed_during_solve
 from ..blender.time_slices import Sliced, Steps, in_thread
 from .redo import fingerprint
 
@@ -43,7 +42,4 @@ def check_unchanged(
         return
     name = target.name
     if solved_digest != (yield from in_thread.steps(partial(fingerprint, current))):
-        raise InvalidMotionError(
-            f"The action, the rig or the frame range of {name} was changed during the"
-            " solve; nothing was written. Press the button again."
-        )
+        raise changed_during_solve(name)
