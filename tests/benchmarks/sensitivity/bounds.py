@@ -1,4 +1,4 @@
-"""Constants that bound the run time or the memory; larger values give the same result."""
+"""Constants that bound the run time or the memory, or decide what is drawn."""
 
 BOUNDS: dict[str, tuple[str, ...]] = {
     "bounds the run time, not the result": (
@@ -61,3 +61,28 @@ BOUNDS: dict[str, tuple[str, ...]] = {
     ),
 }
 """Patterns of keys, by reason."""
+DRAWN: tuple[str, ...] = (
+    "markers/stick_sets.MIN_LABELS",
+    "mocap_assist/actions/empties_build.*",
+    "mocap_assist/drawing/body_drawing.EDGE_BRIGHTNESS",
+    "mocap_assist/drawing/confidence_switch.WIDTH_FACTOR",
+    "mocap_assist/drawing/live_figure.*",
+    "mocap_assist/drawing/marker_overlay.BLOCK_FRAMES",
+    "mocap_assist/drawing/marker_overlay.CROSS_RADIUS_M",
+    "mocap_assist/drawing/marker_overlay.TRAIL_S",
+    "mocap_assist/drawing/onion_skin.*_ALPHA",
+    "mocap_assist/drawing/pixel_drawing.*",
+    "mocap_assist/drawing/raw_curves_switch.OPACITY",
+    "mocap_assist/drawing/raw_curves_switch.WIDTH_PX",
+    "mocap_assist/drawing/strip_drawing.*",
+    "mocap_assist/drawing/strip_labels.*",
+    "mocap_assist/drawing/strip_ranges.*_CONFIDENCE",
+    "mocap_assist/drawing/color_icons.*",
+    "mocap_assist/drawing/view_control.*",
+    "mocap_assist/drawing/wipe.LINE_COLOR",
+    "mocap_assist/retarget/bone_highlight.*",
+    "mocap_assist/retarget/bone_list.ROLE_COLUMN",
+    "mocap_assist/retarget/rest_preview.*",
+    "mocap_assist/track/*.OPACITY",
+)
+"""Patterns of keys of constants that decide what is drawn only."""

@@ -2,7 +2,7 @@
 
 from fnmatch import fnmatchcase
 
-from .bounds import BOUNDS
+from .bounds import BOUNDS, DRAWN
 from .guards import GUARDS
 from .named_guards import NAMED_GUARDS
 
@@ -205,30 +205,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "motion/humanoid/role_evidence.MIN_CONFIDENCE",
         "variation/learn_variation.MAX_DISTANCE_RATIO",
     ),
-    "decides what is drawn only": (
-        "markers/stick_sets.MIN_LABELS",
-        "mocap_assist/actions/empties_build.*",
-        "mocap_assist/drawing/body_drawing.EDGE_BRIGHTNESS",
-        "mocap_assist/drawing/confidence_switch.WIDTH_FACTOR",
-        "mocap_assist/drawing/live_figure.*",
-        "mocap_assist/drawing/marker_overlay.BLOCK_FRAMES",
-        "mocap_assist/drawing/marker_overlay.CROSS_RADIUS_M",
-        "mocap_assist/drawing/marker_overlay.TRAIL_S",
-        "mocap_assist/drawing/onion_skin.*_ALPHA",
-        "mocap_assist/drawing/pixel_drawing.*",
-        "mocap_assist/drawing/raw_curves_switch.OPACITY",
-        "mocap_assist/drawing/raw_curves_switch.WIDTH_PX",
-        "mocap_assist/drawing/strip_drawing.*",
-        "mocap_assist/drawing/strip_labels.*",
-        "mocap_assist/drawing/strip_ranges.*_CONFIDENCE",
-        "mocap_assist/drawing/color_icons.*",
-        "mocap_assist/drawing/view_control.*",
-        "mocap_assist/drawing/wipe.LINE_COLOR",
-        "mocap_assist/retarget/bone_highlight.*",
-        "mocap_assist/retarget/bone_list.ROLE_COLUMN",
-        "mocap_assist/retarget/rest_preview.*",
-        "mocap_assist/track/*.OPACITY",
-    ),
+    "decides what is drawn only": DRAWN,
     "fraction of a bar of progress": (
         "workflows/capture_recording.FOREGROUND_FRACTION",
         "mocap_assist/track/solve_*.ACTOR_FRACTION",

@@ -38,6 +38,7 @@ NAMED_GUARDS = (
     "motion/skeletons/shot_boundaries.N_CONTEXT_FRAMES",
     "motion/skeletons/skeleton.MIN_BONE_M",
     "motion/skeletons/still_joints.STILL_RAD",
+    "motion_fitting/fit_motion.NEGLIGIBLE_COST",
     "physics/body.M*_SIZE",
     "physics/body.MIN_FRAME_RATE_HZ",
     "physics/body.MIN_LENGTH_M",
@@ -73,4 +74,5 @@ NAMED_GUARDS = (
     "retargeting/placement.MAX_*",
     "retargeting/root_motion.MAX_TILT_RAD",
 )
-"""A test that is named beside each of them fails when it is made useless."""
+"""The docstring of each names a test that fails when the constant is made useless; `check_guards`
+does not run them."""

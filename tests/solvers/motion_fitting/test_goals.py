@@ -214,3 +214,18 @@ def test_a_knee_that_bends_backward_by_a_few_degrees_does_not_bend_farther(walk,
 
     assert limit.axis @ (1.0, 0.0, 0.0) == pytest.approx(1.0, abs=0.01)
     assert_allclose(limit.minimum, np.radians(bend_deg), atol=np.radians(1.5))
+
+
+class HalfSteps:
+    """A goal whose derivative is twice too large: each step goes half of the way."""
+
+    def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
+        moved = fitted.deviations()[:, :3]
+        error = np.zeros((N_FRAMES, fitted.n_variables))
+        error[:, :3] = moved - 1.0
+        derivative = 2.0 * np.tile(np.eye(fitted.n_variables), (N_FRAMES, 1, 1))
+        equations.add_frames(error, derivative)
+
+
+def test_a_fit_that_hardly_decreases_has_converged(start):
+    assert fit_motion(start, [HalfSteps()]).has_converged
