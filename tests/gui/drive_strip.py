@@ -21,6 +21,7 @@ from driver_scene import (
     large_action,
     lose_arm,
     made_up_confidence,
+    ours,
     settle,
     time_uploads,
     unfold_alone,
@@ -30,10 +31,6 @@ from driver_scene import (
 PACKAGE = "bl_ext.user_default.mocap_assist"
 N_TIMES = 20
 LOOKED_AT = 151
-
-
-def load(name):
-    return import_module(f"{PACKAGE}.mocap_assist.{name}")
 
 
 def import_walk():
@@ -145,12 +142,12 @@ def see_ghosts_and_wipe():
 
 def drag_on_the_strip():
     """A drag sets the range in the Graph Editor and in the Timeline; a click clears it."""
-    scene, drag = bpy.context.scene, load("drawing.strip_drag")
+    scene, drag = bpy.context.scene, ours("drawing.strip_drag")
     for kind, picture in (("GRAPH_EDITOR", "3b-dragged.png"), ("DOPESHEET_EDITOR", None)):
         region = bgui.region("WINDOW", kind)
         with bgui.override("WINDOW", kind):
-            found = load("drawing.strip_reading").strip_of(bpy.context)
-            bottom, row = load("drawing.strip_drawing").strip_height(
+            found = ours("drawing.strip_reading").strip_of(bpy.context)
+            bottom, row = ours("drawing.strip_drawing").strip_height(
                 bpy.context, len(found.rows)
             )
         columns = [region.x + int(part * region.width) for part in (0.4, 0.5, 0.6)]
@@ -179,12 +176,12 @@ def drag_on_the_strip():
 
 def see_raw_curves(armature):
     """The recorded curves of one bone, behind those of the result."""
-    compat = load("blender.compat")
+    compat = ours("blender.compat")
     for bone in armature.pose.bones:
         compat.select_bone(bone, bone.name == "LeftLeg")
     armature.data.bones.active = armature.data.bones["LeftLeg"]
     with bgui.override("WINDOW", "GRAPH_EDITOR"):
-        pairs = load("drawing.raw_curves").shown_pairs(bpy.context)
+        pairs = ours("drawing.raw_curves").shown_pairs(bpy.context)
         bpy.ops.graph.view_all()
     assert pairs and all("LeftLeg" in each.recorded.data_path for each in pairs), pairs
     yield from settle(2)
@@ -210,7 +207,7 @@ def measure():
     for each in bpy.context.view_layer.objects:
         each.select_set(each == as_long)  # Blender need not draw millions of keys
     bpy.context.scene.frame_end = N_FRAMES
-    switch, times, cpu_times = load("drawing.strip_switch"), [], []
+    switch, times, cpu_times = ours("drawing.strip_switch"), [], []
     draw_strip = switch.draw_strip
     uploads = time_uploads()
 

@@ -74,5 +74,5 @@ NAMED_GUARDS = (
     "retargeting/placement.MAX_*",
     "retargeting/root_motion.MAX_TILT_RAD",
 )
-"""The docstring of each names a test that fails when the constant is made useless; `check_guards`
-does not run them."""
+"""The docstring of each names a test that fails when the constant is made useless;
+`check_guards` does not run them."""

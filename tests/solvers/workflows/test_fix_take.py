@@ -185,7 +185,7 @@ def test_markers_become_a_skeleton_with_correct_labels(walk):
     assert result.origin is TakeOrigin.MARKERS and len(result.chain.solved.swaps) == 1
     assert any("1 swapped label" in step for step in result.steps)
     assert isinstance(result.recording, Motion) and result.recording.observed.all()
-    assert result.after.n_spikes < result.before.n_spikes
+    assert result.after.n_spikes == 0
 
 
 def test_points_of_no_marker_set_are_cleaned(rng):
