@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..motion import Motion
 from ..progress import Progress, Remark, unwatched
 from .goal import Goal
@@ -13,6 +15,9 @@ MAX_ROUNDS = 16
 """Number of steps. It bounds the time; most takes need two to seven."""
 MAX_HALVINGS = 8
 """Number of times that a step is halved which makes the cost higher. It bounds the time."""
+MAX_STEP_RAD = 1.0
+"""Radians by which any joint turns in one step. It guards limbs that have to go far, which
+would bend the wrong way (`test_hand_height_scales_with_the_legs`)."""
 SMALL_DECREASE = 1e-2
 """Relative decrease of the cost by a whole step that ends the fit, a ratio. It bounds the
 time: from 1e-9 to 0.1 the errors of planted feet differ by less than 0.1 %."""
@@ -63,6 +68,8 @@ def fit_motion(
     for number in range(1, MAX_ROUNDS + 1):
         progress(number / (MAX_ROUNDS + 1), message)
         step = equations.step
+        turns = step[:, 3 * fitted.root_moves :]
+        damping = min(damping, MAX_STEP_RAD / max(float(np.abs(turns).max()), 1e-9))
         for _ in range(MAX_HALVINGS):
             trial = fitted.moved(damping * step)
             tried = _equations(trial, goals)

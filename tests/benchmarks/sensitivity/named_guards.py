@@ -38,6 +38,7 @@ NAMED_GUARDS = (
     "motion/skeletons/shot_boundaries.N_CONTEXT_FRAMES",
     "motion/skeletons/skeleton.MIN_BONE_M",
     "motion/skeletons/still_joints.STILL_RAD",
+    "motion_fitting/fit_motion.MAX_STEP_RAD",
     "motion_fitting/fit_motion.NEGLIGIBLE_COST",
     "physics/body.M*_SIZE",
     "physics/body.MIN_FRAME_RATE_HZ",
