@@ -56,10 +56,11 @@ def meters_from_unit_name(word: str) -> float | None:
     return METERS.get(word, METERS.get(word.removesuffix("s")))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # numbers that are refused later
 def guess_unit_of_points(points: NDArray[np.float64]) -> float:
     """Return the unit of meters, centimeters and millimeters that gives a person's size."""
     extent = float(np.median(_extents(points).max(axis=1)))
-    if extent == 0.0:
+    if not 0.0 < extent < np.inf:
         return METERS["mm"]
     return min((0.001, 0.01, 1.0), key=lambda unit: abs(np.log(extent * unit / BODY_EXTENT_M)))
 
@@ -169,6 +170,7 @@ def other_standing_axis(
     return f"+{'XYZ'[best]}" if is_sunk and is_tall and best != stated else ""
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def _looks_y_up(points: NDArray[np.float64]) -> bool:
     """Return whether Y rather than Z is up, for points in meters.
 
