@@ -31,8 +31,11 @@ N_LANDMARKS = 33
 MARKS = (b"andmark", b'"keypoints3D"')
 """What the keys of landmarks have in common."""
 MAX_STEP_S = 2.0
-"""Step between two frames in seconds from which stamps are milliseconds. By definition that of
-the reader of files."""
+"""Step between two frames in seconds from which stamps may be milliseconds. By definition that
+of the reader of files."""
+MAX_SPEED = 32.0
+"""Step of the stamps, in steps of the arrival, from which stamps are milliseconds. By
+definition the middle between 1 and 1,000, as ratios go."""
 ROLE_OF_LANDMARK = {
     "shoulder": "UpperArm", "elbow": "LowerArm", "wrist": "Hand", "pinky": "Hand",
     "index": "Hand", "thumb": "Hand", "hip": "UpperLeg", "knee": "LowerLeg", "ankle": "Foot",
@@ -54,8 +57,8 @@ class MediaPipeDecoder:
     """Number of lines to read at a time: four seconds."""
 
     def __init__(self) -> None:
-        self._last_stamp = float("nan")
-        self._unit = 1.0
+        self._last: tuple[float, float] | None = None
+        self._unit: float | None = None
 
     def parts(self, datagram: bytes) -> list[bytes]:
         """Return the lines."""
@@ -96,13 +99,19 @@ class MediaPipeDecoder:
         )
 
     def _seconds(self, stamp: float, arrived: float) -> float:
-        """Return a time stamp in seconds; that of arrival where there is none."""
+        """Return a time stamp in seconds; that of arrival where there is none.
+
+        The first step decides on the unit: a gap in a stream takes as long to arrive.
+        """
         if not np.isfinite(stamp):
             return arrived
-        if stamp - self._last_stamp > MAX_STEP_S and self._last_stamp > 0.0:
-            self._unit = MILLISECOND
-        self._last_stamp = stamp
-        return self._unit * stamp
+        last_stamp, last_arrived = self._last or (stamp, arrived)
+        self._last = (stamp, arrived)
+        step = stamp - last_stamp
+        if self._unit is None and step > 0.0:
+            is_long = step > max(MAX_STEP_S, MAX_SPEED * (arrived - last_arrived))
+            self._unit = MILLISECOND if is_long else 1.0
+        return stamp if self._unit is None else self._unit * stamp
 
 
 def encode_mediapipe(frame: LiveFrame, roles: Mapping[str, int]) -> bytes:

@@ -248,6 +248,18 @@ class TestMediaPipe:
 
         assert times[0] == 7.0 and times[2] == pytest.approx(70.033)
 
+    @pytest.mark.parametrize("unit", [1.0, 1000.0])
+    @pytest.mark.parametrize("steps", [(0.1, 5.0, 0.1), (5.0, 0.1)])
+    def test_a_gap_does_not_change_the_unit_of_the_stamps(self, walk, unit, steps):
+        decoder, moments = MediaPipeDecoder(), np.cumsum([40.0, *steps])
+        times = [
+            next(iter(decoder.decode(json.dumps(self.line(walk, timestamp=unit * time)).encode(),
+                                     90.0 + time))).time
+            for time in moments
+        ]  # fmt: skip
+
+        assert_allclose(times[1:], moments[1:])
+
     def test_landmarks_of_the_image_are_refused(self, walk):
         fields = self.line(walk)
         for point in fields["pose_world_landmarks"]:
