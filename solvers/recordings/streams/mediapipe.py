@@ -12,7 +12,7 @@ import numpy as np
 from ...errors import InvalidFileError, InvalidMotionError
 from ...json_text import parse_json
 from ...motion import Sensor
-from ..conventions import from_azure_space
+from ..conventions import MAX_TIME_S, from_azure_space
 from ..joint_files import (
     LANDMARK_JOINTS,
     MILLISECOND,
@@ -111,7 +111,10 @@ class MediaPipeDecoder:
         if self._unit is None and step > 0.0:
             is_long = step > max(MAX_STEP_S, MAX_SPEED * (arrived - last_arrived))
             self._unit = MILLISECOND if is_long else 1.0
-        return stamp if self._unit is None else self._unit * stamp
+        time = stamp if self._unit is None else self._unit * stamp
+        if not abs(time) <= MAX_TIME_S:
+            raise InvalidMotionError(f"A frame's time is not a number up to {MAX_TIME_S:g}.")
+        return time
 
 
 def encode_mediapipe(frame: LiveFrame, roles: Mapping[str, int]) -> bytes:

@@ -14,6 +14,7 @@ from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Skeleton
 from ..conventions import (
+    MAX_TIME_S,
     rotations_y_up_from_z_up,
     rotations_z_up_from_y_up,
     y_up_from_z_up,
@@ -148,7 +149,7 @@ def _time(boxes: dict[bytes, bytes]) -> float:
         (time,) = struct.unpack("<d", clock)
     else:
         (time,) = struct.unpack("<f", boxes[b"time"])
-    if not np.isfinite(time):
+    if not abs(time) <= MAX_TIME_S:
         raise ValueError("time")
     return float(time)
 

@@ -14,6 +14,7 @@ from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...json_text import parse_json
 from ...rotations import inverse, multiply
+from ..conventions import MAX_TIME_S
 from ..live import PoseFrame
 from .axes import (
     checked_positions,
@@ -110,6 +111,8 @@ class RokokoDecoder:
         if not isinstance(actors, list) or len(actors) > MAX_ACTORS:
             raise InvalidMotionError(f"A packet of Rokoko lacks up to {MAX_ACTORS} actors.")
         time = _number(scene.get("timestamp", arrived))
+        if not abs(time) <= MAX_TIME_S:
+            raise InvalidMotionError(f"A frame's time is not a number up to {MAX_TIME_S:g}.")
         for actor in actors:
             yield self._frame(_mapping(actor), time)
 

@@ -11,6 +11,7 @@ from solvers.motion import Skeleton
 from solvers.recordings.live import PoseFrame, joints_from_pose
 from solvers.samples import GaitSettings, walking_gait
 from solvers.workflows import LiveTakeSettings, PoseTake
+from solvers.workflows.live.time_slots import TimeSlots
 
 SHORT = LiveTakeSettings(calibration_s=1.0)
 
@@ -98,3 +99,20 @@ def test_a_stream_without_legs_is_reported(frames):
 
     with pytest.raises(InvalidMotionError, match="no bones for head, leftUpperLeg"):
         PoseTake(SHORT).add(still)
+
+
+@pytest.mark.parametrize("jump", [1e4, 1e11, 1e307, -1e9])
+def test_a_clock_that_jumps_goes_on_from_the_last_slot(started, frames, jump):
+    later = [replace(frame, time=frame.time + jump) for frame in frames[32:34]]
+
+    poses = [pose for frame in [frames[31], *later] for pose in started.add([frame])]
+
+    assert [pose.frame for pose in poses[:2]] == [1, 2] and poses[-1].frame <= 3
+
+
+def test_a_long_gap_keeps_its_duration():
+    clock = [100.0]
+    slots = TimeSlots(3.0, 30.0, now=lambda: clock[0])
+    clock[0] += 60.0
+
+    assert slots.next(63.0) == 1800

@@ -13,6 +13,7 @@ from solvers.recordings.live import StreamReader, motion_from_poses
 from solvers.recordings.streams import StreamDecoder, StreamProtocol, encode_recording
 from solvers.recordings.streams.lz4 import MAGIC, decompress
 from solvers.recordings.streams.mediapipe import MediaPipeDecoder
+from solvers.recordings.streams.mocopi import MocopiDecoder
 from solvers.recordings.streams.osc import write_bundle, write_message
 from solvers.recordings.streams.rokoko import BONES, T_POSE, RokokoDecoder
 from solvers.recordings.streams.vmc import MAX_MISSED_FRAMES, VmcDecoder
@@ -196,6 +197,11 @@ class TestRokoko:
         assert_allclose(np.abs(frame.rotations[:, 0]), 1.0, atol=1e-5)
         assert_allclose(positions_of(frame)["leftHand"], (0.7, 0.0, 1.4), atol=1e-6)
 
+    def test_times_that_are_none_are_refused(self):
+        scene = {"timestamp": 1e12, "actors": [self.packet()]}
+        with pytest.raises(InvalidMotionError, match="time is not a number up to"):
+            list(RokokoDecoder().decode(json.dumps({"scene": scene}).encode(), 0.0))
+
     def test_version_2_and_several_actors_are_read(self):
         bones = self.packet()["body"]
         fields = {"version": 2, "timestamp": 1.0, "actors": [
@@ -214,6 +220,18 @@ class TestRokoko:
         frames = list(StreamReader(decoder).read(MAGIC + b"\x40\x40\x00" + raw + bytes(4)))
 
         assert decoder.protocol is StreamProtocol.ROKOKO and len(frames) == 1
+
+
+@pytest.mark.parametrize("time", [1e12, np.inf])
+def test_times_of_mocopi_that_are_none_are_refused(walk, time):
+    (packets, *_) = encode_recording(walk, StreamProtocol.MOCOPI)
+    packet = packets.datagrams[-1]
+    clock = packet.index(b"uttm") + 4
+    changed = packet[:clock] + struct.pack("<d", time) + packet[clock + 8 :]
+
+    assert len(list(MocopiDecoder().decode(packet, 0.0))) == 1
+    with pytest.raises(InvalidMotionError, match="mocopi is damaged"):
+        list(MocopiDecoder().decode(changed, 0.0))
 
 
 def test_matches_of_compressed_blocks_are_repeated():
