@@ -28,6 +28,8 @@ HEADER = struct.Struct(">6sIBBIBBBBHH")
 """Type, sample, datagram, number of items, time in ms, character, numbers of segments, props
 and fingers, reserved, size of the rest."""
 SEGMENT = np.dtype([("id", ">i4"), ("position", ">f4", 3), ("rotation", ">f4", 4)])
+MAX_CHARACTERS = 8
+"""Maximum number of characters; MVN streams four. It bounds memory."""
 LAST_DATAGRAM = 0x80
 """Bit of the datagram's number that marks the last one of a sample."""
 SIDE = ("Shoulder", "UpperArm", "ForeArm", "Hand")
@@ -58,6 +60,19 @@ class _Header(NamedTuple):
     character: int
 
 
+class _Character:
+    """The segments of a sample that came, and the skeleton of a character."""
+
+    def __init__(self) -> None:
+        self.poses = SegmentPoses()
+        self.sample = -1
+        self.segments: list[NDArray[np.void]] = []
+
+    def start(self, sample: int) -> None:
+        """Forget the segments that came."""
+        self.sample, self.segments = sample, []
+
+
 class XsensDecoder:
     """Gathers the segments of samples; invalid datagrams change nothing."""
 
@@ -65,9 +80,8 @@ class XsensDecoder:
     """Number of datagrams to read at a time: a second at 240 Hz."""
 
     def __init__(self) -> None:
-        self._sample: tuple[int, int] | None = None
-        self._segments: list[NDArray[np.void]] = []
-        self._poses = SegmentPoses()
+        self._characters: dict[int, _Character] = {}
+        self._has_poses = False
         self._unit: float | None = None
 
     def parts(self, datagram: bytes) -> list[bytes]:
@@ -80,27 +94,34 @@ class XsensDecoder:
         Raises
         ------
         InvalidMotionError
-            The datagram is damaged, of another type, or has an invalid value.
+            The datagram is damaged or has an invalid value, or poses do not come at all.
         """
         if len(part) < HEADER.size:
             raise InvalidMotionError(DAMAGED)
         header = _Header(*HEADER.unpack_from(part)[:6])
         if header.kind != POSE:
+            if self._has_poses and header.kind.startswith(MAGIC):
+                return
             raise InvalidMotionError(OTHER_TYPE)
         content = part[HEADER.size :]
         if header.n_items * SEGMENT.itemsize != len(content):
             raise InvalidMotionError(DAMAGED)
-        key = (header.character, header.sample)
-        if key != self._sample:
-            self._sample, self._segments = key, []
-        self._segments.append(np.frombuffer(content, SEGMENT))
+        character = self._character(header.character)
+        if header.sample != character.sample:
+            character.start(header.sample)
+        character.segments.append(np.frombuffer(content, SEGMENT))
         if header.datagram & LAST_DATAGRAM:
-            segments = np.concatenate(self._segments)
-            self._sample, self._segments = None, []
+            segments = np.concatenate(character.segments)
+            character.start(-1)
             yield self._frame(header, segments)
-        elif len(self._segments) > N_SEGMENTS:
-            self._sample, self._segments = None, []
+        elif len(character.segments) > N_SEGMENTS:
+            character.start(-1)
             raise InvalidMotionError(DAMAGED)
+
+    def _character(self, number: int) -> _Character:
+        if number not in self._characters and len(self._characters) >= MAX_CHARACTERS:
+            self._characters.clear()
+        return self._characters.setdefault(number, _Character())
 
     def _frame(self, header: _Header, segments: NDArray[np.void]) -> PoseFrame:
         """Return the frame of a sample; props and fingers come after the body."""
@@ -112,7 +133,8 @@ class XsensDecoder:
         checked_positions(CENTIMETER * raw)
         if self._unit is None:
             self._unit = guess_unit(PARENTS, raw - raw[list(PARENTS)])
-        return self._poses.frame(
+        self._has_poses = True
+        return self._characters[header.character].poses.frame(
             MILLISECOND * header.milliseconds,
             header.character,
             NAMES,

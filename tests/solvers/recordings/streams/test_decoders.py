@@ -132,9 +132,9 @@ class TestVmc:
 
 
 class TestXsens:
-    def datagram(self, segments, *, sample=1, number=0x80, kind=b"MXTP02"):
+    def datagram(self, segments, *, sample=1, number=0x80, kind=b"MXTP02", character=3):
         content = segments.tobytes()
-        header = (kind, sample, number, len(segments), 40, 3, 23, 0, 0, 0, len(content))
+        header = (kind, sample, number, len(segments), 40, character, 23, 0, 0, 0, len(content))
         return HEADER.pack(*header) + content
 
     def segments(self, unit):
@@ -167,6 +167,30 @@ class TestXsens:
         (frame,) = decoder.decode(self.datagram(segments, sample=2), 0.0)
 
         assert len(frame.names) == N_SEGMENTS
+
+    def test_two_characters_keep_their_skeletons_and_their_samples(self):
+        decoder, both = XsensDecoder(), {0: self.segments(1.0), 1: self.segments(1.2)}
+        frames = [
+            frame
+            for sample in range(3)
+            for start, number in ((0, 0), (10, 0x81))
+            for character, segments in both.items()
+            for frame in decoder.decode(
+                self.datagram(segments[start:][: 13 if start else 10], sample=sample,
+                              number=number, character=character), 0.0)
+        ]  # fmt: skip
+
+        assert [frame.body for frame in frames] == [0, 1] * 3
+        for body in both:
+            assert len({id(frame.skeleton) for frame in frames[body::2]}) == 1
+
+    def test_datagrams_next_to_the_poses_are_no_frames(self):
+        decoder = XsensDecoder()
+        (_,) = decoder.decode(self.datagram(self.segments(1.0)), 0.0)
+
+        assert not list(
+            decoder.decode(self.datagram(self.segments(1.0), kind=b"MXTP20"), 0.0)
+        )
 
     def test_other_datagrams_are_reported_with_advice(self):
         with pytest.raises(InvalidMotionError, match="switch on the position and orientation"):
