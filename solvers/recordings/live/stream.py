@@ -34,7 +34,7 @@ class FrameDecoder(Protocol):
 
     @property
     def max_parts(self) -> int:
-        """Maximum number of parts to decode at a time."""
+        """Maximum number of parts to decode at a time; `parts` may change it."""
 
     def parts(self, datagram: bytes) -> list[bytes]:
         """Return what is decoded by itself."""
@@ -115,15 +115,16 @@ class StreamReader:
         Parts after the first `max_parts` of the decoder are counted as skipped, which limits
         the time that invalid input takes.
         """
-        n_remaining = self._decoder.max_parts
+        n_read = 0
         for datagram in datagrams:
-            if n_remaining <= 0:
+            if n_read >= self._decoder.max_parts:
                 self.counts.skipped += max(datagram.count(b"\n"), 1)
                 continue
             parts = self._decoder.parts(datagram)
+            n_remaining = max(self._decoder.max_parts - n_read, 0)
             self.counts.skipped += max(len(parts) - n_remaining, 0)
             yield from self._frames(parts[:n_remaining], arrived)
-            n_remaining = max(n_remaining - len(parts), 0)
+            n_read += len(parts)
 
     def _frames(self, parts: Iterable[bytes], arrived: float) -> Iterator[StreamFrame]:
         for part in filter(bytes.strip, parts):

@@ -1,5 +1,8 @@
 """Convert numbers of streams: axes of Unity, and limits that all streams share."""
 
+import math
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...arrays import Array
@@ -52,6 +55,11 @@ def checked_positions(positions: Array) -> Array:
         limit = f"{MAX_POSITION_M:g}"
         raise InvalidMotionError(f"A frame's position is not a number up to {limit}.")
     return positions
+
+
+def is_rotation(quaternion: Sequence[float]) -> bool:
+    """Return whether a quaternion is a rotation, up to rounding."""
+    return MIN_NORM <= math.hypot(*quaternion) <= MAX_NORM
 
 
 def checked_rotations(rotations: Array) -> Array:

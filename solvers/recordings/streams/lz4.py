@@ -80,7 +80,8 @@ def _append_match(output: bytearray, distance: int, count: int) -> None:
     """Append what stands at a distance before the end; it may overlap with itself."""
     if not 0 < distance <= len(output) or count > MAX_OUTPUT_BYTES:
         raise IndexError
-    match = bytes(output[-distance:][:count])
+    start = len(output) - distance
+    match = bytes(output[start : start + count])
     repeats = -(-count // len(match))
     output += (match * repeats)[:count]
     _check_size(output)

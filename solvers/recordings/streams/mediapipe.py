@@ -26,6 +26,9 @@ from .axes import checked_positions
 
 MAX_LINE_BYTES = 32_768
 """Maximum size of a line in bytes; 33 landmarks take about 4,000."""
+MAX_LISTS = 1024
+"""Maximum number of lists and objects in a line; landmarks of body, hands and face take 600. It
+bounds the time of a line."""
 DAMAGED = "A line with landmarks is damaged."
 N_LANDMARKS = 33
 MARKS = (b"andmark", b'"keypoints3D"')
@@ -74,6 +77,8 @@ class MediaPipeDecoder:
         """
         if len(part) > MAX_LINE_BYTES:
             raise InvalidMotionError(DAMAGED)
+        if part.count(b"[") + part.count(b"{") > MAX_LISTS:
+            raise InvalidMotionError(f"A frame has more than {MAX_LISTS} lists.")
         try:
             fields = parse_json(part, parse_constant=_refuse)
         except ValueError:

@@ -26,11 +26,17 @@ from .axes import (
 )
 from .humanoid import PARENTS, parent_indices
 from .lz4 import MAGIC as LZ4_MAGIC
-from .lz4 import decompress
+from .lz4 import MAX_OUTPUT_BYTES, decompress
 from .segments import SegmentPoses
 
 MAX_ACTORS = 8
 """Maximum number of actors; Studio streams five. It bounds the time of a packet."""
+MAX_LISTS = 4096
+"""Maximum number of lists and objects in a packet; five actors with fingers take 900. It bounds
+the time of a packet."""
+MAX_POLL_BYTES = 1 << 20
+"""Maximum number of decompressed bytes that arrive together: ten frames of five actors. It
+bounds the time of floods."""
 HALF = float(np.sqrt(0.5))
 TRUNK = {"hip": "hips", "spine": "spine", "chest": "chest", "neck": "neck", "head": "head"}
 LIMBS = {
@@ -88,6 +94,8 @@ class RokokoDecoder:
 
     def __init__(self) -> None:
         self._actors: dict[str, tuple[int, SegmentPoses]] = {}
+        self._arrived = float("nan")
+        self._n_bytes = 0
 
     def parts(self, datagram: bytes) -> list[bytes]:
         """Return what is decoded by itself."""
@@ -101,7 +109,9 @@ class RokokoDecoder:
         InvalidMotionError
             The packet is damaged, or has an invalid value.
         """
-        text = decompress(part) if part.startswith(LZ4_MAGIC) else part
+        text = self._decompressed(part, arrived) if part.startswith(LZ4_MAGIC) else part
+        if text.count(b"[") + text.count(b"{") > MAX_LISTS:
+            raise InvalidMotionError(f"A frame has more than {MAX_LISTS} lists.")
         try:
             fields = parse_json(text, parse_constant=_refuse)
         except ValueError:
@@ -115,6 +125,17 @@ class RokokoDecoder:
             raise InvalidMotionError(f"A frame's time is not a number up to {MAX_TIME_S:g}.")
         for actor in actors:
             yield self._frame(_mapping(actor), time)
+
+    def _decompressed(self, part: bytes, arrived: float) -> bytes:
+        """Return the content of a packet, as long as the others of its poll are not too large."""
+        if arrived != self._arrived:
+            self._arrived, self._n_bytes = arrived, 0
+        if self._n_bytes > MAX_POLL_BYTES:
+            raise InvalidMotionError("More compressed packets came at once than are read.")
+        self._n_bytes += MAX_OUTPUT_BYTES
+        text = decompress(part)
+        self._n_bytes += len(text) - MAX_OUTPUT_BYTES
+        return text
 
     def _frame(self, actor: Mapping[str, Any], time: float) -> PoseFrame:
         name = str(actor.get("name", ""))

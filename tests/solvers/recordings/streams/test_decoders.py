@@ -121,6 +121,58 @@ class TestVmc:
 
         assert [frame.time for frame in self.decode(unity_body(), 5.1, decoder)][-1] == 5.1
 
+    @pytest.mark.parametrize("is_first", [True, False])
+    def test_two_frames_of_a_poll_have_times_of_their_own(self, is_first):
+        """A message in each packet at 60 Hz, polled 30 times a second."""
+        reader, frames = StreamReader(VmcDecoder()), []
+        for poll in range(15):
+            packets = []
+            for number in (2 * poll, 2 * poll + 1):
+                time = write_message("/VMC/Ext/T", 10.0 + number / 60.0)
+                packets += [time, *unity_body()] if is_first else [*unity_body(), time]
+            frames += list(reader.read(*packets, arrived=7.0 + poll / 30.0))
+
+        assert reader.counts.late == 0 and len(frames) >= 28
+        assert_allclose(np.diff([frame.time for frame in frames[2:]]), 1 / 60.0, atol=1e-5)
+
+    def test_a_clock_that_stands_still_is_left_out(self):
+        """Seconds since 1970 as a 32-bit number."""
+        decoder = VmcDecoder()
+        packet = write_bundle([write_message("/VMC/Ext/T", 1.7e9), *unity_body()])
+        times = [
+            frame.time for poll in range(9) for frame in self.decode([packet], poll / 30, decoder)
+        ]
+
+        assert_allclose(times[-4:], np.arange(5, 9) / 30)
+
+    def test_a_bone_without_a_rotation_is_left_out(self):
+        still = bone("Spine", (0.0, 0.2, 0.0), (0.0, 0.0, 0.0, 0.0))
+        root = write_message("/VMC/Ext/Root/Pos", "root", *[0.0] * 7)
+        body = unity_body()
+
+        frames = self.decode([write_bundle([root, body[0], still, *body[2:]])] * 3)
+
+        assert frames[-1].names == ("hips", "leftUpperArm", "leftLowerArm")
+        assert_allclose(frames[-1].root_position, (0.0, 0.0, 1.0))
+
+    def test_whole_numbers_are_numbers(self):
+        hips = write_message("/VMC/Ext/Bone/Pos", "Hips", 0, 1, 0, 0, 0, 0, 1)
+
+        frame, *_ = self.decode([hips, hips])
+
+        assert_allclose(frame.root_position, (0.0, 0.0, 1.0))
+
+    def test_a_packet_with_a_damaged_bone_changes_nothing(self):
+        decoder = VmcDecoder()
+        self.decode([write_bundle(unity_body())] * 2, decoder=decoder)
+        wrong = write_bundle([bone("Hips", (5.0, 1.0, 0.0)), bone("Spine", (np.nan, 0.0, 0.0))])
+        with pytest.raises(InvalidMotionError):
+            self.decode([wrong], decoder=decoder)
+
+        frame, *_ = self.decode(unity_body()[1:] + unity_body(), decoder=decoder)
+
+        assert_allclose(frame.root_position, (0.0, 0.0, 1.0))
+
     @pytest.mark.parametrize("value", [np.nan, np.inf, 1e6])
     def test_numbers_that_are_none_change_nothing(self, value):
         decoder = VmcDecoder()
