@@ -23,7 +23,7 @@ def issue_text(state: ListenerState) -> str:
     """Return the most important issue of a stream; empty without one."""
     if state.is_silent:
         return "The stream has stopped."
-    if state.n_others:
+    if state.other:
         return f"{state.other} sends too, and is ignored."
     if state.counts.frames:
         return ""

@@ -23,7 +23,7 @@ buffer."""
 BUFFER_BYTES = 1 << 20
 """Size of the system's receive buffer."""
 SENDER_TIMEOUT_S = 1.0
-"""Seconds of silence after which another sender is followed. By definition that of a body
+"""Seconds of silence after which a sender is gone, and another one is followed. By definition that of a body
 (`BODY_TIMEOUT_S`)."""
 MAX_SEEN = 32
 """Number of datagrams whose senders are remembered. It bounds memory."""
@@ -84,16 +84,14 @@ class Receiver:
     ) -> None:
         self.sender: Address | None = None
         """The sender that is followed."""
-        self.other: Address | None = None
-        """The last one that was not."""
         self.n_followed = 0
         """Number of senders that were followed, one after the other."""
-        self.n_others = 0
-        """Number of datagrams from senders that are not followed."""
         self.n_refused = 0
         """Number of datagrams from addresses that are not listed."""
         self._networks, self._now = tuple(networks), now
         self._heard_at = float("-inf")
+        self._other: Address | None = None
+        self._other_at = float("-inf")
         self._released: Address | None = None
         self._n_received = 0
         self._seen = deque[Address](maxlen=MAX_SEEN)
@@ -118,6 +116,11 @@ class Receiver:
         host, port = self._socket.getsockname()
         return str(host), int(port)
 
+    @property
+    def other(self) -> Address | None:
+        """Another sender, which is not followed, as long as it sends."""
+        return self._other if self._now() - self._other_at <= SENDER_TIMEOUT_S else None
+
     def poll(self) -> list[bytes]:
         """Return datagrams of the followed sender since the last poll, up to the maximum."""
         received = self._receive()
@@ -140,7 +143,7 @@ class Receiver:
             self._follow(sender)
         self._seen.append(sender)
         if sender != self.sender:
-            self.n_others, self.other = self.n_others + 1, sender
+            self._other, self._other_at = sender, self._now()
             return False
         self._n_received += 1
         self._heard_at = self._now()
@@ -153,6 +156,7 @@ class Receiver:
 
     def _follow(self, sender: Address) -> None:
         self.sender, self._n_received, self._heard_at = sender, 0, self._now()
+        self._other = None
 
     def release(self) -> None:
         """Follow another sender if there is one: what the followed one sends is of no use."""

@@ -25,10 +25,8 @@ class ListenerState(NamedTuple):
     rate: float
     """Hertz."""
     counts: StreamCounts
-    n_others: int
-    """Number of datagrams of other senders."""
     other: str
-    """Address and port of the last other sender."""
+    """Address and port of another one that sends now; empty without one."""
     n_refused: int
     """Number of datagrams from addresses that are not allowed."""
     is_silent: bool
@@ -83,7 +81,6 @@ class StreamListener:
             self._decoder.protocol,
             self._reader.rate,
             self.counts,
-            receiver.n_others,
             _text(receiver.other),
             receiver.n_refused,
             self._has_frames and self._now() - self._useful_at > SILENCE_S,

@@ -18,7 +18,7 @@ from ...reconstruction import (
 )
 from ...reconstruction.joint_rotations import motion_from_positions
 from ...recordings.live import LiveFrame, StreamFrame, recording_from_frames
-from .live_motion import DEFAULT_SETTINGS, LiveMotion, LiveTakeSettings
+from .live_motion import DEFAULT_SETTINGS, MAX_FIRST_FRAMES, LiveMotion, LiveTakeSettings
 from .time_slots import TimeSlots, is_continued
 
 MAX_WAITING = 2
@@ -88,6 +88,7 @@ class LiveTake:
             if self._first_frames and not _continues(self._first_frames[-1], frame):
                 self._first_frames.clear()
             self._first_frames.append(frame)
+        del self._first_frames[:-MAX_FIRST_FRAMES]
         if self.calibrated_fraction < 1.0:
             return
         try:

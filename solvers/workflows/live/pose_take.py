@@ -8,15 +8,12 @@ from ...errors import InvalidFileError, InvalidMotionError
 from ...motion import Motion, find_humanoid_map
 from ...motion.humanoid import ESSENTIAL_ROLES
 from ...recordings.live import PoseFrame, StreamFrame, measured_rate, motion_from_poses
-from .live_motion import DEFAULT_SETTINGS, LiveMotion, LiveTakeSettings
+from .live_motion import DEFAULT_SETTINGS, MAX_FIRST_FRAMES, LiveMotion, LiveTakeSettings
 from .time_slots import TimeSlots, is_continued
 
 MAX_WAITING = 12
 """Number of frames that may wait to be taken; older ones are skipped. It bounds the delay when
 frames arrive faster than they are taken: a tenth of a second."""
-MAX_FIRST_FRAMES = 8192
-"""Number of frames of the calibration that are kept. It bounds the memory of the fastest
-streams."""
 
 
 class PoseTake:

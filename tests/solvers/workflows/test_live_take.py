@@ -11,6 +11,7 @@ from solvers.motion import forward_kinematics
 from solvers.motion.humanoid import posture_joints
 from solvers.recordings.live import frames_from_recording
 from solvers.workflows import LiveTake, LiveTakeSettings
+from solvers.workflows.live.live_motion import MAX_FIRST_FRAMES
 
 SHORT = LiveTakeSettings(calibration_s=1.0)
 
@@ -72,6 +73,15 @@ def test_frames_that_wait_too_long_are_skipped(started, frames):
 
 def test_frames_of_other_joints_are_ignored(started, frames):
     assert started.add([replace(frames[31], names=tuple(map(str, range(20))))]) == []
+
+
+def test_frames_of_a_clock_that_hardly_moves_are_bounded(frames):
+    take, step = LiveTake(SHORT), 1e-6
+    many = [replace(frames[0], time=step * number) for number in range(2 * MAX_FIRST_FRAMES)]
+    take.add(many[:MAX_FIRST_FRAMES])
+    take.add(many[MAX_FIRST_FRAMES:])
+
+    assert take.calibrated_fraction == pytest.approx(step * (MAX_FIRST_FRAMES - 1))
 
 
 @pytest.mark.parametrize("change", [{"body": 7}, {"time": 5.0}])

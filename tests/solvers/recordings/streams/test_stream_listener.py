@@ -70,7 +70,7 @@ def test_the_first_sender_is_followed_and_the_other_named(listener, sender, cloc
 
     assert {frame.positions[0, 0] for frame in came} == {1.0} and len(came) == 10
     state = listener.state
-    assert (state.sender, state.other, state.n_others) == (name_of(first), name_of(second), 5)
+    assert (state.sender, state.other) == (name_of(first), name_of(second))
     assert state.protocol is StreamProtocol.JSON and state.rate == pytest.approx(20.0)
 
 
@@ -89,6 +89,29 @@ def test_another_sender_is_followed_when_the_first_is_silent(listener, sender, c
     state = listener.state
     assert (state.sender, state.protocol) == (name_of(second), StreamProtocol.VMC)
     assert not state.is_silent
+
+
+def test_another_sender_is_named_as_long_as_it_sends_and_is_not_followed(
+    listener, sender, clock
+):
+    first, second = sender(), sender()
+    for number in range(20):
+        if number < 3:
+            first.send(line(0.1 * number))
+            first.send(line(0.1 * number + 0.05))
+        second.send(line(0.1 * number))
+        listener.poll()
+        clock.time += 0.1
+        if number == 2:
+            assert listener.state.other == name_of(second)
+    assert (listener.state.sender, listener.state.other) == (name_of(second), "")
+
+    first.send(line(9.0))
+    second.send(line(2.0))
+    listener.poll()
+    assert listener.state.other == name_of(first)
+    clock.time += 1.1
+    assert listener.state.other == ""
 
 
 def test_a_sender_of_nothing_useful_does_not_block_the_tracker(listener, sender, clock):
@@ -110,7 +133,7 @@ def test_a_program_that_sends_each_datagram_from_a_new_port_is_one_sender(listen
         sender().send(line(0.1 * number))
 
     assert len(listener.poll()) == 5
-    assert listener.state.n_others == 0
+    assert listener.state.other == ""
 
 
 def test_unknown_packets_are_reported_in_one_sentence(listener, sender):
