@@ -17,7 +17,13 @@ from .mediapipe_json import (
     is_mediapipe_json,
     read_mediapipe_json,
 )
-from .mediapipe_landmarks import LANDMARK_JOINTS, MILLISECOND, is_world, with_computed_joints
+from .mediapipe_landmarks import (
+    HIPS,
+    LANDMARK_JOINTS,
+    MILLISECOND,
+    is_world,
+    with_computed_joints,
+)
 from .msr_action3d import is_msr_action3d, read_msr_action3d
 from .ntu_skeleton import is_ntu_skeleton, open_ntu_skeleton
 from .nuitrack import (
@@ -33,6 +39,7 @@ from .unnamed_joints import has_layout
 from .zed_json import is_zed_json, open_zed_json
 
 __all__ = [
+    "HIPS",
     "LANDMARK_JOINTS",
     "MILLISECOND",
     "body_of_points",

@@ -23,8 +23,8 @@ buffer."""
 BUFFER_BYTES = 1 << 20
 """Size of the system's receive buffer."""
 SENDER_TIMEOUT_S = 1.0
-"""Seconds of silence after which a sender is gone, and another one is followed. By definition that of a body
-(`BODY_TIMEOUT_S`)."""
+"""Seconds of silence after which a sender is gone, and another one is followed. By definition
+that of a body (`BODY_TIMEOUT_S`)."""
 MAX_SEEN = 32
 """Number of datagrams whose senders are remembered. It bounds memory."""
 

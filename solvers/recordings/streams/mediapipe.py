@@ -1,4 +1,4 @@
-"""Landmarks of MediaPipe and FreeMoCap, a frame of JSON in each line.
+"""Landmarks of MediaPipe, a frame of JSON in each line.
 
 There is no standard: read is what the reader of files reads, 33 world landmarks of a body.
 """
@@ -9,11 +9,13 @@ from typing import NoReturn
 
 import numpy as np
 
+from ...arrays import Array
 from ...errors import InvalidFileError, InvalidMotionError
 from ...json_text import parse_json
 from ...motion import Sensor
 from ..conventions import MAX_TIME_S, from_azure_space
 from ..joint_files import (
+    HIPS,
     LANDMARK_JOINTS,
     MILLISECOND,
     frame_landmarks,
@@ -84,7 +86,7 @@ class MediaPipeDecoder:
         except ValueError:
             raise InvalidMotionError(DAMAGED) from None
         landmarks = frame_landmarks(fields, "A frame")
-        if landmarks is None:
+        if landmarks is None or not _shows_hips(landmarks):
             return
         points = landmarks[None, :, :3]
         if not is_world(points):
@@ -120,6 +122,12 @@ class MediaPipeDecoder:
         if not abs(time) <= MAX_TIME_S:
             raise InvalidMotionError(f"A frame's time is not a number up to {MAX_TIME_S:g}.")
         return time
+
+
+def _shows_hips(landmarks: Array) -> bool:
+    """Return whether the hips were seen: where they were not, all is NaN or zero."""
+    hips = landmarks[HIPS, :3]
+    return bool(np.isfinite(hips).all() and hips.any())
 
 
 def encode_mediapipe(frame: LiveFrame, roles: Mapping[str, int]) -> bytes:

@@ -127,7 +127,7 @@ class RokokoDecoder:
             yield self._frame(_mapping(actor), time)
 
     def _decompressed(self, part: bytes, arrived: float) -> bytes:
-        """Return the content of a packet, as long as the others of its poll are not too large."""
+        """Return the content of a packet, unless those of its poll are too large."""
         if arrived != self._arrived:
             self._arrived, self._n_bytes = arrived, 0
         if self._n_bytes > MAX_POLL_BYTES:

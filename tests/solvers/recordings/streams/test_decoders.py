@@ -140,7 +140,9 @@ class TestVmc:
         decoder = VmcDecoder()
         packet = write_bundle([write_message("/VMC/Ext/T", 1.7e9), *unity_body()])
         times = [
-            frame.time for poll in range(9) for frame in self.decode([packet], poll / 30, decoder)
+            frame.time
+            for poll in range(9)
+            for frame in self.decode([packet], poll / 30, decoder)
         ]
 
         assert_allclose(times[-4:], np.arange(5, 9) / 30)
@@ -240,9 +242,7 @@ class TestXsens:
         decoder = XsensDecoder()
         (_,) = decoder.decode(self.datagram(self.segments(1.0)), 0.0)
 
-        assert not list(
-            decoder.decode(self.datagram(self.segments(1.0), kind=b"MXTP20"), 0.0)
-        )
+        assert not list(decoder.decode(self.datagram(self.segments(1.0), kind=b"MXTP20"), 0.0))
 
     def test_other_datagrams_are_reported_with_advice(self):
         with pytest.raises(InvalidMotionError, match="switch on the position and orientation"):
@@ -346,11 +346,10 @@ class TestMediaPipe:
     @pytest.mark.parametrize("steps", [(0.1, 5.0, 0.1), (5.0, 0.1)])
     def test_a_gap_does_not_change_the_unit_of_the_stamps(self, walk, unit, steps):
         decoder, moments = MediaPipeDecoder(), np.cumsum([40.0, *steps])
-        times = [
-            next(iter(decoder.decode(json.dumps(self.line(walk, timestamp=unit * time)).encode(),
-                                     90.0 + time))).time
-            for time in moments
-        ]  # fmt: skip
+        times = []
+        for time in moments:
+            line = json.dumps(self.line(walk, timestamp=unit * time)).encode()
+            times += [frame.time for frame in decoder.decode(line, 90.0 + time)]
 
         assert_allclose(times[1:], moments[1:])
 
@@ -363,4 +362,8 @@ class TestMediaPipe:
             list(MediaPipeDecoder().decode(json.dumps(fields).encode(), 0.0))
 
     def test_frames_without_a_body_are_none(self):
-        assert not list(MediaPipeDecoder().decode(b'{"pose_world_landmarks": []}', 0.0))
+        decoder = MediaPipeDecoder()
+        for point in ({"x": None, "y": None, "z": None}, {"x": 0, "y": 0, "z": 0}):
+            line = json.dumps({"pose_world_landmarks": [point] * 33}).encode()
+            assert not list(decoder.decode(line, 0.0))
+        assert not list(decoder.decode(b'{"pose_world_landmarks": []}', 0.0))

@@ -97,6 +97,18 @@ def test_joints_have_the_positions_that_were_sent(walk, protocol):
     assert_allclose(came, true[:, legs] - center[:, None], atol=1e-4)
 
 
+def test_frames_of_landmarks_without_a_body_are_left_out(walk):
+    names = ("HipLeft", "HipRight", "KneeLeft", "Head")
+    positions = np.tile(
+        [[0.1, 0.0, 0.9], [-0.1, 0.0, 0.9], [0.1, 0.0, 0.5], [0.0, 0.0, 1.6]], (9, 1, 1)
+    )
+    positions[2:4], positions[5, 0] = np.nan, np.nan
+
+    frames, state = received(Tracks(names, positions, 30.0), StreamProtocol.MEDIAPIPE)
+
+    assert (len(frames), state.counts.dropped, state.counts.why) == (6, 0, "")
+
+
 @pytest.mark.parametrize("protocol", BONES)
 def test_a_rig_that_rests_in_another_pose_arrives_the_same(walk, protocol):
     """Arms that hang in the rest pose hang in the stream only if they hang in the motion."""
