@@ -21,8 +21,9 @@ class CurvePair(NamedTuple):
 
     played: bpy.types.FCurve
     recorded: bpy.types.FCurve
-    recorded_in: int
-    """Number of the recorded action in this session."""
+    recorded_in: tuple[int, int]
+    """Number of the recorded action in this session, and handle of its slot: in one action,
+    the curves of many markers have the same data path."""
 
 
 def shown_pairs(context: bpy.types.Context) -> list[CurvePair]:
@@ -49,13 +50,14 @@ def _pairs_of(player: bpy.types.Object, visible: list[bpy.types.FCurve]) -> Iter
     bag, recorded_bag = compat.channelbag(*played), compat.channelbag(*recorded)
     if bag is None or recorded_bag is None:
         return
+    recorded_in = recorded[0].session_uid, recorded[1].handle
     for curve in visible:
         path, index = curve.data_path, curve.array_index
         if curve.id_data != played[0] or bag.fcurves.find(path, index=index) != curve:
             continue
         behind = recorded_bag.fcurves.find(path, index=index)
-        if behind is not None and len(behind.keyframe_points):
-            yield CurvePair(curve, behind, recorded[0].session_uid)
+        if behind is not None and len(behind.keyframe_points) > 1:  # a line has two ends
+            yield CurvePair(curve, behind, recorded_in)
 
 
 def curve_lines(curve: bpy.types.FCurve) -> Single:
@@ -91,6 +93,8 @@ def _normalization(keys: Array, scene: bpy.types.Scene) -> tuple[float, float]:
         first, last = scene.frame_preview_start, scene.frame_preview_end
         inside = (keys[:, 0] >= first) & (keys[:, 0] <= last)
         keys = keys[inside] if inside.any() else keys
+    if not len(keys):
+        return 1.0, 0.0
     low, high = keys[:, 1].min(), keys[:, 1].max()
     factor = 2.0 / (high - low) if high > low else 1.0
     return float(factor), float(-0.5 * (low + high) * factor)

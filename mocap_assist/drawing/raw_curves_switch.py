@@ -1,11 +1,13 @@
 """Draw recorded curves in the Graph Editor; their switch is on the window manager."""
 
+from contextlib import suppress
 from typing import Any
 
 import bpy
 import gpu
 from bpy.types import SpaceGraphEditor
 
+from ...solvers.errors import InvalidMotionError
 from ..panels.preference_values import preferred
 from .raw_curves import CurvePair, curve_lines, displayed_values, shown_pairs
 from .view_drawing import redraw
@@ -18,7 +20,7 @@ WIDTH_PX = 2.0
 MAX_CACHED = 128
 """Number of cached curves. It bounds the memory: of 10,000 keys each has 240 kB."""
 _handles: list[Any] = []
-_batches: dict[tuple[int, str, int, int], Any] = {}
+_batches: dict[tuple[tuple[int, int], str, int, int], Any] = {}
 
 
 def forget() -> None:
@@ -41,15 +43,24 @@ def draw_raw_curves(context: bpy.types.Context) -> None:
     shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
     shader.uniform_float("lineWidth", WIDTH_PX * context.preferences.system.ui_scale)
     gpu.state.blend_set("ALPHA")
-    for pair in pairs:
-        factor, offset = displayed_values(
-            pair.played, context.scene, normalized=space.use_normalization
-        )
-        with gpu.matrix.push_pop():
-            gpu.matrix.translate((0.0, offset))
-            gpu.matrix.scale((1.0, factor))
-            _batch_of(pair, shader).draw(shader)
-    gpu.state.blend_set("NONE")
+    try:
+        for pair in pairs:
+            with suppress(InvalidMotionError):  # keys that no solver reads either
+                _draw_pair(context, pair, shader)
+    finally:
+        gpu.state.blend_set("NONE")
+
+
+def _draw_pair(context: bpy.types.Context, pair: CurvePair, shader: Any) -> None:
+    """Draw a recorded curve at the height of the one that plays."""
+    factor, offset = displayed_values(
+        pair.played, context.scene, normalized=context.space_data.use_normalization
+    )
+    batch = _batch_of(pair, shader)
+    with gpu.matrix.push_pop():
+        gpu.matrix.translate((0.0, offset))
+        gpu.matrix.scale((1.0, factor))
+        batch.draw(shader)
 
 
 def _batch_of(pair: CurvePair, shader: Any) -> Any:

@@ -51,7 +51,8 @@ def draw_rest_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> 
 def rest_figures(context: bpy.types.Context) -> list[RestFigure]:
     """Return the source and the target.
 
-    None while another armature is active, so that an old list draws nothing.
+    None while another armature is active, so that an old list draws nothing, or where a rig has
+    no bone to draw.
     """
     listed = context.scene.mocap_assist.bone_map
     armatures = [listed_armature(listed, side) for side in SIDES]
@@ -59,9 +60,10 @@ def rest_figures(context: bpy.types.Context) -> list[RestFigure]:
         return []
     figures = []
     for side, armature in zip(SIDES, armatures, strict=True):
-        if armature is None or not len(armature.data.bones):
+        figure = None if armature is None else _rest_figure(listed, side, armature)
+        if figure is None or not len(figure.lines):
             return []
-        figures.append(_rest_figure(listed, side, armature))
+        figures.append(figure)
     return figures
 
 

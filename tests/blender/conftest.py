@@ -115,6 +115,7 @@ IN_ONE_BLENDER = {
     "ui/test_show_raw.py": (4, 5),
     "ui/test_issue_views.py": (4, 5),
     "ui/test_onion_skin.py": (5, 2),
+    "ui/test_raw_curves.py": (5, 2),
     "ui/test_strip.py": (5, 2),
     "variation/test_slices.py": (4, 5),
     "variation/test_variants.py": (4, 5),

@@ -242,3 +242,14 @@ def test_rest_poses_of_both_rigs_fill_their_boxes(listed, load, blank, walker):
 
     blank.context.view_layer.objects.active = None
     assert preview.rest_figures(blank.context) == []
+
+
+def test_rig_without_a_bone_to_draw_has_no_rest_pose(listed, load, blank):
+    preview = load("mocap_assist.retarget.rest_preview")
+    assert len(preview.rest_figures(blank.context)) == 2
+    for row in listed.rows:
+        row.target = ""
+    for bone in blank.context.scene.objects["Unreal"].data.bones:
+        bone.use_deform = False
+
+    assert preview.rest_figures(blank.context) == []
