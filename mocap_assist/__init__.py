@@ -13,13 +13,14 @@ def register() -> None:
     from .library import auto_update, background
     from .live import listening
     from .runtime import watch
-    from .search import ghost_drawing, previews, properties
+    from .search import gallery_drawing, ghost_drawing, previews, properties
     from .track import body_overlay
 
     scene_properties.register()
     former_settings.register()
     properties.register()
     ghost_drawing.register()
+    gallery_drawing.register()
     background.register()
     auto_update.register()
     previews.register()
@@ -44,7 +45,7 @@ def unregister() -> None:
     from .live import listening
     from .panels import solver_ready
     from .runtime import watch
-    from .search import ghost_drawing, previews, properties
+    from .search import gallery_drawing, ghost_drawing, previews, properties
     from .track import body_overlay
 
     ui.unregister()
@@ -60,6 +61,7 @@ def unregister() -> None:
     previews.unregister()
     auto_update.unregister()
     background.unregister()
+    gallery_drawing.unregister()
     ghost_drawing.unregister()
     properties.unregister()
     former_settings.unregister()

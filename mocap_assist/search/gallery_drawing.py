@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from bpy.app import handlers
 
 from ...solvers.arrays import Array
 from ..drawing.pixel_drawing import (
@@ -20,12 +21,15 @@ from ..drawing.pixel_drawing import (
     write,
 )
 from ..drawing.strip_ranges import Color
+from ..drawing.view_drawing import redraw
 from ..languages import translated
 from .gallery import GAP_PX, LABEL_PX, cell_at, cells_in, figure_lines, posture_row
 from .ghost_drawing import COLOR
 from .match_grid import GOOD_SCORE
 from .searches import Search
 
+FRAME_S = 1 / 24
+"""Seconds from one drawing to the next while the matches are shown."""
 HINT = "Point at a clip to play it, click to select it, Esc to close. Left limbs are lighter."
 LINE_PX, HEAD_PX = 2.5, 30
 """Width of bones and height of the hint, in pixels at scale 1."""
@@ -34,12 +38,18 @@ CELL: Color = (0.16, 0.16, 0.16, 1.0)
 POINTED: Color = (0.26, 0.30, 0.36, 1.0)
 LEFT_WHITE = 0.55
 """Fraction of white in the color of left limbs."""
+_open: list["Gallery"] = []
 
 
 class Gallery:
-    """What is shown where, and which match plays."""
+    """What is shown where, and which match plays; also what Blender must forget at its end.
 
-    def __init__(self, search: Search, area: bpy.types.Area) -> None:
+    Blender ends an operator without a call when its file or the extension goes.
+    """
+
+    def __init__(
+        self, context: bpy.types.Context, search: Search, area: bpy.types.Area
+    ) -> None:
         self.search = search
         self._area = area.as_pointer()
         self._pointed = -1
@@ -47,12 +57,22 @@ class Gallery:
         self._handle: Any = bpy.types.SpaceView3D.draw_handler_add(
             self._drawn, (), "WINDOW", "POST_PIXEL"
         )
+        self._timer = context.window_manager.event_timer_add(FRAME_S, window=context.window)
+        _open.append(self)
 
-    def close(self) -> None:
-        """Remove the drawing; a second call has no effect."""
-        if self._handle is not None:
-            bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
-            self._handle = None
+    @property
+    def is_open(self) -> bool:
+        """Whether it is shown."""
+        return self in _open
+
+    def close(self, context: bpy.types.Context) -> None:
+        """Remove the drawing and its timer; a second call has no effect."""
+        if not self.is_open:
+            return
+        _open.remove(self)
+        bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
+        context.window_manager.event_timer_remove(self._timer)
+        redraw(context, "VIEW_3D")
 
     def point_at(self, area: bpy.types.Area, x: int, y: int, scale: float) -> int:
         """Let the match at a point of the window play; return its number, -1 for none."""
@@ -102,3 +122,20 @@ class Gallery:
         left, width = cell.x + 0.5 * GAP_PX * scale, cell.width - GAP_PX * scale
         for text, height in ((f"{match.score:.0%}", 0.58), (match.clip, 0.18)):
             write(text, (left, cell.y + height * LABEL_PX * scale), width, color)
+
+
+@handlers.persistent
+def _close_all(*_: object) -> None:
+    while _open:
+        _open[-1].close(bpy.context)
+
+
+def register() -> None:
+    """Let the matches disappear before another file is loaded."""
+    handlers.load_pre.append(_close_all)
+
+
+def unregister() -> None:
+    """Remove what is shown."""
+    handlers.load_pre.remove(_close_all)
+    _close_all()

@@ -12,8 +12,6 @@ from ..runtime.watch import why_busy
 from . import searches
 from .gallery_drawing import Gallery
 
-FRAME_S = 1 / 24
-"""Seconds from one drawing to the next while the matches are shown."""
 NO_VIEW = "This window has no 3D View."
 PASSED = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE"}
 
@@ -31,7 +29,6 @@ class BrowseOperator(OperatorMixin):
 
     bl_options: ClassVar[set[str]] = set()
     _gallery: Gallery | None = None
-    _timer: bpy.types.Timer | None = None
     _area: bpy.types.Area | None = None
 
     @classmethod
@@ -49,10 +46,8 @@ class BrowseOperator(OperatorMixin):
             note_press(self, sentence=NO_VIEW)
             return {"CANCELLED"}
         self._area = max(views, key=lambda area: area.width * area.height)
-        self._gallery = Gallery(search, self._area)
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(FRAME_S, window=context.window)
-        manager.modal_handler_add(self)
+        self._gallery = Gallery(context, search, self._area)
+        context.window_manager.modal_handler_add(self)
         self._area.tag_redraw()
         return {"RUNNING_MODAL"}
 
@@ -78,7 +73,8 @@ class BrowseOperator(OperatorMixin):
 
     def _shown_area(self, context: bpy.types.Context) -> bpy.types.Area | None:
         """Return the area, if it is still a 3D View of the window with the search listed."""
-        if self._gallery is None or searches.listed(context) is not self._gallery.search:
+        shown = self._gallery
+        if shown is None or not shown.is_open or searches.listed(context) is not shown.search:
             return None
         is_there = any(area == self._area for area in context.window.screen.areas)
         return self._area if is_there and self._area and self._area.type == "VIEW_3D" else None
@@ -104,11 +100,6 @@ class BrowseOperator(OperatorMixin):
 
     def _ended(self, context: bpy.types.Context, status: set[str]) -> set[str]:
         if self._gallery is not None:
-            self._gallery.close()
+            self._gallery.close(context)
             self._gallery = None
-        if self._timer is not None:
-            context.window_manager.event_timer_remove(self._timer)
-            self._timer = None
-        for area in context.window.screen.areas if context.window else ():
-            area.tag_redraw()
         return status

@@ -59,6 +59,7 @@ IN_ONE_BLENDER = {
     "library/test_bad_input.py": (4, 5),
     "library/test_faults_in_files.py": (4, 5),
     "library/test_find.py": (5, 2),
+    "library/test_gallery.py": (5, 2),
     "library/test_index_at_once.py": (4, 5),
     "library/test_index_blends.py": (4, 5),
     "library/test_index_button.py": (5, 2),

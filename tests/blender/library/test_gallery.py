@@ -43,3 +43,27 @@ def test_figure_stands_in_its_cell_and_the_clip_repeats(gallery):
 
     found.postures[1, 0] = np.nan
     assert len(gallery.figure_lines(found, 1, cell)[0]) < 19
+
+
+@pytest.mark.parametrize("end", ["a new file", "the extension goes"])
+def test_nothing_stays_over_the_view_where_blender_ends_the_button(
+    load, window, blank, monkeypatch, end
+):
+    drawing = load("mocap_assist.search.gallery_drawing")
+    monkeypatch.setattr(
+        drawing, "bpy", SimpleNamespace(context=window.context, types=blank.types)
+    )
+    area = SimpleNamespace(as_pointer=lambda: 1)
+    shown = drawing.Gallery(window.context, SimpleNamespace(), area)
+    assert shown.is_open and window.timers
+
+    if end == "a new file":
+        blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    else:
+        drawing.unregister()
+        drawing.register()
+
+    assert not shown.is_open and not window.timers
+    with pytest.raises(ValueError):
+        blank.types.SpaceView3D.draw_handler_remove(shown._handle, "WINDOW")
+    shown.close(window.context)
