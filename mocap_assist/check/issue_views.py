@@ -1,23 +1,42 @@
 """What a jump to an issue also shows: its bone in the views, and the frames around it."""
 
+from typing import NamedTuple
+
 import bpy
 from mathutils import Vector
 
+from ..actions.frames import FrameRange
 from ..actions.markers import markers_of, point_names
+from ..drawing.strip_drag import working_range
 from ..drawing.view_control import show_point
 from ..runtime.selection import selected_subject
 
 VIEW, RANGE = "mocap_assist_issue_view", "mocap_assist_issue_range"
 FRAMES_AROUND = 4
 """Frames of the preview range before and after an issue, by definition of *Preview Range*."""
-_former: dict[int, tuple[int, int, bool]] = {}
-"""Start, end and use of the animator's preview range, by the session's number of the scene."""
+PreviewRange = tuple[int, int, bool]
+"""Start, end and use of a preview range."""
+
+
+class _Ranges(NamedTuple):
+    """Preview ranges of a scene since issues are shown in it."""
+
+    own: PreviewRange
+    """The animator's."""
+    shown: frozenset[PreviewRange]
+    """Those of issues; undo may bring any of them back."""
+
+
+_ranges: dict[int, _Ranges] = {}
+"""By the session's number of the scene."""
 
 
 def draw_view_switches(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the switches, in a row with the buttons that jump."""
     layout.prop(context.window_manager, VIEW, text="", icon="VIEW3D", toggle=True)
-    layout.prop(context.window_manager, RANGE, text="", icon="PREVIEW_RANGE", toggle=True)
+    row = layout.row(align=True)
+    row.active = not works_on_own(context.scene)
+    row.prop(context.window_manager, RANGE, text="", icon="PREVIEW_RANGE", toggle=True)
 
 
 def show_issue(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> None:
@@ -32,12 +51,36 @@ def show_issue(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> No
 
 
 def preview_issue(scene: bpy.types.Scene, issue: bpy.types.PropertyGroup) -> None:
-    """Set the preview range to an issue and the frames around it; keep the animator's own."""
-    own = scene.frame_preview_start, scene.frame_preview_end, scene.use_preview_range
-    _former.setdefault(scene.session_uid, own)
+    """Set the preview range to an issue and the frames around it; keep the animator's own.
+
+    A range of the animator's that a button works on stays: it would work on the issue alone.
+    """
+    if works_on_own(scene):
+        return
+    current = _preview_range(scene)
+    own, shown = _ranges.get(scene.session_uid, (current, frozenset()))
     scene.use_preview_range = True
     scene.frame_preview_start = round(issue.start) - FRAMES_AROUND
     scene.frame_preview_end = round(issue.stop) + FRAMES_AROUND
+    _ranges[scene.session_uid] = _Ranges(
+        own if current in shown else current, shown | {_preview_range(scene)}
+    )
+
+
+def works_on_own(scene: bpy.types.Scene) -> bool:
+    """Whether a button works on a preview range that the animator has set."""
+    current = working_range(scene)
+    is_worked_on = current.is_used and FrameRange.PREVIEW.name in current.choices
+    return is_worked_on and not _is_of_issue(scene)
+
+
+def _is_of_issue(scene: bpy.types.Scene) -> bool:
+    ranges = _ranges.get(scene.session_uid)
+    return ranges is not None and _preview_range(scene) in ranges.shown
+
+
+def _preview_range(scene: bpy.types.Scene) -> PreviewRange:
+    return scene.frame_preview_start, scene.frame_preview_end, scene.use_preview_range
 
 
 def _point_of(context: bpy.types.Context, name: str) -> Vector | None:
@@ -58,10 +101,11 @@ def _range_switched(self: bpy.types.WindowManager, context: bpy.types.Context) -
     shown = context.scene.mocap_assist
     if not getattr(self, RANGE):
         for scene in bpy.data.scenes:
-            if own := _former.pop(scene.session_uid, None):
-                scene.frame_preview_start, scene.frame_preview_end = own[:2]
-                scene.use_preview_range = own[2]
-        _former.clear()  # scenes of files that are closed
+            if _is_of_issue(scene):
+                start, end, is_used = _ranges[scene.session_uid].own
+                scene.frame_preview_start, scene.frame_preview_end = start, end
+                scene.use_preview_range = is_used
+        _ranges.clear()  # scenes of files that are closed
     elif 0 <= shown.active_issue < len(shown.issues):
         preview_issue(context.scene, shown.issues[shown.active_issue])
 
@@ -76,7 +120,9 @@ def register() -> None:
     )
     manager.mocap_assist_issue_range = bpy.props.BoolProperty(
         name="Preview Range",
-        description="Play only an issue with 4 frames before and after it",
+        description=(
+            "Play only an issue and 4 frames around it, unless Clean works on your own range"
+        ),
         update=_range_switched,
     )
 

@@ -52,6 +52,43 @@ def test_preview_range_has_four_frames_around_an_issue_while_its_switch_is_on(
     assert preview(scene) == (5, 9)
 
 
+def test_issues_leave_the_range_that_was_dragged_for_clean(blank, switches, issue):
+    scene = blank.context.scene
+    switches.mocap_assist_issue_range = True
+    assert preview(scene) == (16, 26)
+
+    blank.ops.mocap_assist.set_range(start=5, end=50)
+    blank.ops.mocap_assist.jump_to_issue(index=0)
+    assert preview(scene) == (5, 50)
+    switches.mocap_assist_issue_range = False
+    assert preview(scene) == (5, 50)
+
+    switches.mocap_assist_issue_range = True
+    assert preview(scene) == (5, 50)
+    blank.ops.mocap_assist.set_range()
+    blank.ops.mocap_assist.jump_to_issue(index=0)
+    assert preview(scene) == (16, 26)
+
+
+def test_range_that_the_animator_sets_between_issues_is_restored(blank, switches, issue):
+    scene = blank.context.scene
+    switches.mocap_assist_issue_range = True
+    issue.start = issue.stop = 30.0
+    blank.ops.mocap_assist.jump_to_issue(index=0)
+    scene.frame_preview_start, scene.frame_preview_end = 16, 26  # as undo does
+    switches.mocap_assist_issue_range = False
+    assert not preview(scene)
+
+    switches.mocap_assist_issue_range = True
+    scene.frame_preview_start, scene.frame_preview_end = 2, 7
+    blank.ops.mocap_assist.jump_to_issue(index=0)
+    assert preview(scene) == (26, 34)
+
+    switches.mocap_assist_issue_range = False
+
+    assert preview(scene) == (2, 7)
+
+
 @pytest.mark.parametrize(("x", "is_moved"), [(0.5, False), (0.95, True), (3.0, True)])
 def test_view_moves_only_to_a_point_that_it_does_not_show(load, x, is_moved):
     view = SimpleNamespace(
