@@ -201,10 +201,11 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if not len(listed.rows):
         return
     heads = layout.split(factor=ROLE_COLUMN, align=True)
-    heads.label(text="")
+    wide = is_wide(context)
+    heads.label(text="" if wide else "Confidence")
     for side in SIDES:
-        score = getattr(listed, f"{side}_score")
-        heads.label(text=f"{getattr(listed, side)} {score:.0%}", translate=False)
+        name, score = getattr(listed, side), getattr(listed, f"{side}_score")
+        heads.label(text=f"{name} {score:.0%}" if wide else f"{score:.0%}", translate=False)
     layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
     _draw_legend(layout, context)
     draw_rest_switch(layout, context)

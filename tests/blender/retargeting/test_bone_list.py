@@ -35,6 +35,15 @@ def test_the_heading_follows_an_edited_bone(listed):
     assert listed.target_score == 1.0
 
 
+def test_headings_have_no_names_where_these_would_be_cut(listed, load, draw, monkeypatch):
+    listed.source_score, listed.target_score = 0.98, 0.95
+    assert {"98%", "95%"} <= set(draw("MOCAP_PT_retarget"))
+
+    monkeypatch.setattr(load("mocap_assist.retarget.bone_list"), "is_wide", lambda _: True)
+    shown = set(draw("MOCAP_PT_retarget"))
+    assert {f"{listed.source} 98%", "Unreal 95%"} <= shown and "98%" not in shown
+
+
 def test_retarget_uses_the_list(listed, walker, give, blank, keys_of):
     target = blank.context.scene.objects["Unreal"]
     next(row for row in listed.rows if row.name == "head").target = ""
