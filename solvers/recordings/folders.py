@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ..faults import Failure, attempt
-from .containers import files_below, frame_files, is_folder
+from .containers import files_below, frame_files, is_folder, names_by_number
 from .depth_files import is_depth_folder
 from .formats import detect_format
 from .read_recording import is_depth_recording
@@ -32,10 +32,12 @@ def one_path_per_take(paths: Sequence[Path]) -> list[Path]:
     names: dict[Path, list[str]] = {}
     for path in waiting:
         names.setdefault(path.parent, []).append(path.name)
+    named = {folder: names_by_number(each) for folder, each in names.items()}
     further: set[Path] = set()
-    while waiting:
-        path = next(iter(waiting))
-        files = [*frame_files(path, names[path.parent]).files.values()]
+    for path in [*waiting]:
+        if path not in waiting:
+            continue
+        files = [*frame_files(path, named[path.parent]).files.values()]
         if len(files) > 1 and _is_one_frame(max(files, key=_size)):
             further.update(each for each in files if each != path)
         for each in files:

@@ -3,7 +3,13 @@
 from .c3d_file import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
 from .delimited import find_separator, split_cells, stream_cells
 from .folder_scan import check_folder_access, files_below, is_folder
-from .frame_files import FrameFiles, describe_frame_files, frame_files
+from .frame_files import (
+    FrameFiles,
+    NamesByNumber,
+    describe_frame_files,
+    frame_files,
+    names_by_number,
+)
 from .glb_file import GlbFile, json_length, vector
 from .growing_table import GrowingTable
 from .json_members import (
@@ -74,6 +80,7 @@ __all__ = [
     "LineReader",
     "MatlabArray",
     "Matroska",
+    "NamesByNumber",
     "PackedBytes",
     "PlainBytes",
     "PngHeader",
@@ -101,6 +108,7 @@ __all__ = [
     "json_members",
     "matlab_arrays",
     "max_color_size",
+    "names_by_number",
     "open_bounded_image",
     "open_listed_image",
     "parse_rows",

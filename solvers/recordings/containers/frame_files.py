@@ -1,7 +1,7 @@
 """Find takes that are stored as one file for each frame."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -10,6 +10,9 @@ NUMBER = re.compile(r"\d+")
 MAX_GAP_FRAMES = 1000
 """Missing numbers in a row, frames, up to which they are frames without a file. It bounds the
 memory: after more of them, the take goes on with the next file."""
+
+NamesByNumber = dict[tuple[str, str], dict[int, str]]
+"""Names of files by their start and end around a number, and by that number."""
 
 
 class FrameFiles(NamedTuple):
@@ -33,7 +36,7 @@ class FrameFiles(NamedTuple):
         return found
 
 
-def frame_files(path: Path | str, names: Iterable[str] | None = None) -> FrameFiles:
+def frame_files(path: Path | str, named: NamesByNumber | None = None) -> FrameFiles:
     """Return the files that are called like one of them but for a number, in its folder.
 
     Of several numbers in a name, it is the one with the most files.
@@ -41,23 +44,33 @@ def frame_files(path: Path | str, names: Iterable[str] | None = None) -> FrameFi
     Parameters
     ----------
     path : Path or str
-    names : iterable of str, optional
-        Names to search instead of the folder's.
+    named : NamesByNumber, optional
+        Names to search instead of the folder's (`names_by_number`).
     """
     path = Path(path)
-    listed = [*names] if names is not None else [each.name for each in path.parent.iterdir()]
+    if named is None:
+        named = names_by_number(each.name for each in path.parent.iterdir())
     found = [FrameFiles(path.stem, path.suffix, {0: path})]
-    for run in NUMBER.finditer(path.name):
-        head, tail = path.name[: run.start()], path.name[run.end() :]
-        numbers = {
-            int(name[len(head) : len(name) - len(tail)]): path.with_name(name)
-            for name in listed
-            if name.startswith(head)
-            and name.endswith(tail)
-            and NUMBER.fullmatch(name, len(head), max(len(head), len(name) - len(tail)))
-        }
-        found.append(FrameFiles(head, tail, dict(sorted(numbers.items()))))
+    for head, tail, _ in _numbers_of(path.name):
+        names = sorted(named.get((head, tail), {}).items())
+        files = {number: path.with_name(name) for number, name in names}
+        found.append(FrameFiles(head, tail, files))
     return max(found, key=lambda each: len(each.files))
+
+
+def names_by_number(names: Iterable[str]) -> NamesByNumber:
+    """Return the names with each start and end around a number, by that number."""
+    found: NamesByNumber = {}
+    for name in names:
+        for head, tail, number in _numbers_of(name):
+            found.setdefault((head, tail), {})[number] = name
+    return found
+
+
+def _numbers_of(name: str) -> Iterator[tuple[str, str, int]]:
+    """Yield each number in a name, after its start and end around it."""
+    for run in NUMBER.finditer(name):
+        yield name[: run.start()], name[run.end() :], int(run[0])
 
 
 def describe_frame_files(n_frames: int) -> str:

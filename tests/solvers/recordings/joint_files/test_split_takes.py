@@ -8,7 +8,8 @@ import pytest
 from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, forward_kinematics
 from solvers.motion.skeletons import BODY_POINTS
-from solvers.recordings import list_bodies, read_recording, recordings_in
+from solvers.recordings import folders, list_bodies, read_recording, recordings_in
+from solvers.recordings.containers import names_by_number
 from solvers.samples import walking_gait
 
 F = 24
@@ -107,6 +108,21 @@ def test_complete_takes_with_numbers_stay_apart(tmp_path, coco):
         np.save(tmp_path / f"take_{take}.npy", coco)
 
     assert len(recordings_in(tmp_path)) == 3
+
+
+def test_a_folder_of_numbered_names_is_looked_through_once(tmp_path, monkeypatch):
+    """It is compared name by name otherwise, which takes minutes for dates and hashes."""
+    chosen = [tmp_path / f"{k}_{k * k}.json" for k in range(2, 9)]
+    looked_at = []
+
+    def look(names):
+        looked_at.extend(names)
+        return names_by_number(looked_at)
+
+    monkeypatch.setattr(folders, "names_by_number", look)
+
+    assert folders.one_path_per_take(chosen) == chosen
+    assert looked_at == [path.name for path in chosen]
 
 
 @pytest.mark.parametrize("axis", [0, 1])
