@@ -175,15 +175,24 @@ def _open_points(
 def _bodies_of(array: Array) -> list[Array]:
     """Return the points of each body of an array, with the frames on the first axis.
 
-    Points move little from frame to frame, so frames are on the axis with the smaller steps. A
-    body whose points are all at the origin is not observed.
+    Points move little from frame to frame, so frames are on the axis with the smaller steps; on
+    the longer one where the steps say nothing. A body whose points are all at the origin is not
+    observed, and slots that are never filled are left out.
     """
     if array.ndim != 4 or 1 in array.shape[:2] or array.shape[3] not in {2, 3, 4}:
         return [array]
-    steps = [np.nanmedian(np.abs(np.diff(array, axis=axis))) for axis in (0, 1)]
-    found = np.moveaxis(array, 1, 0) if steps[0] < steps[1] else array
-    is_observed = found.any(axis=(2, 3), keepdims=True)
-    return [*np.where(is_observed, found, np.nan)]
+    found = np.where(array.any(axis=(2, 3), keepdims=True), array, np.nan)
+    steps = _step(found, 0), _step(found, 1)
+    is_second = found.shape[1] > found.shape[0] if steps[0] == steps[1] else steps[1] < steps[0]
+    bodies = found if is_second else np.moveaxis(found, 1, 0)
+    return [body for body in bodies if np.isfinite(body).any()] or [*bodies]
+
+
+def _step(points: Array, axis: int) -> float:
+    """Return the median step along an axis; infinite if no two neighbors are observed."""
+    steps = np.linalg.norm(np.diff(points[..., :3], axis=axis), axis=-1)
+    steps = steps[np.isfinite(steps)]
+    return float(np.median(steps)) if steps.size else np.inf
 
 
 def _refuse_rotations(path: Path | str, array: Array) -> None:

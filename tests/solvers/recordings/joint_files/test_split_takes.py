@@ -141,6 +141,22 @@ def test_people_of_one_array_are_listed(tmp_path, coco, axis):
     assert np.allclose(longest.tracks.positions[:, :17], coco)
 
 
+@pytest.mark.parametrize("padding", [0.0, np.nan])
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("n_people", [1, 2])
+def test_empty_slots_for_people_are_no_bodies(tmp_path, coco, axis, padding, n_people):
+    slots = np.full((4, *coco.shape), padding)
+    slots[0] = coco
+    if n_people > 1:
+        slots[2, 1:] = coco[1:] + (2.0, 0.0, 0.0)
+    np.save(tmp_path / "slots.npy", np.moveaxis(slots, 0, axis))
+
+    recording, _ = read(tmp_path / "slots.npy")
+
+    assert len(list_bodies(tmp_path / "slots.npy")) == (n_people if n_people > 1 else 0)
+    assert np.allclose(recording.tracks.positions[:, :17], coco)
+
+
 @pytest.mark.parametrize("width", [3, 4])
 def test_rotations_are_no_points(tmp_path, rng, width):
     turns = np.linalg.qr(rng.normal(size=(F, 22, width, width)))[0]
