@@ -12,7 +12,14 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
 from ...progress import Progress, unwatched, within
-from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
+from ..containers import (
+    LineReader,
+    decode_text,
+    find_separator,
+    shown,
+    split_cells,
+    stream_cells,
+)
 from ..conventions import (
     DEFAULT_FRAME_RATE,
     Bodies,
@@ -30,6 +37,10 @@ JOINTS = (
     "point_id", "marker", "marker_name", "body_part", "bodypart", "bone", "name", "part",
 )  # fmt: skip
 PEOPLE = ("person", "person_id", "body", "body_id", "track_id", "subject", "skeleton_id")
+IDENTITIES = ("id", "pid")
+"""Titles of the person in tables that state a joint of a frame several times without it; others
+have a number of the line or of the joint there."""
+NUMBER = re.compile(rb"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?")
 AXES = ("x", "y", "z")
 AXIS_AFFIXES = ("{}", "pos_{}", "{}_pos", "position_{}", "{}_m", "world_{}", "{}_world", "{}3d")
 """Titles of coordinates, with the axis at the braces."""
@@ -51,17 +62,23 @@ class _LongColumns(NamedTuple):
     """Seconds per unit of the times; None if the title does not state it."""
     joint: int
     person: int | None
+    identity: int | None
+    """Column that may be the person (`IDENTITIES`)."""
     axes: tuple[int, ...]
 
 
 class _Numbers:
-    """Numbers words as they appear, for the columns of a table."""
+    """Numbers words as they appear, for the columns of a table; `1.0` is the word `1`."""
 
     def __init__(self) -> None:
         self._numbers: dict[bytes, int] = {}
+        self._converted: dict[bytes, bytes] = {b"": b""}
 
     def __call__(self, cell: bytes) -> bytes:
-        return b"%d" % self._numbers.setdefault(cell, len(self._numbers)) if cell else b""
+        if cell not in self._converted:
+            number = self._numbers.setdefault(_word(cell), len(self._numbers))
+            self._converted[cell] = b"%d" % number
+        return self._converted[cell]
 
     def __len__(self) -> int:
         return len(self._numbers)
@@ -86,6 +103,7 @@ class _LongTable(NamedTuple):
     columns: _LongColumns
     joints: _Numbers
     people: _Numbers
+    """Words of the column of the person, otherwise of the one that may be it."""
 
 
 def is_long_table(head: bytes) -> bool:
@@ -101,8 +119,8 @@ def open_long_table(
 
     Frames are in a column called `frame` or the like; without it, each time is one. `joint`,
     `landmark`, `marker` or the like is a name or a number; `person` or the like, that of one of
-    several people. Lines may be missing: those points are not observed. Axes and unit are
-    judged as in `read_point_table`.
+    several people, as is `id` where lines repeat a joint of a frame. Lines may be missing:
+    those points are not observed. Axes and unit are judged as in `read_point_table`.
 
     Parameters
     ----------
@@ -113,7 +131,7 @@ def open_long_table(
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, or has too few joints.
+        The file is missing, damaged, has too few joints, or one of a person twice in a frame.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -159,8 +177,9 @@ def _read_table(path: Path | str, progress: Progress) -> _LongTable:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
     joints, people = _Numbers(), _Numbers()
     converters: dict[int, Callable[[bytes], bytes]] = {columns.joint: joints}
-    if columns.person is not None:
-        converters[columns.person] = people
+    person = columns.identity if columns.person is None else columns.person
+    if person is not None:
+        converters[person] = people
     if columns.frame is not None:
         converters[columns.frame] = _frame_number
     separator, width = find_separator(first[0]), len(titles)
@@ -173,25 +192,55 @@ def _points(
     path: Path | str, table: _LongTable, frames: NDArray[np.intp], order: NDArray[np.intp]
 ) -> Array:
     """Return the points of all people, shape (n_people, n_frames, n_joints, 3)."""
-    joint, person = table.columns.joint, table.columns.person
-    is_row = np.isfinite(table.rows[:, joint]) & (frames >= 0)
+    columns = table.columns
+    is_row = np.isfinite(table.rows[:, columns.joint]) & (frames >= 0)
     rows, frames = table.rows[is_row], frames[is_row]
-    whose = np.zeros(len(rows), int)
+    joints = order[rows[:, columns.joint].astype(int)]
+    cells = np.zeros(len(rows), int), frames, joints
+    person = columns.person
+    is_enough = len(rows) >= MIN_JOINTS * len(table.people)
+    if person is None and is_enough and _repeated(cells) is not None:
+        person = columns.identity
     if person is not None:
-        whose = np.nan_to_num(rows[:, person]).astype(int)
-    shape = int(whose.max()) + 1, int(frames.max()) + 1, len(order)
+        cells = np.nan_to_num(rows[:, person]).astype(int), frames, joints
+    shape = int(cells[0].max()) + 1, int(frames.max()) + 1, len(order)
     if np.prod(shape, dtype=float) > MAX_POINTS:
         raise InvalidFileError(
             f"{path} has {shape[2]} joints of {shape[0]} people in {shape[1]} frames, which"
             " does not fit its lines. Export it again."
         )
+    repeated = _repeated(cells)
+    if repeated is not None:
+        joint = table.joints.name(int(rows[repeated, columns.joint]))
+        raise InvalidFileError(
+            f"{path} has joint {shown(joint)} of one person twice in frame"
+            f" {frames[repeated] + 1}. Name the person of each line in a column `person`."
+        )
     points = np.full((*shape, 3), np.nan)
-    points[whose, frames, order[rows[:, joint].astype(int)]] = rows[:, list(table.columns.axes)]
+    points[cells] = rows[:, list(columns.axes)]
     return points
 
 
+def _repeated(cells: tuple[NDArray[np.intp], ...]) -> int | None:
+    """Return the first line that has the person, frame and joint of another one; else None."""
+    order = np.lexsort(cells)
+    ordered = np.stack(cells)[:, order]
+    is_same = (np.diff(ordered) == 0).all(axis=0)
+    return int(order[1:][is_same].min()) if is_same.any() else None
+
+
+def _word(cell: bytes) -> bytes:
+    """Return a cell, a whole number without its decimals."""
+    if cell.isdigit() or NUMBER.fullmatch(cell) is None:
+        return cell
+    value = float(cell.replace(b",", b"."))
+    return b"%d" % value if value.is_integer() else cell
+
+
 def _frame_number(cell: bytes) -> bytes:
-    """Return the last number in the name of a frame, such as `frame_0012.png`."""
+    """Return a number, or the last one in the name of a frame, such as `frame_0012.png`."""
+    if NUMBER.fullmatch(cell):
+        return cell
     numbers = re.findall(rb"\d+(?:\.0+)?(?=\D*$)", cell)
     return numbers[-1] if numbers else b""
 
@@ -246,4 +295,4 @@ def _columns(titles: Sequence[str]) -> _LongColumns | None:
     if joint is None or axes is None or (frame is None and time is None):
         return None
     second = None if time is None else TIMES[titles[time].lower()]
-    return _LongColumns(frame, time, second, joint, find(PEOPLE), axes)
+    return _LongColumns(frame, time, second, joint, find(PEOPLE), find(IDENTITIES), axes)

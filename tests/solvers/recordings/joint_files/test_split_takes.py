@@ -148,7 +148,7 @@ def test_empty_slots_for_people_are_no_bodies(tmp_path, coco, axis, padding, n_p
     slots = np.full((4, *coco.shape), padding)
     slots[0] = coco
     if n_people > 1:
-        slots[2, 1:] = coco[1:] + (2.0, 0.0, 0.0)
+        slots[2, 1:] = np.add(coco[1:], (2.0, 0.0, 0.0))
     np.save(tmp_path / "slots.npy", np.moveaxis(slots, 0, axis))
 
     recording, _ = read(tmp_path / "slots.npy")
@@ -197,6 +197,7 @@ def lines(walk, title="frame,person,joint,x,y,z,score", frame="{}", people=1):
     [
         ("frame,person,joint,x,y,z,score", "{}"),
         ("Frame_ID,track_id,Landmark Name,pos_x,pos_y,pos_z,score", "run2_{:05d}.png"),
+        ("frame,id,joint,x,y,z,score", "{:.18e}"),
     ],
 )
 def test_a_line_per_joint_is_read(tmp_path, walk, title, frame):
@@ -211,6 +212,32 @@ def test_a_line_per_joint_is_read(tmp_path, walk, title, frame):
     assert np.isnan(wrist[5]).all()
     known = np.arange(F) != 5
     assert np.allclose(wrist[known], walk["rightHand"][known] + (2.0, 0.0, 0.0), atol=1e-5)
+
+
+def test_joints_by_number_may_have_decimals(tmp_path, coco):
+    rows = [
+        "{:.3e},{:.1f},{},{},{},{}".format(k, joint, joint, *coco[k, joint])
+        for k in range(F)
+        for joint in range(17)
+    ]
+    (tmp_path / "long.csv").write_text("\n".join(["frame,joint,id,x,y,z", *rows]))
+
+    recording, _ = read(tmp_path / "long.csv")
+
+    assert np.allclose(recording.tracks.positions[:, :17], coco)
+
+
+@pytest.mark.parametrize(
+    "title", ["frame,row,joint,x,y,z,score", "frame,person,joint,x,y,z,id"]
+)
+def test_a_joint_twice_in_a_frame_is_refused(tmp_path, walk, title):
+    text = lines(walk, title, people=2).replace(",1,", ",0,")
+    (tmp_path / "long.csv").write_text(text)
+
+    with pytest.raises(
+        InvalidFileError, match="joint left_shoulder of one person twice in fra"
+    ):
+        read(tmp_path / "long.csv")
 
 
 def test_times_of_a_line_per_joint_give_the_rate(tmp_path, walk):
