@@ -126,6 +126,11 @@ def stacked(body: str, frames: list[BodiesFrame]) -> tuple[Array, Array | None]:
 
 
 def name_of_body(body: Mapping[str, Any], keys: tuple[str, ...], count: int) -> str:
-    """Return the identity of a body, or its index in the frame where it has none, or -1."""
-    known = (body[key] for key in keys if body.get(key) not in (None, -1, [-1]))
-    return str(next(known, count))
+    """Return the identity of a body, or its index in the frame if it has none.
+
+    A body whose identity is -1 or null is `untracked` with that index: others have identities,
+    among them perhaps that number.
+    """
+    stated = [body[key] for key in keys if key in body]
+    known = (identity for identity in stated if identity not in (None, -1, [-1]))
+    return str(next(known, f"untracked {count}" if stated else count))

@@ -12,7 +12,13 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording
 from ...progress import Progress, Remark, unwatched
-from ..containers import JsonMember, describe_frame_files, json_frame_files, json_members
+from ..containers import (
+    JsonMember,
+    describe_frame_files,
+    json_content,
+    json_frame_files,
+    json_members,
+)
 from ..conventions import DEFAULT_FRAME_RATE, Bodies, check_scale
 from .body_json import BodiesFrame, BodyJoints, name_of_body, open_frames, stacked
 from .named_points import body_of_named_points
@@ -78,7 +84,9 @@ def is_frames_json(head: bytes) -> bool:
 
 def is_frame_json(path: Path | str) -> bool:
     """Return whether a file holds the joints of one frame."""
-    return _read_content(json_members(path, lists=True), unwatched).n_frames == 1
+    listed = _read_content(json_members(path, lists=True), unwatched).n_frames
+    outermost = _read_content([json_content(path)], unwatched).n_frames
+    return listed <= 1 and max(listed, outermost) == 1
 
 
 def open_frames_json(
@@ -109,22 +117,17 @@ def open_frames_json(
         Raised by `progress`.
     """
     check_scale(scale)
-    content = _read_content(json_members(path, lists=True), progress)
-    if content.n_frames <= 1:
+    content = own = _read_content(json_members(path, lists=True), progress)
+    if own.n_frames <= 1:
         content = _read_content(json_frame_files(path), progress)
         if content.n_frames > 1:
             progress(0.8, Remark(describe_frame_files(len(content.frames))))
-    if content.n_frames == 1:
+    if max(own.n_frames, content.n_frames) == 1:
         raise InvalidFileError(
             f"{path} holds the joints of one frame. Combine all frames in an array of the shape"
             " (frames, joints, 3), and save it with numpy.save."
         )
-    frames, columns, rate, second = (
-        content.frames,
-        content.columns,
-        content.rate,
-        content.second,
-    )
+    frames, columns, rate, second = content
     if second is None:
         second = second_of_times(np.array([frame.time for frame in frames]), progress)
 
@@ -256,16 +259,13 @@ def _people(frame: Any) -> Iterator[_Person]:
 
 def _person(body: Mapping[str, Any], count: int) -> Iterator[_Person]:
     key = next((key for key in POINT_KEYS if body.get(key)), "")
-    joints = body.get(key) if key else None
+    joints: Any = body.get(key)
     identity = name_of_body(body, IDENTITY_KEYS, count)
-    if isinstance(joints, Mapping):
-        points = _points([_coordinates(joint) for joint in joints.values()])
-        if points is not None:
-            yield _Person(identity, tuple(map(str, joints)), points)
-    elif isinstance(joints, list):
-        points = _points(joints)
-        if points is not None:
-            yield _Person(identity, (), points)
+    is_named = isinstance(joints, Mapping)
+    values = [_coordinates(joint) for joint in joints.values()] if is_named else joints
+    points = _points(values) if isinstance(values, list) else None
+    if points is not None:
+        yield _Person(identity, tuple(map(str, joints)) if is_named else (), points)
 
 
 def _coordinates(joint: Any) -> Any:

@@ -69,7 +69,13 @@ def landmarks(points):
     ]}  # fmt: skip
 
 
-@pytest.mark.parametrize("make", [people, landmarks], ids=["people", "mediapipe"])
+def named(points):
+    """Return a frame whose joints have names."""
+    joints = {name: points[COCO.index(role)].tolist() for name, role in NAMES.items()}
+    return {"joints": joints}
+
+
+@pytest.mark.parametrize("make", [people, landmarks, named])
 def test_one_file_per_frame_is_one_take(tmp_path, coco, make):
     for frame in [*range(7), *range(9, F)]:
         name = f"cam2_{frame:06d}_keypoints.json"
@@ -88,6 +94,27 @@ def test_one_file_per_frame_is_one_take(tmp_path, coco, make):
     expected = (coco[:, 7] - coco[:, 5])[~missing]
     assert np.allclose((elbow - shoulder)[~missing], expected, atol=1e-6)
     assert recordings_in(tmp_path) == [tmp_path / "cam2_000000_keypoints.json"]
+
+
+@pytest.mark.parametrize("make", [named, lambda points: {"frames": [named(points)]}])
+def test_one_frame_next_to_takes_is_refused(tmp_path, coco, make):
+    for take in range(3):
+        frames = {"frames": [named(points) for points in coco]} if take else make(coco[0])
+        (tmp_path / f"{take}.json").write_text(json.dumps(frames))
+
+    with pytest.raises(InvalidFileError, match=r"0.json holds the joints of one frame"):
+        read(tmp_path / "0.json")
+    assert len(recordings_in(tmp_path)) == 3
+
+
+def test_a_body_without_identity_replaces_no_other(tmp_path, coco):
+    frames = [
+        {"people": [{"id": each, "joints": points.tolist()} for each in (1, -1)]}
+        for points in coco
+    ]
+    (tmp_path / "two.json").write_text(json.dumps(frames))
+
+    assert [each.name for each in list_bodies(tmp_path / "two.json")] == ["1", "untracked 1"]
 
 
 def test_one_array_per_frame_is_one_take(tmp_path, coco):
