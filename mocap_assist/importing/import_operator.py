@@ -18,7 +18,7 @@ from .body_choice import bodies_to_choose, body_items, number_of, text_of
 from .file_kinds import DEPTH, FOR_KINDS, MOVING, fitting, kinds_of
 from .import_job import ImportJob
 from .import_transaction import Imported
-from .importing import chosen_paths, import_files
+from .importing import chosen_paths, import_files, shown_paths
 from .show_actor import show_actor
 
 WIDTH = 400  # of the dialog, pixels at scale 1
@@ -41,9 +41,9 @@ class FilesOperator(SettingsMixin):
     body_choice: EnumProperty(
         name="Body",
         description="Body of the file to import",
-        items=lambda self, context: body_items(chosen_paths(self)),
-        get=lambda self: number_of(self.body, chosen_paths(self)),
-        set=lambda self, number: setattr(self, "body", text_of(number, chosen_paths(self))),
+        items=lambda self, context: body_items(shown_paths(self)),
+        get=lambda self: number_of(self.body, shown_paths(self)),
+        set=lambda self, number: setattr(self, "body", text_of(number, shown_paths(self))),
         options=HIDDEN,
     )
     kinds: StringProperty(options=HIDDEN)
@@ -84,7 +84,7 @@ class FilesOperator(SettingsMixin):
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        if bodies_to_choose(chosen_paths(self)):
+        if bodies_to_choose(shown_paths(self)):
             self.layout.column().prop(self, "body_choice", expand=True)
         if self.note:
             draw_lines(self.layout, self.note, NOTE_WIDTH)

@@ -1,5 +1,6 @@
 """Import files for the button Import."""
 
+from functools import lru_cache
 from pathlib import Path
 
 import bpy
@@ -46,15 +47,31 @@ def chosen_paths(operator: bpy.types.Operator) -> list[Path]:
     may be given itself, as the folder that is shown, or by files in it. Of a take with a file
     per frame, the first one is returned.
     """
+    _recordings_of.cache_clear()
+    return shown_paths(operator)
+
+
+def shown_paths(operator: bpy.types.Operator) -> list[Path]:
+    """Return `chosen_paths` for the display, which reads files again only for another choice.
+
+    Blender asks for it several times with each redraw.
+    """
     paths = chosen_files(operator)
     if not paths and operator.filepath:
         paths = [absolute(operator.filepath)]
-    if not paths and operator.directory and is_take(absolute(operator.directory)):
-        paths = [absolute(operator.directory)]
-    paths = one_path_per_take(list(dict.fromkeys(map(take_of, paths))))
+    folder = absolute(operator.directory) if operator.directory and not paths else None
+    return [*_recordings_of(tuple(paths), folder)]
+
+
+@lru_cache(maxsize=4)
+def _recordings_of(given: tuple[Path, ...], folder: Path | None) -> tuple[Path, ...]:
+    """Return the recordings of these files, or the folder if it is one."""
+    if folder is not None and is_take(folder):
+        given = (folder,)
+    paths = one_path_per_take(list(dict.fromkeys(map(take_of, given))))
     if any(path.suffix.lower() == ".amc" for path in paths):
         paths = [path for path in paths if path.suffix.lower() != ".asf"]
-    return paths
+    return tuple(paths)
 
 
 def preview(context: bpy.types.Context, paths: list[Path]) -> str:

@@ -1,5 +1,7 @@
 """Files with several people or takes: as many armatures as are chosen, or none."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from modal_events import event, wait
@@ -110,6 +112,25 @@ def test_dialog_shows_a_choice_only_where_there_is_one(blank, crowd, recordings,
         assert choice.text_of(number, [crowd]) == text
         assert choice.number_of(text, [crowd]) == number
     assert [item[1] for item in choice.body_items([crowd, alone])] == ["Most Frames", "All"]
+
+
+def test_a_redraw_reads_no_file_again(crowd, load, monkeypatch):
+    importing = load("mocap_assist.importing.importing")
+    chosen, sorted_out = SimpleNamespace(name=CROWD), []
+    operator = SimpleNamespace(directory=str(crowd.parent), files=[chosen], filepath="")
+
+    def sort_out(paths):
+        sorted_out.append(paths)
+        return paths
+
+    monkeypatch.setattr(importing, "one_path_per_take", sort_out)
+
+    assert importing.chosen_paths(operator) == importing.shown_paths(operator) == [crowd]
+    assert len(sorted_out) == 1
+    chosen.name = "other.skeleton"
+    assert importing.shown_paths(operator) == [crowd.with_name("other.skeleton")]
+    importing.chosen_paths(operator)  # a file may have been written since
+    assert len(sorted_out) == 3
 
 
 def test_esc_takes_every_body_back(press, window, crowd, walks, blank):
