@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..mocap_assist.blender.last_press import note_press
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.languages import translated
 from ..mocap_assist.live.live_take import (
@@ -35,6 +36,7 @@ class MOCAP_OT_record_live(WatchedOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         if not self.duration:  # nothing would end it
             self.report({"ERROR"}, translated(NO_DURATION))
+            note_press(self, sentence=NO_DURATION)
             return {"CANCELLED"}
         return super().execute(context)
 

@@ -4,35 +4,20 @@ from typing import ClassVar
 
 import bpy
 
+from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.depth.depth_preview import show_on_request
-from ..mocap_assist.languages import translated
-from ..mocap_assist.track.tracking import selected_preview
-from ..solvers.errors import MocapAssistError
+from ..mocap_assist.track.tracking import why_not_show
 
 
-class MOCAP_OT_show_depth(bpy.types.Operator):
+class MOCAP_OT_show_depth(ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.show_depth"
     bl_label = "Show Points"
     bl_description = (
         "Open the depth recording of this object, now and whenever the file is loaded"
     )
     bl_options: ClassVar = set[str]()
+    why_not = why_not_show
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if selected_preview(context) is None:
-            cls.poll_message_set(translated("Select the points of a depth recording."))
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        preview = selected_preview(context)
-        if preview is None:
-            return {"CANCELLED"}
-        try:
-            message = show_on_request(preview.data, context.scene.frame_current_final)
-        except MocapAssistError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
-        self.report({"INFO"}, translated(message))
-        return {"FINISHED"}
+    def act(self, context: bpy.types.Context) -> str:
+        points = context.view_layer.objects.active
+        return show_on_request(points.data, context.scene.frame_current_final)

@@ -6,6 +6,7 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ...solvers.recordings.streams import StreamProtocol
+from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import OperatorMixin
 from ..languages import translated
 from ..panels.preference_values import preferred
@@ -33,17 +34,19 @@ class ListenButton(OperatorMixin):
             running.end(context)
             return {"FINISHED"}
         try:
-            self._listening = listening.Listening(
-                context,
-                live_port(),
-                StreamProtocol[context.scene.mocap_assist.live.live_protocol],
-                allowed_addresses(),
-                tuple(preferred("clean_color")),
-                preferred("line_width"),
-            )
+            with noted_errors(self):
+                self._listening = listening.Listening(
+                    context,
+                    live_port(),
+                    StreamProtocol[context.scene.mocap_assist.live.live_protocol],
+                    allowed_addresses(),
+                    tuple(preferred("clean_color")),
+                    preferred("line_width"),
+                )
         except MocapAssistError as error:
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
+        note_press(self)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 

@@ -93,6 +93,11 @@ def selected_preview(context: bpy.types.Context) -> bpy.types.Object | None:
     return active if active is not None and shows_depth(active) else None
 
 
+def why_not_show(context: bpy.types.Context) -> str:
+    """Return why there is no depth recording to show, or an empty text."""
+    return "" if selected_preview(context) else "Select the points of a depth recording."
+
+
 def why_not_track(context: bpy.types.Context) -> str:
     """Return why the selection cannot be tracked, or an empty text."""
     preview = selected_preview(context)

@@ -41,6 +41,8 @@ def test_unknown_recording_is_opened_only_on_request(
     assert not blank.ops.mocap_assist.track_depth.poll()
 
     assert blank.ops.mocap_assist.show_depth() == {"FINISHED"}
+    press = load("mocap_assist.blender.last_press").last_press()
+    assert "show_depth" in press.button.lower()
 
     assert points_of(made)[-1, 1] == pytest.approx(2.8, abs=NEAR)
     blank.ops.wm.open_mainfile(filepath=str(archive.with_suffix(".blend")))

@@ -86,6 +86,8 @@ def test_a_port_in_use_is_reported(listen, load, window, port):
     assert button.outcome == {"CANCELLED"}
     ((kind, message),) = window.reports
     assert kind == {"ERROR"} and f"Port {port} cannot be opened: another program" in message
+    press = load("mocap_assist.blender.last_press").last_press()
+    assert press.button == "Button" and press.ending != "done"
     assert load("mocap_assist.live.listening").current() is None and window.timers == []
 
 

@@ -154,7 +154,9 @@ def test_pose_is_restored_when_the_display_ends(rig, blank, load):
 
 
 @pytest.mark.parametrize("rig", ["Mixamo"], indirect=True)
-def test_without_a_window_a_duration_is_needed(rig, blank):
+def test_without_a_window_a_duration_is_needed(rig, blank, load):
     with pytest.raises(RuntimeError, match="Set the duration"):
         blank.ops.mocap_assist.record_live()
+    press = load("mocap_assist.blender.last_press").last_press()
+    assert "Set the duration" in press.sentence
     assert rig.animation_data is None or rig.animation_data.action is None
