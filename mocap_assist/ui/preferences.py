@@ -59,6 +59,11 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         default=False,
         update=_redraw,
     )
+    keep_solver_ready: bpy.props.BoolProperty(
+        name="Keep Solver Ready",
+        description="Start the next solver ahead, so that a press answers faster (0.13 GB)",
+        default=True,
+    )
     live_port: bpy.props.IntProperty(
         name="Live Stream Port",
         description="UDP port for live joint streams",
@@ -75,11 +80,6 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         name="Allowed Addresses",
         description="IPv4 addresses or networks of your trackers, with commas between",
         default="",
-    )
-    keep_solver_ready: bpy.props.BoolProperty(
-        name="Keep Solver Ready",
-        description="Start the next solver ahead, so that a press answers faster (0.13 GB)",
-        default=True,
     )
     raw_color: bpy.props.FloatVectorProperty(
         name="Raw Color",
