@@ -187,6 +187,5 @@ def _looks_y_up(points: NDArray[np.float64]) -> bool:
 
 def _extents(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the size of the bounding box, shape (n, 3), in frames with any observed point."""
-    known = np.isfinite(points).all(axis=2, keepdims=True)  # a point may lack a coordinate
-    observed = np.where(known, points, np.nan)[known.any(axis=(1, 2))]
+    observed = points[np.isfinite(points).any(axis=(1, 2))]
     return np.asarray(np.nanmax(observed, axis=1) - np.nanmin(observed, axis=1))

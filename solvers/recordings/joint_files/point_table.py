@@ -104,9 +104,6 @@ def read_point_table(
         reader, find_separator(first[0]), columns.width, path, within(progress, 0.0, 0.8)
     )
     points = rows[:, columns.positions.astype(int)]
-    points = np.where(np.isfinite(points).all(axis=-1, keepdims=True), points, np.nan)
-    if not len(points) or np.isnan(points).all():
-        raise InvalidFileError(f"{path} has no points that are observed in any frame.")
     times = None if columns.time is None else rows[:, columns.time]
     if times is None or not np.isfinite(times).all():
         times = None
@@ -134,7 +131,15 @@ def recording_of_points(
     times : shape (n_frames,), seconds, or None
     unit : float, meters per unit of the file, or None
     progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        No point has all its coordinates in any frame.
     """
+    points = np.where(np.isfinite(points).all(axis=-1, keepdims=True), points, np.nan)
+    if not len(points) or np.isnan(points).all():
+        raise InvalidFileError(f"{path} has no points that are observed in any frame.")
     if all(name.isdigit() for name in names):
         unnamed = body_of_points(path, points)
         if unnamed is not None:

@@ -274,3 +274,15 @@ def test_times_of_a_line_per_joint_give_the_rate(tmp_path, walk):
     recording, _ = read(tmp_path / "long.csv")
 
     assert recording.tracks.frame_rate == pytest.approx(60.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("x", "sentence"), [("nan", "no points that are observed"), ("9e307", "from the origin")]
+)
+def test_lines_of_points_without_a_place_are_refused(tmp_path, x, sentence):
+    path = tmp_path / "points.csv"
+    lines = [f"{frame},m{joint},{x},{joint},1" for frame in range(4) for joint in range(9)]
+    path.write_text("\n".join(["frame,joint,x,y,z", *lines]) + "\n")
+
+    with pytest.raises(InvalidFileError, match=sentence):
+        read_recording(path)
