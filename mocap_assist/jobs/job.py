@@ -166,8 +166,8 @@ class Job(Generic[Result]):
         It is read in a thread, so that Blender's window does not wait for it.
         """
         if self._reading is None:
-            if not self._has_ended():
-                return False
+            if self.cancelled or not self._has_ended():
+                return self._has_ended()
             reader = ThreadPoolExecutor(1)
             self._reading = reader.submit(self._outcome)
             reader.shutdown(wait=False)

@@ -125,7 +125,7 @@ def test_full_disk_is_one_sentence_when_the_request_does_not_fit(
     def no_room(*_):
         raise OSError(28, "No space left on device", "request")
 
-    monkeypatch.setattr("pathlib.Path.write_bytes", no_room)
+    monkeypatch.setattr(module, "write_value", no_room)
 
     with pytest.raises(load("solvers.errors").MocapAssistError, match="the disk is full"):
         module.Job(Expression("None"))
