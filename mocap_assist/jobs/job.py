@@ -3,7 +3,7 @@
 import signal
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from functools import partial
 from time import sleep
@@ -27,6 +27,9 @@ from .waiting_child import is_waiting, take_waiting
 
 Result = TypeVar("Result")
 POLL_INTERVAL_S = 0.05  # seconds
+SHORT_WAIT_S = 0.02
+"""Seconds that the window waits for a result to be read before it goes on without. Chosen by
+hand: results of 300 frames are read in less, which saves a look of 0.05 s."""
 EXIT_TIMEOUT_S = 0.25
 """Seconds that a process may take to exit after it wrote its result."""
 
@@ -171,6 +174,7 @@ class Job(Generic[Result]):
             reader = ThreadPoolExecutor(1)
             self._reading = reader.submit(self._outcome)
             reader.shutdown(wait=False)
+            wait([self._reading], SHORT_WAIT_S)
         return self._reading.done()
 
     def cancel(self) -> None:

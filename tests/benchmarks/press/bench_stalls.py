@@ -25,7 +25,7 @@ from ..shared.tables import table
 from .bench_press import wait_until_idle
 
 N_FRAMES, N_BONES = 30_000, 60
-FRAME_RATE = 30.0
+FRAME_RATE = 60.0
 MS = 1000.0
 
 
