@@ -7,10 +7,6 @@ from ...motion import Motion
 from ...reconstruction import LivePose
 from ...settings import Settings, setting
 
-MAX_FIRST_FRAMES = 8192
-"""Number of frames of the calibration that are kept. It bounds the memory of the fastest
-streams."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class LiveTakeSettings(Settings):

@@ -18,7 +18,8 @@ from ...reconstruction import (
 )
 from ...reconstruction.joint_rotations import motion_from_positions
 from ...recordings.live import LiveFrame, StreamFrame, recording_from_frames
-from .live_motion import DEFAULT_SETTINGS, MAX_FIRST_FRAMES, LiveMotion, LiveTakeSettings
+from .first_frames import FirstFrames
+from .live_motion import DEFAULT_SETTINGS, LiveMotion, LiveTakeSettings
 from .time_slots import TimeSlots, is_continued
 
 MAX_WAITING = 2
@@ -39,7 +40,7 @@ class LiveTake:
 
     def __init__(self, settings: LiveTakeSettings = DEFAULT_SETTINGS) -> None:
         self._settings = settings
-        self._first_frames: list[LiveFrame] = []
+        self._first_frames = FirstFrames(settings.calibration_s, _continues)
         self._started: _StartedTake | None = None
         self.n_skipped = 0
         """Number of frames that came faster than they were reconstructed."""
@@ -59,10 +60,7 @@ class LiveTake:
     @property
     def calibrated_fraction(self) -> float:
         """Fraction of the calibration that is done, 0 to 1."""
-        if self._started is not None or not self._first_frames:
-            return float(self._started is not None)
-        elapsed = self._first_frames[-1].time - self._first_frames[0].time
-        return min(elapsed / self._settings.calibration_s, 1.0)
+        return self._first_frames.fraction if self._started is None else 1.0
 
     def add(self, frames: Iterable[StreamFrame]) -> list[LiveMotion]:
         """Reconstruct frames of joints that arrived together, in their order.
@@ -84,21 +82,14 @@ class LiveTake:
         return [pose for pose in poses if pose is not None]
 
     def _calibrate(self, frames: list[LiveFrame]) -> None:
-        for frame in frames:
-            if self._first_frames and not _continues(self._first_frames[-1], frame):
-                self._first_frames.clear()
-            self._first_frames.append(frame)
-        del self._first_frames[:-MAX_FIRST_FRAMES]
-        if self.calibrated_fraction < 1.0:
+        if not (complete := self._first_frames.collect(frames)):
             return
         try:
-            recording = recording_from_frames(self._first_frames)
+            recording = recording_from_frames(complete)
         except InvalidFileError:  # nothing was tracked: wait for the actor
-            self._first_frames.clear()
             return
         settings = ReconstructSettings(smoothing=self._settings.smoothing)
-        self._started = _StartedTake(recording, settings, self._first_frames[-1])
-        self._first_frames.clear()
+        self._started = _StartedTake(recording, settings, complete[-1])
 
 
 class _StartedTake:

@@ -8,7 +8,8 @@ from ...errors import InvalidFileError, InvalidMotionError
 from ...motion import Motion, find_humanoid_map
 from ...motion.humanoid import ESSENTIAL_ROLES
 from ...recordings.live import PoseFrame, StreamFrame, measured_rate, motion_from_poses
-from .live_motion import DEFAULT_SETTINGS, MAX_FIRST_FRAMES, LiveMotion, LiveTakeSettings
+from .first_frames import FirstFrames
+from .live_motion import DEFAULT_SETTINGS, LiveMotion, LiveTakeSettings
 from .time_slots import TimeSlots, is_continued
 
 MAX_WAITING = 12
@@ -28,8 +29,7 @@ class PoseTake:
     """None: a stream of rotations says nothing of confidence."""
 
     def __init__(self, settings: LiveTakeSettings = DEFAULT_SETTINGS) -> None:
-        self._settings = settings
-        self._first_frames: list[PoseFrame] = []
+        self._first_frames = FirstFrames(settings.calibration_s, _continues)
         self._slots: TimeSlots | None = None
         self.calibration: Motion | None = None
         """The motion in which the skeleton was measured; None as long as that lasts."""
@@ -41,10 +41,7 @@ class PoseTake:
     @property
     def calibrated_fraction(self) -> float:
         """Fraction of the calibration that is done, 0 to 1."""
-        if self.calibration is not None or not self._first_frames:
-            return float(self.calibration is not None)
-        elapsed = self._first_frames[-1].time - self._first_frames[0].time
-        return min(elapsed / self._settings.calibration_s, 1.0)
+        return self._first_frames.fraction if self.calibration is None else 1.0
 
     def add(self, frames: Iterable[StreamFrame]) -> list[LiveMotion]:
         """Take frames of bones that arrived together, in their order.
@@ -65,29 +62,20 @@ class PoseTake:
         return [pose for pose in poses if pose is not None]
 
     def _calibrate(self, frames: list[PoseFrame]) -> None:
-        for frame in frames:
-            last = self._first_frames[-1] if self._first_frames else frame
-            is_same = frame.body == last.body and frame.skeleton is last.skeleton
-            if last is not frame and not (is_same and is_continued(frame.time - last.time)):
-                self._first_frames.clear()
-            self._first_frames.append(frame)
-        del self._first_frames[:-MAX_FIRST_FRAMES]
-        if self.calibrated_fraction < 1.0:
+        if not (complete := self._first_frames.collect(frames)):
             return
         try:
-            rate = measured_rate(self._first_frames)
+            rate = measured_rate(complete)
         except InvalidFileError:  # the clock of the sender stands still
-            self._first_frames.clear()
             return
-        calibration = motion_from_poses(self._first_frames, rate)
+        calibration = motion_from_poses(complete, rate)
         roles = find_humanoid_map(calibration.skeleton)
         if missing := [role for role in ESSENTIAL_ROLES if role not in roles.joints]:
             raise InvalidMotionError(
                 f"The stream has no bones for {', '.join(missing[:4])}. Send the complete body."
             )
-        self._slots = TimeSlots(self._first_frames[-1].time, rate)
+        self._slots = TimeSlots(complete[-1].time, rate)
         self.calibration = calibration
-        self._first_frames.clear()
 
     def _take(self, frame: PoseFrame) -> LiveMotion | None:
         """Return the pose of a frame; None if it has other bones, or shares its time slot."""
@@ -106,3 +94,9 @@ class PoseTake:
             self.calibration.frame_rate,
         )
         return LiveMotion(slot, motion, None)
+
+
+def _continues(last: PoseFrame, frame: PoseFrame) -> bool:
+    """Return whether a frame shows the same body soon after the last one."""
+    is_same = frame.body == last.body and frame.skeleton is last.skeleton
+    return is_same and is_continued(frame.time - last.time)

@@ -6,7 +6,7 @@ from .bounds import BOUNDS, DRAWN
 from .guards import GUARDS
 from .named_guards import NAMED_GUARDS
 
-GUARD = "guards a rare input: the test that is named beside it fails without it"
+GUARD = "guards a rare input: the test that is named in its docstring fails without it"
 REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
     GUARD: NAMED_GUARDS,
     "definition or conversion of units": (

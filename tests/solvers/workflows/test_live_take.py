@@ -11,7 +11,7 @@ from solvers.motion import forward_kinematics
 from solvers.motion.humanoid import posture_joints
 from solvers.recordings.live import frames_from_recording
 from solvers.workflows import LiveTake, LiveTakeSettings
-from solvers.workflows.live.live_motion import MAX_FIRST_FRAMES
+from solvers.workflows.live.first_frames import MAX_FIRST_FRAMES
 
 SHORT = LiveTakeSettings(calibration_s=1.0)
 
