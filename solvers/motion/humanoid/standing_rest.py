@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Flags, Integers
 from ...rotations import IDENTITY, inverse, multiply, quaternion_from_matrix, rotate
 from ..skeletons import MIN_BONE_M, Motion, Skeleton, WorldPoses, forward_kinematics
 from .roles import HumanoidMap
@@ -29,11 +29,10 @@ def with_standing_rest(motion: Motion, humanoid: HumanoidMap) -> Motion:
 
     Files of some data sets have rest poses that no body can take: each bone lies along an axis
     of its joint, so that one leg points down and the other up, or the trunk lies on its side
-    above the legs. The axial rotation of a limb
-    relative to the T-pose, and the height of the ankles, cannot be read from such a pose. The
-    rest pose is then that of the frame with straight legs and feet as they stand,
-    upright and facing -Y, with the hips at the origin. The positions of all joints over time
-    stay the same.
+    above the legs. The axial rotation of a limb relative to the T-pose, and the height of the
+    ankles, cannot be read from such a pose. The rest pose is then that of the frame with the
+    straightest legs, upright and facing -Y, with the hips at the origin; each foot takes its
+    pose from a frame in which it stands. The positions of all joints over time stay the same.
 
     Parameters
     ----------
@@ -57,19 +56,23 @@ def with_standing_rest(motion: Motion, humanoid: HumanoidMap) -> Motion:
         return motion
     poses = forward_kinematics(motion)
     positions = poses.positions
-    down = positions[:, hips] - positions[:, top]
-    forward = np.cross(down, positions[:, left] - positions[:, right])
-    straight = np.minimum(
-        _smallest_cosine(positions, legs, down), _flatness(positions, feet, forward)
-    )
-    usable = np.isfinite(poses.rotations).all(axis=(1, 2)) & np.isfinite(straight)
-    usable &= np.linalg.norm(forward, axis=1) > MIN_BONE_M**2
+    up = positions[:, top] - positions[:, hips]
+    across = positions[:, left] - positions[:, right]
+    usable = np.isfinite(poses.rotations).all(axis=(1, 2))
+    usable &= np.linalg.norm(np.cross(up, across), axis=1) > MIN_BONE_M**2
+    straight = _smallest_cosine(positions, legs, -up)
+    usable &= np.isfinite(straight)
     if not usable.any():
         return motion
-    frame = int(np.argmax(np.where(usable, straight, -np.inf)))
-    standing = positions[frame]
-    upright = _upright_from(standing[top] - standing[hips], standing[left] - standing[right])
-    return _with_rest(motion, poses, frame, upright, hips)
+    chosen = np.full(motion.skeleton.n_joints, np.argmax(np.where(usable, straight, -np.inf)))
+    upright = np.stack([_upright_from(up[frame], across[frame]) for frame in chosen])
+    # A trunk that is nearer to the vertical than to the ground is above feet that may stand.
+    stands = usable & (up[:, 2] > np.linalg.norm(up[:, :2], axis=1))
+    for ankle, toes in feet if stands.any() else ():
+        below = motion.skeleton.subtree(ankle)
+        chosen[below] = frame = _standing_frame(positions, ankle, toes, stands)
+        upright[below] = _upright_from(np.array([0.0, 0.0, 1.0]), across[frame])
+    return _with_rest(motion, poses, chosen, upright, hips)
 
 
 def _smallest_cosine(positions: Array, bones: list[tuple[int, int]], direction: Array) -> Array:
@@ -102,21 +105,17 @@ def _sides_agree(rest: Array, joints: dict[str, int]) -> bool:
     return bool(_smallest_cosine(rest, shoulders, across)[0] > MIN_SIDE_COSINE)
 
 
-def _flatness(positions: Array, feet: list[tuple[int, int]], forward: Array) -> Array:
-    """Return how similar both feet are to a foot that stands, (n_frames,); 1 for equal slopes.
+def _standing_frame(positions: Array, ankle: int, toes: int, usable: Flags) -> int:
+    """Return a frame in which a foot stands, flat on the ground.
 
-    The slope of a standing foot depends on the height of its ankle: the foot that points most
-    to the front is one with raised toes. The lowest ankles are those of standing feet.
+    Ankles are lowest where the foot stands, or just before it lifts; the median slope there is
+    that of a standing foot, and not of one with raised toes.
     """
-    if not feet:
-        return np.ones(len(positions))
-    slopes = np.stack([_smallest_cosine(positions, [bone], forward) for bone in feet], axis=1)
-    ankles = positions[:, [ankle for ankle, _ in feet], 2]
-    is_known = np.isfinite(slopes) & np.isfinite(ankles)
-    if not is_known.any():
-        return np.full(len(positions), np.nan)
-    low = is_known & (ankles <= np.quantile(ankles[is_known], STANDING_QUANTILE))
-    return np.asarray(1.0 - np.abs(slopes - np.median(slopes[low])).max(axis=1))
+    bone = positions[:, toes] - positions[:, ankle]
+    slope = np.arctan2(bone[:, 2], np.linalg.norm(bone[:, :2], axis=1))
+    height = np.where(usable, positions[:, ankle, 2], np.inf)
+    low = height <= np.quantile(height[usable], STANDING_QUANTILE)
+    return int(np.argmin(np.where(low, np.abs(slope - np.median(slope[low])), np.inf)))
 
 
 def _upright_from(up: Array, left: Array) -> Array:
@@ -128,17 +127,27 @@ def _upright_from(up: Array, left: Array) -> Array:
 
 
 def _with_rest(
-    motion: Motion, poses: WorldPoses, frame: int, upright: Array, hips: int
+    motion: Motion, poses: WorldPoses, chosen: Integers, upright: Array, hips: int
 ) -> Motion:
-    """Return the motion with a frame's pose, turned by a rotation, as its rest pose."""
+    """Return the motion with another rest pose.
+
+    Parameters
+    ----------
+    motion : Motion
+    poses : WorldPoses
+    chosen : shape (n_joints,), frame whose pose each joint takes
+    upright : shape (n_joints, 4), rotation that makes the body of that frame stand
+    hips : joint that is at the origin then
+    """
     skeleton = motion.skeleton
-    positions = rotate(upright, poses.positions[frame] - poses.positions[frame, hips])
-    parents = list(skeleton.parents)
-    offsets = positions - np.where(np.array(parents)[:, None] < 0, 0.0, positions[parents])
     # From the old rest pose to the new one, in the world.
-    turns = multiply(upright, poses.rotations[frame])
-    parent_turns = np.concatenate([IDENTITY[None], turns[parents[1:]]])
+    turns = multiply(upright, poses.rotations[chosen, np.arange(skeleton.n_joints)])
+    parent_turns = np.concatenate([IDENTITY[None], turns[list(skeleton.parents[1:])]])
     rotations = multiply(multiply(parent_turns, motion.rotations), inverse(turns))
+    offsets = rotate(parent_turns, skeleton.offsets)
+    offsets[0] = 0.0
+    standing = Skeleton(skeleton.names, skeleton.parents, offsets)
+    offsets[0] = -standing.rest_positions[hips]
     return Motion(
         Skeleton(skeleton.names, skeleton.parents, offsets),
         rotations,

@@ -278,5 +278,13 @@ GUARDS: dict[str, Guard] = {
         1.0,
         "denoising/test_outlier_runs.py::test_second_error_of_a_take_need_not_be_as_likely_as_the_first",
     ),
+    "motion/humanoid/standing_rest.MIN_SIDE_COSINE": Guard(
+        -2.0,
+        "motion/test_standing_rest.py::test_a_trunk_that_rests_turned_away_from_the_legs_is_no_person",
+    ),
+    "motion/humanoid/standing_rest.STANDING_QUANTILE": Guard(
+        1.0,
+        "motion/test_standing_rest.py::test_the_feet_rest_as_they_stand_though_they_hang_most_of_the_time",
+    ),
 }
 """By key."""
