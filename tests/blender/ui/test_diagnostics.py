@@ -77,3 +77,13 @@ def test_diagnostics_name_versions_and_changed_preferences(blank, copied, load):
 )
 def test_messages_lose_what_no_catalog_knows(load, message, template):
     assert load("mocap_assist.languages").template_of(message) == template
+
+
+def test_choices_that_depend_on_files_are_left_out_without_a_warning(load, capfd):
+    """Blender warns in the console when such a choice is asked for its default."""
+    last = bpy.context.window_manager.operator_properties_last("mocap_assist.import_recording")
+
+    found = load("mocap_assist.blender.last_press").changed_values(last)
+
+    assert "body_choice" not in found
+    assert "matches no enum" not in "".join(capfd.readouterr())
