@@ -74,15 +74,19 @@ class LabeledBodies:
         return mask
 
 
-def find_bodies(depth: Depth, camera: Camera, min_area: float) -> LabeledBodies:
+def find_bodies(
+    depth: Depth, camera: Camera, min_area: float, step: int | None = None
+) -> LabeledBodies:
     """Segment a depth image into bodies of at least `min_area` square meters of surface.
 
     Neighboring pixels are connected if their depths differ by no more than the sensor noise.
     Smaller components join the nearest body within reach, or none. Large images are subsampled,
-    and the remaining pixels follow their neighbors.
+    and the remaining pixels follow their neighbors; `step` is that of the sampled columns and
+    rows, 1 for all, or None to choose it by the number of pixels with depth.
     """
-    is_small = int((depth > 0.0).sum()) <= MAX_FULL_PIXELS
-    step = 1 if is_small else -(-camera.width // COARSE_WIDTH)
+    if step is None:
+        is_small = int((depth > 0.0).sum()) <= MAX_FULL_PIXELS
+        step = 1 if is_small else -(-camera.width // COARSE_WIDTH)
     coarse, camera = depth[::step, ::step], camera.every(step)
     components, areas = _label_components(coarse, camera)
     points = _group_points(components, camera.back_project(coarse))

@@ -66,6 +66,25 @@ def test_find_actor_works_in_a_room_with_default_settings(takes, name):
     assert np.mean(agreements(actor.recording, take)) > 0.85
 
 
+@pytest.mark.parametrize(("width", "height"), [(224, 171), (240, 180), (512, 424), (100, 100)])
+def test_images_of_any_size_have_bodies(width, height):
+    """A person moves in front of a wall; every pixel has a depth, as with few sensors."""
+    camera = Camera(width, width, width / 2, height / 2, width, height)
+    shape = np.zeros((height, width), dtype=bool)
+    shape[int(0.2 * height) : int(0.9 * height), int(0.1 * width) : int(0.3 * width)] = True
+
+    def person(frame):
+        return np.roll(shape, frame * width // 100, axis=1)
+
+    actor = find_actor(
+        DepthRecording(
+            camera, 60, 30.0, lambda frame: np.where(person(frame), 2.5, 4.0).astype(np.float32)
+        )
+    )
+
+    assert agreement(actor.recording.frame(30) > 0.0, person(30)) > 0.9
+
+
 def test_find_actor_ignores_furniture(takes):
     """A cupboard with more visible surface than the actor, and a stool."""
     take = takes["walk_side"]
