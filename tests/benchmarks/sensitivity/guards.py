@@ -26,6 +26,7 @@ WITHOUT: dict[str, Any] = {
     "denoising/window_estimates/estimate_channels.MAX_LEVERAGE": 1.0 - 1e-9,
     "denoising/window_estimates/prior_selection.N_TRIAL_ITERATIONS": 1,
     "markers/pair_swaps.FRAME_WEIGHT": 0.0,
+    "retargeting/key_curves.END_WEIGHT": 1.0,
     "markers/solve_skeleton.MAX_ERROR_FACTOR": inf,
 }
 """Value without effect, by key; a tenth of the two numbers whose logarithm counts."""
