@@ -21,7 +21,8 @@ from ..containers import (
 )
 from ..conventions import check_scale
 from .body_json import number
-from .mediapipe_landmarks import N_POINTS, recording_from_landmarks, seconds
+from .landmark_recording import recording_from_landmarks
+from .mediapipe_landmarks import N_POINTS, seconds
 
 WORLD = ("worldLandmarks", "pose_world_landmarks", "poseWorldLandmarks", "world_landmarks",
          "keypoints3D")  # fmt: skip

@@ -1,15 +1,9 @@
 """Names, axes and the check for flat landmarks for all readers of MediaPipe's landmarks."""
 
-from pathlib import Path
-
 import numpy as np
 
 from ...arrays import Array
-from ...errors import InvalidFileError
-from ...motion import JointRecording, Sensor
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS
-from ...progress import Progress, Remark
-from ..conventions import DEFAULT_FRAME_RATE, from_azure_space, joint_recording
 
 N_POINTS = len(BODY_POINTS)
 LANDMARK_JOINTS = (*BODY_POINTS, *COMPUTED_JOINTS)
@@ -37,12 +31,18 @@ def seconds(stamps: Array) -> Array:
 def is_world(points: Array) -> bool:
     """Return whether landmarks, shape (n_frames, 33, 3), are in the world, not in a picture."""
     center = points[:, HIPS].mean(axis=1)
-    size = np.nanmax(np.ptp(points, axis=1), axis=1, initial=0.0)
+    size = _size(points)
     known = np.isfinite(center).all(axis=1) & (size > 0.0)
     if not known.any():
         return False
     away = np.linalg.norm(center[known], axis=1) / size[known]
     return bool(np.median(away) <= MAX_CENTER_FRACTION)
+
+
+def _size(points: Array) -> Array:
+    """Return the largest side of the box around the landmarks of each frame, (n_frames,)."""
+    box = np.fmax.reduce(points, axis=1) - np.fmin.reduce(points, axis=1)
+    return np.asarray(box.max(axis=1))
 
 
 def is_normalized(points: Array) -> bool:
@@ -55,63 +55,19 @@ def is_normalized(points: Array) -> bool:
     return bool(inside.mean() >= MIN_INSIDE) and not is_world(points)
 
 
-def recording_from_landmarks(
-    path: Path | str,
-    landmarks: Array,
-    times: Array | None,
-    frame_rate: float | None,
-    scale: float | None,
-    progress: Progress,
-) -> JointRecording:
-    """Return the recording of world landmarks: x right, y down, z away from the camera.
+def is_of_picture(points: Array) -> bool:
+    """Return whether landmarks that are not of the world are of a picture, without true depth.
+
+    They are fractions of its width and height, or pixels with depths relative to the hips.
 
     Parameters
     ----------
-    path : Path or str
-        For error messages.
-    landmarks : shape (n_frames, 33, 4)
-        x, y and z in meters, NaN in frames without a body; visibility from 0 to 1, or NaN.
-    times : seconds, shape (n_frames,), or None
-    frame_rate : hertz, or None
-    scale : meters per unit of the file, or None
-    progress : Progress
-
-    Raises
-    ------
-    InvalidFileError
-        The landmarks are those of a picture, or none is observed.
+    points : shape (n_frames, 33, 3)
     """
-    points, visibility = landmarks[..., :3], np.clip(landmarks[..., 3], 0.0, 1.0)
-    if np.isnan(points).all():
-        raise InvalidFileError(f"{path} has {len(points)} frames but no body in any of them.")
-    if not is_world(points):
-        raise InvalidFileError(
-            f"{path} has image landmarks, without true depth. Save the pose_world_landmarks of"
-            " MediaPipe instead."
-        )
-    if times is None and frame_rate is None:
-        progress(
-            0.9, Remark(f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
-        )
-    progress(
-        0.9, Remark("MediaPipe keeps the hips at the origin, so the actor does not travel")
-    )
-    return joint_recording(
-        path,
-        LANDMARK_JOINTS,
-        with_computed_joints(from_azure_space(points)),
-        Sensor.MEDIAPIPE,
-        confidence=(
-            None
-            if np.isnan(visibility).all()
-            else with_computed_joints(np.nan_to_num(visibility))
-        ),
-        times=times,
-        frame_rate=frame_rate or DEFAULT_FRAME_RATE,
-        nan_only=True,
-        scale=scale,
-        progress=progress,
-    )
+    depth, size = points[:, HIPS, 2].mean(axis=1), _size(points)
+    known = np.isfinite(depth) & (size > 0.0)
+    relative = np.abs(depth[known]) <= MAX_CENTER_FRACTION * size[known]
+    return is_normalized(points) or not known.any() or bool(np.median(relative))
 
 
 def with_computed_joints(values: Array) -> Array:

@@ -38,6 +38,8 @@ JSON_HEAD = re.compile(
     rb'(?is)\s*[\[{].*"(skeletons|users|skeleton)"\s*:\s*\['
     rb'.*"(joints"\s*:\s*\[|joints"\s*:|(head|torso|JOINT_\w+)"\s*:)\s*\{'
 )
+OWN_JOINTS = re.compile(rb'(?i)"(joint_\w+|torso|waist|left_?collar|type)"')
+"""What other programs with `skeletons` and `joints` lack: its joints, or their type."""
 KEYS = frozenset({"skeletons", "Skeletons", "users", "Users", "skeleton", "Skeleton"})
 IDS = ("user_id", "userId", "id", "ID", "Id")
 TIMES = ("timestamp", "Timestamp", "TimeStamp", "time")
@@ -55,7 +57,7 @@ def is_nuitrack_csv(head: bytes) -> bool:
 
 def is_nuitrack_json(head: bytes) -> bool:
     """Return whether the first bytes are skeletons with Nuitrack's joints."""
-    return JSON_HEAD.match(head) is not None
+    return JSON_HEAD.match(head) is not None and OWN_JOINTS.search(head) is not None
 
 
 def open_nuitrack_csv(

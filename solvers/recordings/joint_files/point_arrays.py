@@ -186,6 +186,7 @@ def stand_body(
     rate: float = DEFAULT_FRAME_RATE,
     times: Array | None = None,
     sensor: Sensor = Sensor.OTHER,
+    confidence: Array | None = None,
     scale: float | None,
     progress: Progress,
 ) -> JointRecording:
@@ -200,6 +201,7 @@ def stand_body(
     rate : float, hertz
     times : shape (n_frames,), seconds, or None for the rate
     sensor : Sensor
+    confidence : shape (n_frames, n_joints), 0 to 1, or None
     scale : float, meters per unit of the file, or None
     progress : Progress
         Receives what was judged.
@@ -214,6 +216,7 @@ def stand_body(
         names,
         positions,
         sensor,
+        confidence=confidence,
         times=times,
         frame_rate=rate,
         nan_only=True,

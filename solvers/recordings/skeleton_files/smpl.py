@@ -28,25 +28,33 @@ from ..conventions import (
 from .kimodo import open_kimodo
 from .smpl_body import BODY, FINGERS, smpl_joints
 from .smpl_people import split_people
+from .smpl_rotations import with_rotation_vectors
 
-ROTATIONS = ("poses", "smpl_poses", "fullpose")
+ROTATIONS = (
+    "poses", "smpl_poses", "fullpose", "smpl_pose", "pred_rotmat", "pose_world", "pose",
+)  # fmt: skip
+"""Names of all rotations; of the last two, WHAM's, the first one is in the world."""
+OF_CAMERA = ("pred_rotmat", "pose")
+"""Names of rotations that video models give relative to the camera."""
 ROOT = ("root_orient", "global_orient")
 BODY_POSE = ("pose_body", "body_pose")
 HANDS = ("pose_hand",)
 LEFT_HAND, RIGHT_HAND = ("left_hand_pose",), ("right_hand_pose",)
-POSITIONS = ("trans", "transl", "translation", "smpl_trans")
+POSITIONS = ("trans_world", "trans", "transl", "translation", "smpl_trans", "pred_trans")
 RATES = ("mocap_frame_rate", "mocap_framerate", "frame_rate", "framerate", "fps")
 SCALES = ("smpl_scaling",)
+POSES = frozenset((*ROTATIONS, *ROOT, *BODY_POSE)) - {"pose"}
+"""Names that no other archives have; joints may be called `pose`, too."""
 NAMES = frozenset(
-    (*ROTATIONS, *ROOT, *BODY_POSE, *HANDS, *LEFT_HAND, *RIGHT_HAND, *POSITIONS, *RATES,
+    (*POSES, *HANDS, *LEFT_HAND, *RIGHT_HAND, *POSITIONS, *RATES,
      *SCALES, "betas", "gender", "dmpls", "surface_model_type", "pose_jaw", "pose_eye",
      "num_betas", "marker_data", "marker_labels", "mocap_time_length", "trans_vel")
 )  # fmt: skip
 READ = (
     *ROTATIONS, *ROOT, *BODY_POSE, *HANDS, *LEFT_HAND, *RIGHT_HAND, *POSITIONS, *RATES, *SCALES,
 )  # fmt: skip
-POSES = frozenset((*ROTATIONS, *ROOT, *BODY_POSE))
-"""Names that no other archives have."""
+OF_SMPL = frozenset((*POSITIONS, "betas"))
+"""Names of which one is next to a `pose` of SMPL."""
 NAMES_OF_BODY = tuple(name for name, _, _ in BODY)
 """The 22 joints that all models share."""
 N_BODY = len(BODY)
@@ -72,7 +80,8 @@ def is_smpl(head: bytes) -> bool:
     One name of poses is enough; without one, all names are parameters.
     """
     names = {*archive_names(head)}
-    return bool(names) and (names <= NAMES or not POSES.isdisjoint(names))
+    is_pose = "pose" in names and not OF_SMPL.isdisjoint(names)
+    return bool(names) and (names <= NAMES or is_pose or not POSES.isdisjoint(names))
 
 
 def open_smpl(
@@ -87,11 +96,12 @@ def open_smpl(
 
     Both layouts of AMASS [1]_ are read, as one array `poses` or in parts (`root_orient`,
     `pose_body`, `pose_hand`), and the names that video models use (`global_orient`,
-    `body_pose`, `transl`). Rotations are exact. Bone lengths depend on a licensed model that
-    is neither read nor needed: they are those of an adult, scaled to `height`. The height
-    above the floor depends on them too, so the feet are put on the floor. Which way is up is
-    judged by the body (`judge_up_axis`): AMASS has Z up, most video models Y. Poses with an
-    axis too many are those of several people (`split_people`).
+    `body_pose`, `transl`, `pose_world`, `pred_rotmat`), as rotation vectors or matrices.
+    Rotations are exact. Bone lengths depend on a licensed model that is neither read nor
+    needed: they are those of an adult, scaled to `height`. The height above the floor depends
+    on them too, so the feet are put on the floor. Which way is up is judged by the body
+    (`judge_up_axis`): AMASS has Z up, most video models Y. Poses with an axis too many are
+    those of several people (`split_people`).
 
     Parameters
     ----------
@@ -129,6 +139,7 @@ def open_smpl(
     arrays = read_archive_members(path, (*READ, "posed_joints"))
     if "posed_joints" in arrays and not {*ROTATIONS, *ROOT} & arrays.keys():
         return open_kimodo(path, scale=scale, progress=progress)
+    arrays = with_rotation_vectors(arrays, {*ROTATIONS, *ROOT, *BODY_POSE})
     people = split_people(arrays, SIZES)
     vectors = [_rotation_vectors(path, person) for person in people]
     rate = _rate(arrays, unwatched)
@@ -162,9 +173,17 @@ def _motion(
     if positions is None:
         positions = np.zeros((n_frames, 3))
         progress(0.5, Remark("The file has no positions, so the body stays in place"))
+    if positions.shape == (n_frames, 1, 3):
+        positions = positions[:, 0]
     if positions.shape != (n_frames, 3):
         raise InvalidFileError(
             f"{path} has {n_frames} poses but positions of shape {positions.shape}."
+        )
+    named = next((name for name in (*ROTATIONS, *ROOT) if name in arrays), "")
+    if named in OF_CAMERA:
+        progress(
+            0.5,
+            Remark("Poses are relative to the camera: if it moved, the actor moves with it"),
         )
     rate = _rate(arrays, progress)
     unit = scale if scale is not None else 1.0 / _number(arrays, SCALES, 1.0)
@@ -199,8 +218,8 @@ def _rotation_vectors(path: Path | str, arrays: dict[str, Array]) -> Array:
         )
     if poses.ndim > 2 and (poses.ndim != 3 or poses.shape[2] != 3):
         raise InvalidFileError(
-            f"{path} has poses of shape {poses.shape}: rotation matrices, perhaps. Save"
-            " rotation vectors of three numbers for each joint."
+            f"{path} has poses of shape {poses.shape}, which are neither rotation vectors nor"
+            " matrices. Save rotation vectors of three numbers for each joint."
         )
     if poses[0].size not in N_NUMBERS:
         raise InvalidFileError(

@@ -242,3 +242,59 @@ def test_json_of_one_frame_is_refused(tmp_path):
 
     with pytest.raises(InvalidFileError, match="joints of one frame"):
         read(tmp_path, json.dumps([{"id": 0, "keypoints3d": points}]))
+
+
+LANDMARKS = {"nose": "head"} | {
+    f"{side}_{part}": side + role
+    for side in ("left", "right")
+    for part, role in LIMBS.items()
+    if part != "bigtoe"
+}
+"""MediaPipe's names, as far as the walker has such joints."""
+
+
+@pytest.mark.parametrize("unit", [1.0, 1000.0])
+def test_landmarks_that_cameras_triangulated_are_a_body_that_travels(tmp_path, walk, unit):
+    names = LANDMARKS | {f"{side}_{part}": "head" for side in ("left", "right")
+                         for part in ("eye", "ear")}  # fmt: skip
+    path = {role: points + np.array([0.5, 4.0, 0.0]) for role, points in walk.items()}
+
+    recording, _ = read(
+        tmp_path, table(path, names, lambda name, axis: f"{name}_{axis}", unit=unit)
+    )
+
+    check(recording, walk)
+    hips = recording.tracks.positions[:, recording.names.index("left_hip")]
+    travel = np.linalg.norm(np.ptp(hips[:, :2], axis=0))
+    assert travel == pytest.approx(
+        np.linalg.norm(np.ptp(walk["leftUpperLeg"][:, :2], axis=0)), rel=0.1
+    )
+
+
+def test_world_landmarks_without_the_face_are_read(tmp_path, walk):
+    """Landmarks that no frame has must not hide where the hips are."""
+    hips = (walk["leftUpperLeg"] + walk["rightUpperLeg"]) / 2.0
+    downward = {
+        role: (points - hips)[..., [0, 2, 1]] * (1, -1, 1) for role, points in walk.items()
+    }
+    names = LANDMARKS | {f"{side}_{part}": f"{side}Foot" for side in ("left", "right")
+                         for part in ("heel", "foot_index")}  # fmt: skip
+
+    recording, _ = read(tmp_path, table(downward, names, lambda name, axis: f"{name}_{axis}"))
+
+    check(recording, walk)
+
+
+def test_people_called_skeletons_with_named_joints_are_read(tmp_path, walk):
+    """Nuitrack has such members too, but other joints."""
+    frames = [
+        {"timestamp": frame / 60, "skeletons": [{"id": 0, "joints": {
+            name: dict(zip("xyz", walk[role][frame].tolist(), strict=True))
+            for name, role in LANDMARKS.items()
+        }}]}
+        for frame in range(F)
+    ]  # fmt: skip
+
+    recording, _ = read(tmp_path, json.dumps(frames))
+
+    check(recording, walk)

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from solvers.errors import MocapAssistError
 from solvers.motion import Motion
 from solvers.recordings import read_recording
 from solvers.rotations import angle_between
@@ -114,3 +115,46 @@ def test_frames_without_the_person_are_missing(converters, tmp_path):
     assert motion.n_frames == N_FRAMES
     assert np.isnan(motion.rotations[3:5]).all()
     assert np.isfinite(motion.rotations[[2, 5]]).all()
+
+
+IN_THE_WORLD = {"pose_world": POSES, "trans_world": TRANS, "pose": POSES + 0.1, "trans": -TRANS}
+
+
+@pytest.mark.parametrize(
+    ("arrays", "is_of_camera"),
+    [
+        (
+            {"global_orient": MATRICES[:, :1], "body_pose": MATRICES[:, 1:], "transl": TRANS},
+            False,
+        ),
+        (
+            {"global_orient": MATRICES[:, 0], "body_pose": MATRICES[:, 1:], "transl": TRANS},
+            False,
+        ),
+        ({"poses": MATRICES, "trans": TRANS}, False),
+        ({"pred_rotmat": MATRICES, "pred_trans": TRANS[:, None]}, True),
+        ({"pose": POSES, "trans": TRANS, "betas": np.zeros((N_FRAMES, 10))}, True),
+        (IN_THE_WORLD, False),
+        ({"smpl_pose": POSES, "smpl_trans": TRANS}, False),
+    ],
+)
+def test_results_saved_as_they_are_give_the_same_motion(tmp_path, arrays, is_of_camera):
+    np.savez(tmp_path / "expected.npz", poses=POSES, trans=TRANS)
+    np.savez(tmp_path / "take.npz", **arrays)
+    said = []
+
+    motion = read_recording(
+        tmp_path / "take.npz", progress=lambda _, text="": said.append(str(text))
+    )
+
+    expected = read_recording(tmp_path / "expected.npz")
+    assert angle_between(motion.rotations, expected.rotations).max() < 1e-6
+    assert_allclose(motion.root_positions, expected.root_positions, atol=1e-9)
+    assert ("relative to the camera" in " ".join(said)) == is_of_camera
+
+
+def test_joints_called_pose_are_not_taken_for_rotations(tmp_path):
+    np.savez(tmp_path / "take.npz", pose=np.zeros((N_FRAMES, 4, 4)))
+
+    with pytest.raises(MocapAssistError, match=r"^(?!.*SMPL)"):
+        read_recording(tmp_path / "take.npz")

@@ -1,0 +1,111 @@
+"""Make recordings of MediaPipe's landmarks, of the world or triangulated by cameras."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ...motion import JointRecording, Sensor
+from ...motion.skeletons import BODY_POINTS
+from ...progress import Progress, Remark
+from ..conventions import DEFAULT_FRAME_RATE, from_azure_space, joint_recording
+from .mediapipe_landmarks import (
+    LANDMARK_JOINTS,
+    N_POINTS,
+    is_of_picture,
+    is_world,
+    with_computed_joints,
+)
+from .named_points import body_of_named_points
+from .point_arrays import stand_body
+
+
+def recording_from_landmarks(
+    path: Path | str,
+    landmarks: Array,
+    times: Array | None,
+    frame_rate: float | None,
+    scale: float | None,
+    progress: Progress,
+) -> JointRecording:
+    """Return the recording of world landmarks, or of landmarks that cameras triangulated.
+
+    World landmarks have the hips at the origin, x right, y down, z away from the camera. Axes
+    and unit of triangulated landmarks are judged from the body.
+
+    Parameters
+    ----------
+    path : Path or str
+        For error messages.
+    landmarks : shape (n_frames, 33, 4)
+        x, y and z, NaN where not observed; visibility from 0 to 1, or NaN.
+    times : seconds, shape (n_frames,), or None
+    frame_rate : hertz, or None
+    scale : meters per unit of the file, or None
+    progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        The landmarks are those of a picture, or none is observed.
+    """
+    points, visibility = landmarks[..., :3], np.clip(landmarks[..., 3], 0.0, 1.0)
+    if np.isnan(points).all():
+        raise InvalidFileError(f"{path} has {len(points)} frames but no body in any of them.")
+    if not is_world(points):
+        return _triangulated(path, points, visibility, times, frame_rate, scale, progress)
+    if times is None and frame_rate is None:
+        progress(
+            0.9, Remark(f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
+        )
+    progress(
+        0.9, Remark("MediaPipe keeps the hips at the origin, so the actor does not travel")
+    )
+    return joint_recording(
+        path,
+        LANDMARK_JOINTS,
+        with_computed_joints(from_azure_space(points)),
+        Sensor.MEDIAPIPE,
+        confidence=(
+            None
+            if np.isnan(visibility).all()
+            else with_computed_joints(np.nan_to_num(visibility))
+        ),
+        times=times,
+        frame_rate=frame_rate or DEFAULT_FRAME_RATE,
+        nan_only=True,
+        scale=scale,
+        progress=progress,
+    )
+
+
+def _triangulated(
+    path: Path | str,
+    points: Array,
+    visibility: Array,
+    times: Array | None,
+    frame_rate: float | None,
+    scale: float | None,
+    progress: Progress,
+) -> JointRecording:
+    observed = [at for at in range(N_POINTS) if np.isfinite(points[:, at]).all(axis=-1).any()]
+    names = [BODY_POINTS[at] for at in observed]
+    body = None if is_of_picture(points) else body_of_named_points(names, points[:, observed])
+    if body is None:
+        raise InvalidFileError(
+            f"{path} has image landmarks, without true depth. Save the pose_world_landmarks of"
+            " MediaPipe instead."
+        )
+    joints = [LANDMARK_JOINTS.index(name) for name in body.names if name in LANDMARK_JOINTS]
+    certain = with_computed_joints(np.nan_to_num(visibility))[:, joints]
+    return stand_body(
+        path,
+        body.names,
+        body.positions,
+        rate=frame_rate or DEFAULT_FRAME_RATE,
+        times=times,
+        confidence=None if np.isnan(visibility).all() else certain,
+        scale=scale,
+        progress=progress,
+    )
