@@ -17,13 +17,8 @@ from .containers import (
     read_array,
 )
 from .conventions import DEFAULT_FRAME_RATE, Bodies, check_scale, observed_body
-from .joint_files import (
-    body_of_points,
-    has_layout,
-    points_of_array,
-    read_body,
-    read_freemocap_points,
-)
+from .joint_files import read_freemocap_points
+from .point_bodies import body_of_points, has_layout, points_of_array, read_body
 from .skeleton_files import is_motion_x, read_motion_x
 
 HUMANML3D_FEATURES = 263

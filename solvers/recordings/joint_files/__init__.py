@@ -17,13 +17,6 @@ from .mediapipe_json import (
     is_mediapipe_json,
     read_mediapipe_json,
 )
-from .mediapipe_landmarks import (
-    HIPS,
-    LANDMARK_JOINTS,
-    MILLISECOND,
-    is_world,
-    with_computed_joints,
-)
 from .msr_action3d import is_msr_action3d, read_msr_action3d
 from .ntu_skeleton import is_ntu_skeleton, open_ntu_skeleton
 from .nuitrack import (
@@ -32,20 +25,13 @@ from .nuitrack import (
     open_nuitrack_csv,
     open_nuitrack_json,
 )
-from .point_arrays import body_of_points, points_of_array, read_body
 from .point_table import is_point_table, read_point_table
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
-from .unnamed_joints import has_layout
 from .zed_json import is_zed_json, open_zed_json
 
 __all__ = [
-    "HIPS",
-    "LANDMARK_JOINTS",
-    "MILLISECOND",
-    "body_of_points",
     "frame_landmarks",
     "frame_time",
-    "has_layout",
     "is_azure_csv",
     "is_azure_json",
     "is_frame_json",
@@ -65,7 +51,6 @@ __all__ = [
     "is_nuitrack_json",
     "is_point_table",
     "is_ui_prmd",
-    "is_world",
     "is_zed_json",
     "open_azure_csv",
     "open_azure_json",
@@ -78,8 +63,6 @@ __all__ = [
     "open_nuitrack_csv",
     "open_nuitrack_json",
     "open_zed_json",
-    "points_of_array",
-    "read_body",
     "read_freemocap",
     "read_freemocap_points",
     "read_kinect_csv",
@@ -89,7 +72,6 @@ __all__ = [
     "read_point_table",
     "read_ui_prmd",
     "read_ui_prmd_pair",
-    "with_computed_joints",
     "write_joint_csv",
     "write_joint_json",
 ]

@@ -25,11 +25,13 @@ from .body_json import (
 
 MICROSECOND = 1e-6
 HEAD = re.compile(rb'\s*\{\s*"(?:[^"]*"[^{}]*")?(k4abt_sdk_version|bone_list|joint_names)"')
+OWN_NAMES = (b"k4abt_sdk_version", b"bone_list", b"SPINE_NAVEL")
+"""Of which a file of the Azure Kinect has one; others list names of joints, too."""
 
 
 def is_azure_json(head: bytes) -> bool:
     """Return whether a file has this format, from its first bytes."""
-    return HEAD.match(head) is not None
+    return HEAD.match(head) is not None and any(name in head for name in OWN_NAMES)
 
 
 def open_azure_json(

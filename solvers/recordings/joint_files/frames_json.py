@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,25 +20,18 @@ from ..containers import (
     json_members,
 )
 from ..conventions import DEFAULT_FRAME_RATE, Bodies, check_scale
-from .body_json import BodiesFrame, BodyJoints, name_of_body, open_frames, stacked
-from .named_points import body_of_named_points
-from .point_arrays import (
+from ..point_bodies import (
+    body_of_named_points,
     body_of_points,
     read_body,
     second_of_times,
     stand_body,
-    without_undetected,
 )
-from .unnamed_joints import has_layout
+from .body_json import BodiesFrame, BodyJoints, open_frames, stacked
+from .json_people import POINT_KEYS, JsonPerson, people_of_frame
 
-POINT_KEYS = (
-    "keypoints3d", "keypoints_3d", "joints3d", "joints_3d", "joints3D", "pose_keypoints_3d",
-    "pose3d", "pose_3d", "poses_3d", "positions", "joints", "keypoints", "xyz",
-)  # fmt: skip
-"""Members with the joints of a person."""
-PEOPLE_KEYS = ("instances", "people", "persons", "bodies", "skeletons", "annots")
-"""Members with the people of a frame."""
-IDENTITY_KEYS = ("id", "track_id", "person_id", "body_id", "personID")
+LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
+"""Members with the names of joints, where these stand apart."""
 RATE_KEYS = ("fps", "frame_rate", "framerate", "frameRate")
 TIME_KEYS = {"timestamp": None, "time": None, "timestamp_ms": 0.001, "time_ms": 0.001}
 """Seconds per unit of the time of a frame; None where the key does not state it."""
@@ -48,16 +41,6 @@ HEAD = re.compile(
     + rb')"\s*:\s*(\[\s*([\[{\d-]|null)|\{)',
     re.DOTALL,
 )
-MIN_JOINTS = 8
-"""Number of joints of a person. It guards JSON of something else."""
-
-
-class _Person(NamedTuple):
-    identity: str
-    names: tuple[str, ...]
-    """Empty if the joints have none."""
-    positions: Array
-    """Shape (n_joints, 3)."""
 
 
 class _Content(NamedTuple):
@@ -69,6 +52,8 @@ class _Content(NamedTuple):
     rate: float | None
     second: float | None
     """Seconds per unit of the times; None if that is not stated."""
+    names: tuple[str, ...]
+    """Names of the joints that a file lists apart from their positions."""
 
     @property
     def n_frames(self) -> int:
@@ -127,12 +112,12 @@ def open_frames_json(
             f"{path} holds the joints of one frame. Combine all frames in an array of the shape"
             " (frames, joints, 3), and save it with numpy.save."
         )
-    frames, columns, rate, second = content
+    frames, columns, rate, second, listed_names = content
     if second is None:
         second = second_of_times(np.array([frame.time for frame in frames]), progress)
 
     def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
-        names = tuple(columns[body])
+        names = tuple(columns[body]) or listed_names
         return _recording(path, names, body, frames, times, rate, scale, progress)
 
     return open_frames(path, frames, second, read)
@@ -144,21 +129,24 @@ def _read_content(members: Iterable[JsonMember], progress: Progress) -> _Content
     columns: dict[str, dict[str, int]] = {}
     rate: float | None = None
     second: float | None = None
+    names: list[str] = []
     for member in members:
         if member.key in RATE_KEYS and _is_number(member.value):
             rate = float(member.value)
+        if member.key in LIST_OF_NAMES and isinstance(member.value, str):
+            names.append(member.value)
         time = np.nan
         if isinstance(member.value, dict):
             key = next((key for key in TIME_KEYS if _is_number(member.value.get(key))), "")
             time, second = (float(member.value[key]), TIME_KEYS[key]) if key else (time, second)
         found = {}
-        for person in _people(member.value):
+        for person in people_of_frame(member.value):
             positions = _placed(person, columns.setdefault(person.identity, {}))
             unknown = np.full(len(positions), np.nan)
             found[person.identity] = BodyJoints(positions, unknown)
         by_key.setdefault(member.key, []).append(BodiesFrame(time, found, member.done))
         progress(0.8 * member.done, "Reading")
-    return _Content(_frames(by_key), columns, rate, second)
+    return _Content(_frames(by_key), columns, rate, second, tuple(names))
 
 
 def _frames(by_key: Mapping[str, list[BodiesFrame]]) -> list[BodiesFrame]:
@@ -173,7 +161,7 @@ def _frames(by_key: Mapping[str, list[BodiesFrame]]) -> list[BodiesFrame]:
     return [each for frames in by_key.values() for each in frames if each.bodies]
 
 
-def _placed(person: _Person, columns: dict[str, int]) -> Array:
+def _placed(person: JsonPerson, columns: dict[str, int]) -> Array:
     """Return the joints of a frame in the columns of their names; new names are added."""
     if not person.names:
         return person.positions
@@ -212,7 +200,7 @@ def _recording(
         raise InvalidFileError(
             f"{path}: the number of joints of body {body} changes. Export it again."
         ) from None
-    if not names:
+    if len(names) != points.shape[1]:
         unnamed = body_of_points(path, points)
         if unnamed is None:
             raise InvalidFileError(
@@ -237,63 +225,6 @@ def _recording(
         scale=scale,
         progress=progress,
     )
-
-
-def _people(frame: Any) -> Iterator[_Person]:
-    """Yield the people of a frame."""
-    if isinstance(frame, list):
-        points = _points(frame)
-        if points is not None:
-            yield _Person("0", (), points)
-            return
-        listed = frame
-    elif isinstance(frame, dict):
-        key = next((key for key in PEOPLE_KEYS if isinstance(frame.get(key), list)), "")
-        listed = frame[key] if key else [frame]
-    else:
-        return
-    for count, body in enumerate(listed):
-        if isinstance(body, Mapping):
-            yield from _person(body, count)
-
-
-def _person(body: Mapping[str, Any], count: int) -> Iterator[_Person]:
-    key = next((key for key in POINT_KEYS if body.get(key)), "")
-    joints: Any = body.get(key)
-    identity = name_of_body(body, IDENTITY_KEYS, count)
-    is_named = isinstance(joints, Mapping)
-    values = [_coordinates(joint) for joint in joints.values()] if is_named else joints
-    points = _points(values) if isinstance(values, list) else None
-    if points is not None:
-        yield _Person(identity, tuple(map(str, joints)) if is_named else (), points)
-
-
-def _coordinates(joint: Any) -> Any:
-    """Return x, y and z of an object, or what stands in its place."""
-    if joint is None:
-        return [None] * 3
-    if isinstance(joint, Mapping):
-        inner = joint.get("position", joint)
-        if isinstance(inner, Mapping):
-            lower = {str(key).lower(): value for key, value in inner.items()}
-            return [lower.get(axis) for axis in "xyz"]
-        return inner
-    return joint
-
-
-def _points(values: list[Any]) -> Array | None:
-    """Return nested or flat numbers as points, shape (n_points, 3); None for other values."""
-    try:
-        array = np.array(values, dtype=np.float64)
-    except (ValueError, TypeError, OverflowError):
-        return None
-    if array.ndim == 1 and len(array) >= 3 * MIN_JOINTS:
-        widths = [width for width in (3, 4) if len(array) % width == 0]
-        known = [width for width in widths if has_layout(len(array) // width)]
-        array = array.reshape(-1, (known or widths)[0]) if widths else array
-    if array.ndim != 2 or array.shape[1] not in {3, 4} or len(array) < MIN_JOINTS:
-        return None
-    return array if array.shape[1] == 3 else without_undetected(array)
 
 
 def _is_number(value: Any) -> bool:

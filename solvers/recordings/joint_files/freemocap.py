@@ -20,7 +20,7 @@ from ..conventions import (
     points_z_up,
     up_along,
 )
-from .point_arrays import points_of_array
+from ..point_bodies import points_of_array
 
 WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)

@@ -27,7 +27,7 @@ from ..conventions import (
     observed_body,
     recorded_seconds,
 )
-from .point_arrays import second_of_times
+from ..point_bodies import second_of_times
 from .point_table import TIMES, recording_of_points
 
 FRAMES = ("frame", "frame_id", "frameid", "frame_index", "frame_number", "frame_num", "image")

@@ -13,8 +13,7 @@ from ...motion.skeletons import BODY_POINTS
 from ...progress import Progress, unwatched, within
 from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
 from ..conventions import check_scale
-from .landmark_recording import recording_from_landmarks
-from .mediapipe_landmarks import N_POINTS, seconds
+from ..point_bodies import N_POINTS, recording_from_landmarks, seconds
 
 CHANNELS = {"x": 0, "y": 1, "z": 2, "v": 3, "vis": 3, "visibility": 3}
 PREFIX = re.compile(r"((world|pose|landmarks?|lm|kp|point)(_|(?=\d)))+")

@@ -20,9 +20,8 @@ from ..containers import (
     json_members,
 )
 from ..conventions import check_scale
+from ..point_bodies import N_POINTS, recording_from_landmarks, seconds
 from .body_json import number
-from .landmark_recording import recording_from_landmarks
-from .mediapipe_landmarks import N_POINTS, seconds
 
 WORLD = ("worldLandmarks", "pose_world_landmarks", "poseWorldLandmarks", "world_landmarks",
          "keypoints3D")  # fmt: skip

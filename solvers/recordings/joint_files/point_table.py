@@ -20,8 +20,13 @@ from ..conventions import (
     meters_from_unit_name,
     stand_markers,
 )
-from .named_points import body_of_named_points
-from .point_arrays import body_of_points, read_body, second_of_times, stand_body
+from ..point_bodies import (
+    body_of_named_points,
+    body_of_points,
+    read_body,
+    second_of_times,
+    stand_body,
+)
 
 COORDINATE = re.compile(
     r"(?P<name>.*?)([\s_.:\-]+(pos(ition)?|loc(ation)?|translat(e|ion)|tr?|world))?[\s_.:\-]*"

@@ -8,8 +8,8 @@ from ...arrays import Array
 from ...rotations import quaternion_from_matrix, rotation_vector_from_quaternion
 
 MAX_DEVIATION = 1e-2
-"""Difference from 1 and 0 of the products of a matrix's rows. It guards arrays of something
-else, such as three people's vectors; networks give rotations to 32 bits."""
+"""Difference from 1 and 0 of the products of a matrix's rows, a ratio. It guards arrays of
+something else, such as three people's vectors; networks give rotations to 32 bits."""
 
 
 def with_rotation_vectors(

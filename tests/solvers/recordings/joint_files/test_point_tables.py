@@ -283,18 +283,3 @@ def test_world_landmarks_without_the_face_are_read(tmp_path, walk):
     recording, _ = read(tmp_path, table(downward, names, lambda name, axis: f"{name}_{axis}"))
 
     check(recording, walk)
-
-
-def test_people_called_skeletons_with_named_joints_are_read(tmp_path, walk):
-    """Nuitrack has such members too, but other joints."""
-    frames = [
-        {"timestamp": frame / 60, "skeletons": [{"id": 0, "joints": {
-            name: dict(zip("xyz", walk[role][frame].tolist(), strict=True))
-            for name, role in LANDMARKS.items()
-        }}]}
-        for frame in range(F)
-    ]  # fmt: skip
-
-    recording, _ = read(tmp_path, json.dumps(frames))
-
-    check(recording, walk)

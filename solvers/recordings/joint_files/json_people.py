@@ -1,0 +1,112 @@
+"""Find the people in a frame of JSON, and their joints, however these are nested."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ..point_bodies import has_layout, without_undetected
+from .body_json import name_of_body
+
+POINT_KEYS = (
+    "keypoints3d", "keypoints_3d", "joints3d", "joints_3d", "joints3D", "pose_keypoints_3d",
+    "pose3d", "pose_3d", "poses_3d", "positions", "joints", "keypoints", "bones", "xyz",
+)  # fmt: skip
+"""Members with the joints of a person."""
+PEOPLE_KEYS = ("instances", "people", "persons", "bodies", "skeletons", "annots")
+"""Members with the people of a frame."""
+IDENTITY_KEYS = ("id", "track_id", "person_id", "body_id", "personID")
+NAME_KEYS = ("name", "joint", "joint_name", "jointName", "bone", "bone_name", "type", "id")
+"""Members with the name of a joint, where joints are objects in a list."""
+PLACE_KEYS = ("position", "pos", "translation", "location", "transform", "matrix")
+"""Members with the place of a joint, or with the matrix of its pose."""
+MIN_JOINTS = 8
+"""Number of joints of a person. It guards JSON of something else."""
+
+
+class JsonPerson(NamedTuple):
+    """A person of a frame, and the joints."""
+
+    identity: str
+    names: tuple[str, ...]
+    """Empty if the joints have none."""
+    positions: Array
+    """Shape (n_joints, 3)."""
+
+
+def people_of_frame(frame: Any) -> Iterator[JsonPerson]:
+    """Yield the people of a frame."""
+    if isinstance(frame, list):
+        points = _points(frame)
+        if points is not None:
+            yield JsonPerson("0", (), points)
+            return
+        listed = frame
+    elif isinstance(frame, dict):
+        key = next((key for key in PEOPLE_KEYS if isinstance(frame.get(key), list)), "")
+        listed = frame[key] if key else [frame]
+    else:
+        return
+    for count, body in enumerate(listed):
+        if isinstance(body, Mapping):
+            yield from _person(body, count)
+
+
+def _person(body: Mapping[str, Any], count: int) -> Iterator[JsonPerson]:
+    key = next((key for key in POINT_KEYS if body.get(key)), "")
+    joints: Any = body.get(key)
+    identity = name_of_body(body, IDENTITY_KEYS, count)
+    names: tuple[str, ...] = ()
+    if isinstance(joints, Mapping):
+        names, joints = tuple(map(str, joints)), list(joints.values())
+    elif isinstance(joints, list) and joints and all(isinstance(k, Mapping) for k in joints):
+        named = next((each for each in NAME_KEYS if each in joints[0]), "")
+        names = tuple(str(joint.get(named)) for joint in joints) if named else ()
+    values = [_place(joint) for joint in joints] if names else joints
+    points = _points(values) if isinstance(values, list) else None
+    if points is not None and len({*names}) == len(names):
+        yield JsonPerson(identity, names, points)
+
+
+def _place(joint: Any) -> Any:
+    """Return x, y, z of an object or a matrix of 4 x 4; other values as they are."""
+    if joint is None:
+        return [None] * 3
+    if isinstance(joint, Mapping):
+        inner = next((joint[key] for key in PLACE_KEYS if key in joint), joint)
+        if isinstance(inner, Mapping):
+            lower = {str(key).lower(): value for key, value in inner.items()}
+            return [lower.get(axis) for axis in "xyz"]
+        joint = inner
+    if isinstance(joint, list) and len(joint) in {4, 16}:
+        return _translation(joint)
+    return joint
+
+
+def _translation(values: list[Any]) -> Any:
+    """Return the translation of a matrix, by rows or columns; other values as they are."""
+    try:
+        matrix = np.array(values, dtype=np.float64).reshape(4, 4)
+    except (ValueError, TypeError, OverflowError):
+        return values
+    if np.array_equal(matrix[3], (0.0, 0.0, 0.0, 1.0)):
+        return matrix[:3, 3].tolist()
+    if np.array_equal(matrix[:, 3], (0.0, 0.0, 0.0, 1.0)):
+        return matrix[3, :3].tolist()
+    return values
+
+
+def _points(values: list[Any]) -> Array | None:
+    """Return nested or flat numbers as points, shape (n_points, 3); None for other values."""
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (ValueError, TypeError, OverflowError):
+        return None
+    if array.ndim == 1 and len(array) >= 3 * MIN_JOINTS:
+        widths = [width for width in (3, 4) if len(array) % width == 0]
+        known = [width for width in widths if has_layout(len(array) // width)]
+        array = array.reshape(-1, (known or widths)[0]) if widths else array
+    if array.ndim != 2 or array.shape[1] not in {3, 4} or len(array) < MIN_JOINTS:
+        return None
+    return array if array.shape[1] == 3 else without_undetected(array)
