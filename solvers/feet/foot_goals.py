@@ -1,4 +1,4 @@
-"""The goals of a fit that holds feet in place with the least change of the motion."""
+"""The goals of a fit that holds feet, hands and knees in place with the least change of the motion."""
 
 from collections.abc import Sequence
 
@@ -19,6 +19,7 @@ from ..motion_fitting.goals import (
     knee_limit,
 )
 from .foot_contact import FootContact
+from .limb_goals import LimbContact, limb_goals, limb_tolerances
 from .plant_settings import PlantSettings
 
 ROOT_M = 0.01
@@ -53,11 +54,13 @@ MAX_TURN_RAD_S = np.radians(8.0)
 def planting_goals(
     fitted: FittedMotion,
     contacts: Sequence[FootContact],
+    limbs: Sequence[LimbContact],
     settings: PlantSettings,
     ankle_weights: Sequence[Array],
 ) -> list[Goal]:
-    """Return the goals for a motion that is not changed yet, from the contacts of its feet.
+    """Return the goals for a motion that is not changed yet.
 
+    They come from the contacts of its feet, and of hands and knees.
     `ankle_weights` say for each foot how firmly its ankle keeps its path, shape (n_frames,).
     """
     poses = fitted.poses
@@ -69,14 +72,14 @@ def planting_goals(
             *_source_goals(fitted, poses, contact, settings, weights),
         )
     ]
-    return [*goals, _smoothness(fitted, contacts, settings)]
+    goals += limb_goals(fitted, limbs, settings, CREEP_M)
+    return [*goals, _smoothness(fitted, contacts, limbs, settings)]
 
 
 def _contact_goals(contact: FootContact, settings: PlantSettings) -> list[Goal]:
     """Return what the loaded sole has to meet."""
     creep = CREEP_M * contact.size / settings.hold
-    step_load = 0.5 * (contact.load[1:] + contact.load[:-1])
-    goals: list[Goal] = [StayInPlace(contact.points, step_load, contact.steps, creep)]
+    goals: list[Goal] = [StayInPlace(contact.points, contact.step_load, contact.steps, creep)]
     if settings.floor and contact.on_floor.any():
         goals.append(
             StayAtHeight(
@@ -124,10 +127,13 @@ def _in_all_directions(weight: Array) -> Array:
 
 
 def _smoothness(
-    fitted: FittedMotion, contacts: Sequence[FootContact], settings: PlantSettings
+    fitted: FittedMotion,
+    contacts: Sequence[FootContact],
+    limbs: Sequence[LimbContact],
+    settings: PlantSettings,
 ) -> FollowSource:
     """Return what keeps the change of each variable small and smooth."""
-    size = float(np.mean([contact.size for contact in contacts]))
+    size = float(np.mean([contact.size for contact in (*contacts, *limbs)]))
     knee = KNEE_RAD if settings.spare_knees else LOOSE_KNEE_RAD
     tolerances = {
         joint: tolerance
@@ -136,5 +142,5 @@ def _smoothness(
             (*leg.chain, leg.toe), (HIP_RAD, knee, ANKLE_RAD, HIP_RAD), strict=True
         )
         if joint is not None
-    }
+    } | limb_tolerances(limbs)
     return FollowSource.of_joints(fitted, ROOT_M * size, tolerances, settings.blend)

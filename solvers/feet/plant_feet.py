@@ -1,4 +1,4 @@
-"""Stop feet from sliding: foot-skate cleanup."""
+"""Stop feet, hands and knees from sliding: foot-skate cleanup."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,26 +12,31 @@ from ..motion.humanoid import HumanoidMap, find_humanoid_map
 from ..motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
 from ..motion_fitting import FittedMotion, fit_in_pieces, fit_motion
 from ..progress import Progress, Remark, collect_remarks, unwatched, within
+from .body_supports import SUPPORTS, detect_supports
 from .foot_contact import FootContact, find_foot_contact
 from .foot_goals import planting_goals
 from .legs import SIDES, LegJoints, find_legs
+from .limb_goals import LimbContact, find_limb_contacts, limb_tolerances
 from .plant_settings import PlantSettings
 from .standing_feet import detect_standing_feet
 
 DEFAULT_SETTINGS = PlantSettings()
+N_FEET = len(SIDES)
 
 
 @dataclass(frozen=True, eq=False)
 class Planted:
-    """A motion whose planted feet do not slide.
+    """A motion whose planted feet, hands and knees do not slide.
 
     Attributes
     ----------
     motion : Motion
     contacts : bool, shape (n_frames, 2), left and right
         When each foot is in contact: as given, or as detected.
+    supports : bool, shape (n_frames, 4), or None
+        When each of `SUPPORTS` is in contact; None where only feet are planted.
     slide_before, slide_after : float, meters
-        Distance that both soles cover over the floor while in contact.
+        Distance that soles, hands and knees cover over the floor while in contact.
     remarks : tuple of str
         What went wrong, such as feet that no leg can keep where they are.
     """
@@ -40,7 +45,15 @@ class Planted:
     contacts: Flags
     slide_before: float
     slide_after: float
+    supports: Flags | None = None
     remarks: tuple[str, ...] = ()
+
+    @property
+    def all_contacts(self) -> Flags:
+        """Contacts of feet, hands and knees, (n_frames, 6), or of feet alone, (n_frames, 2)."""
+        if self.supports is None:
+            return self.contacts
+        return np.hstack([self.contacts, self.supports])
 
 
 def plant_feet(
@@ -56,9 +69,10 @@ def plant_feet(
 
     As in Kovar et al. [1]_ footplants are met, and the motion is otherwise smooth and close to
     the original. A foot in contact may roll; only the loaded part of the sole, heel, ball or
-    both, must not move. The rotations of the legs and the position of the root in all frames
+    both, must not move. Nor must hands and knees that bear on the floor, with
+    `settings.hands_and_knees`. The rotations of the legs, of such arms, and the position of the root in all frames
     are found at once: they hold the soles with the least smooth change of knees, feet and root
-    (`planting_goals`, `fit_motion`). Bones never stretch, and no joint above the hips rotates.
+    (`planting_goals`, `fit_motion`). Bones never stretch, and no joint of the trunk rotates.
     Segments of a joined take are planted separately; a segment of less than a quarter of a
     second has no contact.
 
@@ -66,8 +80,9 @@ def plant_feet(
     ----------
     motion : Motion
         Without gaps.
-    contacts : bool, shape (n_frames, 2), left and right
-        When each foot is in contact; detected if not given. All False changes nothing.
+    contacts : bool, shape (n_frames, 2) or (n_frames, 6)
+        When the left and the right foot, and each of `SUPPORTS`, are in contact; detected if
+        not given. All False changes nothing.
     humanoid_map : HumanoidMap
         Identifies the legs; found by name and structure if not given.
     settings : PlantSettings
@@ -79,7 +94,7 @@ def plant_feet(
     Returns
     -------
     Planted
-        Only the root position and the rotations of the legs differ from the input.
+        Only the root position and the rotations of legs and arms differ from the input.
 
     Raises
     ------
@@ -103,71 +118,100 @@ def plant_feet(
     cuts, results = find_shot_boundaries(motion), []
     for start, stop in shot_ranges(motion, cuts):
         segment = motion.slice(start, stop) if cuts else motion
-        too_short = bool(cuts) and is_short_shot(stop - start, motion.frame_rate)
-        if contacts is not None:
-            standing = contacts[start:stop]
-        elif too_short:
-            standing = np.zeros((stop - start, len(SIDES)), dtype=np.bool_)
-        else:
-            standing = detect_standing_feet(segment, humanoid_map, legs)
-        if too_short:
-            results.append(Planted(segment, standing, 0.0, 0.0))
-        else:
-            step = within(progress, start / motion.n_frames, stop / motion.n_frames)
-            weights = ankle_weights[start:stop]
-            results.append(_plant_segment(segment, legs, standing, weights, settings, step))
+        given = None if contacts is None else contacts[start:stop]
+        if bool(cuts) and is_short_shot(stop - start, motion.frame_rate):
+            none = np.zeros((stop - start, N_FEET + len(SUPPORTS)), dtype=np.bool_)
+            results.append(_planted(segment, none if given is None else given, settings))
+            continue
+        found = _find_contacts(segment, given, humanoid_map, legs, settings)
+        step = within(progress, start / motion.n_frames, stop / motion.n_frames)
+        weights = ankle_weights[start:stop]
+        results.append(
+            _plant_segment(segment, humanoid_map, legs, found, weights, settings, step)
+        )
     progress(1.0, "Planted the feet")
     planted = _join_segments(motion, results) if cuts else results[0]
     return replace(planted, remarks=tuple(remarks))
 
 
+def _find_contacts(
+    motion: Motion,
+    given: Flags | None,
+    humanoid_map: HumanoidMap,
+    legs: Sequence[LegJoints],
+    settings: PlantSettings,
+) -> Flags:
+    """Return the contacts of feet, hands and knees, as given or detected, (n_frames, 6)."""
+    feet = detect_standing_feet(motion, humanoid_map, legs) if given is None else given
+    if not settings.hands_and_knees:
+        supports = np.zeros((motion.n_frames, len(SUPPORTS)), dtype=np.bool_)
+    elif feet.shape[1] > N_FEET:
+        supports = feet[:, N_FEET:]
+    else:
+        supports = detect_supports(motion, humanoid_map)
+    return np.hstack([feet[:, :N_FEET], supports])
+
+
 def _plant_segment(
     motion: Motion,
+    humanoid_map: HumanoidMap,
     legs: Sequence[LegJoints],
     contacts: Flags,
     ankle_weights: Array,
     settings: PlantSettings,
     progress: Progress,
 ) -> Planted:
-    """Plant the feet of a motion without cuts."""
-    standing = [leg for leg in legs if contacts[:, SIDES.index(leg.side)].any()]
-    if not standing:
+    """Plant feet, hands and knees of a motion without cuts; contacts are (n_frames, 6)."""
+    if not contacts.any():
         progress(1.0, "No foot is in contact")
-        return Planted(motion, contacts, 0.0, 0.0)
+        return _planted(motion, contacts, settings)
     poses = forward_kinematics(motion)
+    limbs = find_limb_contacts(motion, poses, humanoid_map, contacts[:, N_FEET:])
+    knees = {limb.limb.chain[1] for limb in limbs if not limb.limb.is_arm}
     feet = [
         find_foot_contact(motion, poses, leg, contacts[:, SIDES.index(leg.side)])
-        for leg in standing
+        for leg in legs
+        if leg.knee in knees or contacts[:, SIDES.index(leg.side)].any()
     ]
 
     def plant_piece(start: int, stop: int, progress: Progress) -> Motion:
         pieces = [foot.slice(start, stop) for foot in feet]
+        on_limbs = [limb.slice(start, stop) for limb in limbs]
         weights = ankle_weights[start:stop]
-        return _plant_piece(motion.slice(start, stop), pieces, weights, settings, progress)
+        piece = motion.slice(start, stop)
+        return _plant_piece(piece, pieces, on_limbs, weights, settings, progress)
 
     result = fit_in_pieces(motion, plant_piece, progress)
-    after = forward_kinematics(result)
-    return Planted(
-        result,
-        contacts,
-        slide_before=sum(foot.slide(poses) for foot in feet),
-        slide_after=sum(foot.slide(after) for foot in feet),
-    )
+    before_and_after = poses, forward_kinematics(result)
+    slides = [sum(each.slide(one) for each in (*feet, *limbs)) for one in before_and_after]
+    return _planted(result, contacts, settings, slides)
+
+
+def _planted(
+    motion: Motion,
+    contacts: Flags,
+    settings: PlantSettings,
+    slides: Sequence[float] = (0.0, 0.0),
+) -> Planted:
+    supports = contacts[:, N_FEET:] if settings.hands_and_knees else None
+    return Planted(motion, contacts[:, :N_FEET], *slides, supports)
 
 
 def _plant_piece(
     motion: Motion,
     feet: Sequence[FootContact],
+    limbs: Sequence[LimbContact],
     ankle_weights: Array,
     settings: PlantSettings,
     progress: Progress,
 ) -> Motion:
-    """Return the piece of a take with its feet planted."""
+    """Return the piece of a take with its feet, hands and knees planted."""
     legs = [foot.leg for foot in feet]
     joints = [joint for leg in legs for joint in (*leg.chain, leg.toe) if joint is not None]
+    joints += limb_tolerances(limbs)
     start = FittedMotion(motion, motion, tuple(joints), settings.move_root)
     weights = [ankle_weights[:, SIDES.index(leg.side)] for leg in legs]
-    goals = planting_goals(start, feet, settings, weights)
+    goals = planting_goals(start, feet, limbs, settings, weights)
     fit = fit_motion(start, goals, progress, "Planting the feet")
     progress(1.0, "Planted the feet")
     return fit.motion
@@ -179,9 +223,15 @@ def _join_segments(motion: Motion, results: Sequence[Planted]) -> Planted:
     return Planted(
         motion.with_poses(rotations, roots),
         np.concatenate([result.contacts for result in results]),
+        supports=_join_supports(results),
         slide_before=sum(result.slide_before for result in results),
         slide_after=sum(result.slide_after for result in results),
     )
+
+
+def _join_supports(results: Sequence[Planted]) -> Flags | None:
+    supports = [result.supports for result in results if result.supports is not None]
+    return np.concatenate(supports) if supports else None
 
 
 def _require_legs(motion: Motion, humanoid_map: HumanoidMap) -> tuple[LegJoints, ...]:
@@ -203,8 +253,10 @@ def _require_legs(motion: Motion, humanoid_map: HumanoidMap) -> tuple[LegJoints,
 
 def _check_contacts(contacts: Flags, motion: Motion) -> Flags:
     contacts = np.array(contacts, dtype=np.bool_)
-    if contacts.shape != (motion.n_frames, len(SIDES)):
+    n_frames, widths = motion.n_frames, (N_FEET, N_FEET + len(SUPPORTS))
+    if contacts.shape not in [(n_frames, width) for width in widths]:
         raise InvalidMotionError(
-            f"Contacts need shape ({motion.n_frames}, 2), left and right, not {contacts.shape}."
+            f"Contacts need shape ({n_frames}, 2), left and right, or ({n_frames}, 6) with hands"
+            f" and knees, not {contacts.shape}."
         )
     return contacts

@@ -45,3 +45,6 @@ class PlantSettings(Settings):
     move_root: bool = setting(
         True, "Shift the hips slightly and smoothly where a leg cannot reach", label="Move Hips"
     )
+    hands_and_knees: bool = setting(
+        True, "Also keep hands and knees in place while they bear on the floor"
+    )

@@ -95,7 +95,7 @@ def _run(time: Array, rng: np.random.Generator) -> Feet:
     for foot, lag in enumerate((0.0, 0.5 * period)):
         cycle, phase = np.divmod(time + lag, period)
         swing = np.clip((phase - stance) / (period - stance), 0.0, 1.0)
-        ankles[:, foot, 1] = -speed * (period * (cycle + _smooth_step(swing)) - lag)
+        ankles[:, foot, 1] = -speed * (period * (cycle + smooth_step(swing)) - lag)
         ankles[:, foot, 2] += lift * np.sin(np.pi * swing) ** 2
         pitch[:, foot] = rng.uniform() * np.sin(np.pi * swing)
         contacts[:, foot] = phase < stance
@@ -112,7 +112,7 @@ def _steps(time: Array, rng: np.random.Generator) -> Feet:
     for foot in range(2):
         cycle, phase = np.divmod(time + start - 0.5 * foot * period, period)
         swing = np.clip(phase / swing_s, 0.0, 1.0)
-        gone = cycle + _smooth_step(swing)
+        gone = cycle + smooth_step(swing)
         ankles[:, foot, 0] += length * np.cos(direction) * gone
         ankles[:, foot, 1] += length * np.sin(direction) * gone
         ankles[:, foot, 2] += lift * np.sin(np.pi * swing) ** 2
@@ -127,8 +127,8 @@ def _box(time: Array, rng: np.random.Generator) -> Feet:
     ankles, pitch, contacts = _stand(time, rng)
     for foot, start in zip(rng.permutation(2), (first, first + pause), strict=True):
         swing = np.clip((time - start) / swing_s, 0.0, 1.0)
-        ankles[:, foot, 1] -= 0.35 * _smooth_step(swing)
-        ankles[:, foot, 2] += height * _smooth_step(swing)
+        ankles[:, foot, 1] -= 0.35 * smooth_step(swing)
+        ankles[:, foot, 2] += height * smooth_step(swing)
         ankles[:, foot, 2] += rng.uniform(0.08, 0.15) * np.sin(np.pi * swing) ** 2
         contacts[:, foot] = (swing <= 0.0) | (swing >= 1.0)
     return Feet(ankles, pitch, contacts)
@@ -139,10 +139,10 @@ def _one_leg(time: Array, rng: np.random.Generator) -> Feet:
     lift_s, start, stop = rng.uniform(0.4, 0.8), rng.uniform(0.3, 2.0), rng.uniform(3.0, 5.5)
     ankles, pitch, contacts = _stand(time, rng)
     foot = rng.integers(2)
-    up = _smooth_step((time - start) / lift_s) - _smooth_step((time - stop + lift_s) / lift_s)
+    up = smooth_step((time - start) / lift_s) - smooth_step((time - stop + lift_s) / lift_s)
     ankles[:, foot, 1] += rng.uniform(-0.3, 0.3) * up
     ankles[:, foot, 2] += rng.uniform(0.1, 0.5) * up
-    ankles[:, foot] += up[:, None] * _wander(time, rng, rng.uniform(0.0, 0.04))
+    ankles[:, foot] += up[:, None] * wander(time, rng, rng.uniform(0.0, 0.04))
     pitch[:, foot] = rng.uniform(0.0, 0.6) * up
     contacts[:, foot] = (time <= start) | (time >= stop)
     return Feet(ankles, pitch, contacts)
@@ -169,12 +169,12 @@ def _hang(time: Array, rng: np.random.Generator) -> Feet:
         swing = angle * np.sin(rate * time + start + foot * apart)
         ankles[:, foot, 1] += length * np.sin(swing)
         ankles[:, foot, 2] += length * (1.0 - np.cos(swing))
-        ankles[:, foot] += _wander(time, rng, rng.uniform(0.005, 0.04))
+        ankles[:, foot] += wander(time, rng, rng.uniform(0.005, 0.04))
     contacts[:] = False
     if rng.random() < 0.4:
         lift = rng.uniform(1.0, 3.0)
         ankles[..., 2] += rng.uniform(0.3, 1.0)
-        up = _smooth_step((time - lift) / 0.5)[:, None, None]
+        up = smooth_step((time - lift) / 0.5)[:, None, None]
         ankles = (1.0 - up) * floor + up * ankles
         contacts[time <= lift] = True
     return Feet(ankles, pitch, contacts)
@@ -187,7 +187,7 @@ PLANS: dict[str, Callable[[Array, np.random.Generator], Feet]] = {
 KINDS = ("walk", *PLANS)
 
 
-def _wander(time: Array, rng: np.random.Generator, distance: float) -> Array:
+def wander(time: Array, rng: np.random.Generator, distance: float) -> Array:
     """Return a slow path of about a distance in meters, (n_frames, 3)."""
     waves = [
         np.sin(2.0 * np.pi * hertz * time[:, None] + rng.uniform(0.0, 6.3, 3))
@@ -197,7 +197,7 @@ def _wander(time: Array, rng: np.random.Generator, distance: float) -> Array:
     return np.asarray(distance * np.sum(waves, axis=0) / np.sqrt(len(waves)))
 
 
-def _smooth_step(ratio: Array) -> Array:
+def smooth_step(ratio: Array) -> Array:
     """Go from 0 to 1 with minimum jerk (Flash and Hogan 1985)."""
     ratio = np.clip(ratio, 0.0, 1.0)
     return np.asarray(ratio**3 * (10.0 - 15.0 * ratio + 6.0 * ratio**2))

@@ -1,19 +1,20 @@
-"""Learn how a foot in contact moves, and print the numbers of foot_contacts.py.
+"""Learn how feet, hands and knees in contact move, and print the numbers of their models.
 
     make contacts
 
-From made feet with random parameters and walks of CMU's development subjects, with noise and
-slow errors. No force plate and no scored take is among them.
-The model's log loss over all frames is minimized, so that its probabilities are calibrated.
+Feet (foot_contacts.py) from made ones with random parameters and walks of CMU's development
+subjects, hands and knees (body_supports.py) from made ones alone, with noise and slow errors.
+No force plate and no scored take is among them. The model's log loss over all frames is minimized, so that its probabilities are calibrated.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import fields
 
 import numpy as np
 from scipy.optimize import minimize
 
 from solvers.arrays import Array
+from solvers.feet.body_supports import LEARNED as LEARNED_SUPPORTS
 from solvers.motion.humanoid.foot_contacts import (
     LEARNED,
     ContactModel,
@@ -25,6 +26,7 @@ from solvers.signals import smooth_gaussian, two_state_probabilities
 from .contact_captures import RATE as CAPTURE_RATE
 from .contact_captures import labeled_walks
 from .contact_takes import KINDS, made_feet
+from .support_takes import PLANS, made_supports
 
 RATE = 60.0
 """Hertz; the model does not depend on it."""
@@ -46,13 +48,26 @@ PRIOR = 1e-4
 """Weight of the squared distance of the logarithms from where the search starts."""
 
 
+GROUND_M = 0.01
+"""Meters of deviation of a joint of the body that rests on the ground."""
+
+Weighted = tuple[FeetInMotion, Array, Array]
+"""Feet, contacts and the weight of each frame."""
+
+
 def main() -> None:
     """Learn and print."""
-    rng = np.random.default_rng(0)
-    takes = list(_takes(rng))
+    print("foot_contacts.py")
+    _learn(_takes(np.random.default_rng(0)), LEARNED)
+    print("body_supports.py")
+    _learn(_supports(np.random.default_rng(0)), LEARNED_SUPPORTS)
+
+
+def _learn(examples: Iterable[Weighted], initial: ContactModel) -> None:
+    takes = list(examples)
     truth, weight = (_padded([take[number] for take in takes]) for number in (1, 2))
     feet = [take[0] for take in takes]
-    start = np.log([getattr(LEARNED, field.name) for field in fields(ContactModel)])
+    start = np.log([getattr(initial, field.name) for field in fields(ContactModel)])
 
     def loss(logs: Array) -> float:
         probability = np.clip(_probabilities(feet, _model(logs)), 1e-6, 1.0 - 1e-6)
@@ -63,7 +78,7 @@ def main() -> None:
     found = minimize(loss, start, method="L-BFGS-B", options={"eps": 1e-3, "maxiter": 60})
     for field, value in zip(fields(ContactModel), np.exp(found.x), strict=True):
         print(f"    {field.name}={value:.3g},")
-    print(f"log loss {loss(found.x):.4f} of {weight.astype(bool).sum()} frames of a foot")
+    print(f"log loss {loss(found.x):.4f} of {weight.astype(bool).sum()} frames of a limb")
 
 
 def _model(logs: Array) -> ContactModel:
@@ -83,8 +98,7 @@ def _padded(arrays: list[Array]) -> Array:
     return result
 
 
-def _takes(rng: np.random.Generator) -> Iterator[tuple[FeetInMotion, Array, Array]]:
-    """Return feet, contacts and the weight of each frame."""
+def _takes(rng: np.random.Generator) -> Iterator[Weighted]:
     for kind in KINDS:
         for _ in range(TAKES_OF_A_KIND):
             positions, contacts = made_feet(kind, RATE, rng)
@@ -95,6 +109,15 @@ def _takes(rng: np.random.Generator) -> Iterator[tuple[FeetInMotion, Array, Arra
         yield _feet(positions, rng), contacts.astype(float), WEIGHT_OF_WALKS * known
 
 
+def _supports(rng: np.random.Generator) -> Iterator[Weighted]:
+    for kind in PLANS:
+        for _ in range(TAKES_OF_A_KIND):
+            positions, contacts = made_supports(kind, RATE, rng)
+            positions = _on_a_real_floor(positions, rng)
+            ground = np.full(len(positions), rng.normal(scale=GROUND_M))
+            yield _feet(positions, rng, ground), contacts.astype(float), np.ones(contacts.shape)
+
+
 def _on_a_real_floor(positions: Array, rng: np.random.Generator) -> Array:
     """Return feet that are not exactly still, on a floor that is not exactly level."""
     moved = positions + _slow(positions.shape, rng.uniform(*UNEVEN_M), rng)
@@ -102,7 +125,9 @@ def _on_a_real_floor(positions: Array, rng: np.random.Generator) -> Array:
     return moved
 
 
-def _feet(positions: Array, rng: np.random.Generator) -> FeetInMotion:
+def _feet(
+    positions: Array, rng: np.random.Generator, ground: Array | None = None
+) -> FeetInMotion:
     """Return the feet with noise or a slow error."""
     common = (*positions.shape[:2], 1, 3)
     if rng.random() < SLOW_TAKES:
@@ -111,7 +136,7 @@ def _feet(positions: Array, rng: np.random.Generator) -> FeetInMotion:
         noise = rng.choice(NOISE_M)
         own = np.sqrt(1.0 - COMMON_NOISE**2) * rng.normal(size=positions.shape)
         error = noise * (COMMON_NOISE * rng.normal(size=common) + own)
-    return measure_feet(positions + error, RATE)
+    return measure_feet(positions + error, RATE, ground)
 
 
 def _slow(shape: tuple[int, ...], deviation: float, rng: np.random.Generator) -> Array:

@@ -32,11 +32,14 @@ from .canonical import (
 )
 from .foot_contacts import (
     HUMAN_LEG_LENGTH_M,
+    ContactModel,
     contact_probabilities,
     contacts_of_points,
     detect_contacts,
     foot_points,
+    ground_level,
     leg_length,
+    measure_feet,
     probabilities_of_points,
 )
 from .missing_hips import UPPER_LEG_ROLES, fill_missing_hips
@@ -103,6 +106,7 @@ __all__ = [
     "SPINE",
     "UP",
     "UPPER_LEG_ROLES",
+    "ContactModel",
     "HumanoidMap",
     "NormalizedPostures",
     "PostureNormalizer",
@@ -125,8 +129,10 @@ __all__ = [
     "fit_bone_lengths",
     "foot_points",
     "from_canonical",
+    "ground_level",
     "joint_parts",
     "leg_length",
+    "measure_feet",
     "mirror_postures",
     "motion_from_points",
     "naming_scheme",

@@ -232,7 +232,9 @@ class FeetInMotion:
         return np.asarray(best * self.dt / (model.memory + self.independence))
 
 
-def measure_feet(positions: Array, frame_rate: float) -> FeetInMotion:
+def measure_feet(
+    positions: Array, frame_rate: float, ground: Array | None = None
+) -> FeetInMotion:
     """Smooth feet as much as their noise demands, and measure speeds and heights.
 
     White noise of deviation s moves what a Gaussian of deviation t smooths at
@@ -241,7 +243,10 @@ def measure_feet(positions: Array, frame_rate: float) -> FeetInMotion:
     Parameters
     ----------
     positions : shape (n_frames, 2, 2, 3), meters, for a leg of 0.9 m
+        Of feet, or of two points of each hand or knee.
     frame_rate : float, hertz
+    ground : shape (n_frames,), meters
+        By default where the lower ankle and the lower toes stand.
     """
     dt = 1.0 / frame_rate
     observed = np.isfinite(positions).all(axis=-1)
@@ -251,14 +256,18 @@ def measure_feet(positions: Array, frame_rate: float) -> FeetInMotion:
     path = smooth_gaussian(path, width * frame_rate).reshape(positions.shape)
     independence = 2.0 * np.sqrt(np.pi) * width
     speed_noise = min(SPEED_NOISE, np.sqrt(2.0) * noise * frame_rate)
-    heights = [
-        _above_ground(path[:, :, point, 2], observed[:, :, point].any(axis=0), frame_rate)
-        for point in range(2)
-    ]
+    if ground is None:
+        own = [
+            _above_ground(path[:, :, point, 2], observed[:, :, point].any(axis=0), frame_rate)
+            for point in range(2)
+        ]
+        heights = np.stack(own, axis=-1)
+    else:
+        heights = path[..., 2] - ground[:, None, None]
     return FeetInMotion(
         observed,
         np.sqrt(np.maximum(_speeds(path, frame_rate) ** 2 - 3.0 * speed_noise**2, 0.0)),
-        np.stack(heights, axis=-1),
+        heights,
         independence,
         dt,
     )
@@ -284,17 +293,28 @@ def _speeds(path: Array, frame_rate: float) -> Array:
 
 
 def _above_ground(heights: Array, seen: Flags, frame_rate: float) -> Array:
-    """Return the heights of both ankles (or toes) above the ground, shape (n_frames, 2).
+    """Return the heights of both ankles (or toes) above the ground, shape (n_frames, 2)."""
+    if not seen.any():
+        return heights
+    ground = ground_level(heights[:, seen].min(axis=1), frame_rate)
+    return np.asarray(heights - ground[:, None])
 
-    Ground is the highest level within a second above which the lower foot stays for a second: a
+
+def ground_level(lowest: Array, frame_rate: float) -> Array:
+    """Return the height of the ground in each frame, shape (n_frames,), meters.
+
+    It is the highest level within a second above which the lowest point stays for a second: a
     foot on a box is on the ground if the other one follows.
+
+    Parameters
+    ----------
+    lowest : shape (n_frames,), meters, for a leg of 0.9 m
+        Height of the lowest point, such as the lower foot.
+    frame_rate : float, hertz
     """
     from scipy.ndimage import maximum_filter1d, minimum_filter1d  # slow to import
 
-    if not seen.any():
-        return heights
-    lower = heights[:, seen].min(axis=1)
     window = round(GROUND_WINDOW_S * frame_rate)
-    level = minimum_filter1d(lower, 2 * window + 1, mode="nearest")
+    level = minimum_filter1d(lowest, 2 * window + 1, mode="nearest")
     level = maximum_filter1d(level, 4 * window + 1, mode="nearest")
-    return np.asarray(heights - np.minimum(level, level.min() + MAX_CLIMB_M)[:, None])
+    return np.asarray(np.minimum(level, level.min() + MAX_CLIMB_M))

@@ -1,0 +1,125 @@
+"""Find out when hands and knees bear on the floor."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, Flags
+from ..motion import Motion, Skeleton, WorldPoses, forward_kinematics
+from ..motion.humanoid import (
+    HUMAN_LEG_LENGTH_M,
+    ContactModel,
+    HumanoidMap,
+    ball_of_foot,
+    foot_points,
+    ground_level,
+    leg_length,
+    measure_feet,
+)
+from ..signals import two_state_probabilities
+from .legs import SIDES
+
+SUPPORTS = ("leftHand", "rightHand", "leftKnee", "rightKnee")
+"""Columns of the contacts of hands and knees."""
+GROUND_ROLES = (
+    "hips",
+    "head",
+    *(f"{side}{part}" for side in SIDES for part in ("Hand", "LowerLeg")),
+)
+"""Joints that may be the lowest of a body, next to ankles and toes."""
+
+LEARNED = ContactModel(
+    bias=6.74,
+    speed_weight=20.2,
+    speed=0.314,
+    height_weight=54.4,
+    height=0.281,
+    memory=0.363,
+    landing_rate=2.07,
+    lift_rate=0.195,
+)
+"""Learned by `tests/training/learn_contacts.py` from made hands and knees."""
+
+
+@dataclass(frozen=True)
+class SupportJoints:
+    """Joints of a hand or knee that may bear on the floor.
+
+    Attributes
+    ----------
+    name : str
+        One of `SUPPORTS`.
+    chain : three joints
+        Shoulder, elbow and wrist, or hip, knee and ankle.
+    points : pair of joints
+        Wrist and knuckles, or the knee twice.
+    """
+
+    name: str
+    chain: tuple[int, int, int]
+    points: tuple[int, int]
+
+    @property
+    def is_arm(self) -> bool:
+        """Whether the limb bears on its hand."""
+        return self.name.endswith("Hand")
+
+
+def find_supports(skeleton: Skeleton, humanoid: HumanoidMap) -> tuple[SupportJoints, ...]:
+    """Return the hands and knees that have a complete arm or leg."""
+    joints = humanoid.indices(skeleton)
+    found = []
+    for name in SUPPORTS:
+        side, is_hand = name.removesuffix("Hand").removesuffix("Knee"), name.endswith("Hand")
+        roles = (
+            ("UpperArm", "LowerArm", "Hand") if is_hand else ("UpperLeg", "LowerLeg", "Foot")
+        )
+        chain = [joints.get(f"{side}{role}") for role in roles]
+        if None in chain:
+            continue
+        upper, middle, end = (joint for joint in chain if joint is not None)
+        if middle in skeleton.subtree(upper)[1:] and end in skeleton.subtree(middle)[1:]:
+            points = (end, _knuckles(skeleton, end)) if is_hand else (middle, middle)
+            found.append(SupportJoints(name, (upper, middle, end), points))
+    return tuple(found)
+
+
+def _knuckles(skeleton: Skeleton, wrist: int) -> int:
+    """Return the child of the wrist that is the farthest from it, or the wrist."""
+    children = skeleton.children[wrist]
+    lengths = [float(np.linalg.norm(skeleton.offsets[child])) for child in children]
+    return children[int(np.argmax(lengths))] if children else wrist
+
+
+def support_probabilities(motion: Motion, humanoid: HumanoidMap) -> Array:
+    """Return the probability that each of `SUPPORTS` bears on the floor, (n_frames, 4).
+
+    The model of feet sees how fast wrist and knuckles (or the knee) are, and how high above the
+    ground, on which the lowest part of the body rests. A hand that swings, or rests on a thigh,
+    is too fast or too high. 0 where the limb is missing.
+    """
+    poses = forward_kinematics(motion)
+    size = leg_length(motion.skeleton, humanoid) / HUMAN_LEG_LENGTH_M
+    ground = _ground(motion, poses, humanoid, size)
+    probability = np.zeros((motion.n_frames, len(SUPPORTS)))
+    for support in find_supports(motion.skeleton, humanoid):
+        points = poses.positions[:, [support.points]] / size
+        evidence = measure_feet(points, motion.frame_rate, ground).evidence(LEARNED)
+        rates = motion.frame_rate, LEARNED.landing_rate, LEARNED.lift_rate
+        column = SUPPORTS.index(support.name)
+        probability[:, column] = two_state_probabilities(evidence, *rates)[:, 0]
+    return probability
+
+
+def _ground(motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, size: float) -> Array:
+    """Return the height of the ground for a leg of 0.9 m, from the lowest part of the body."""
+    joints = humanoid.indices(motion.skeleton)
+    lowest = [*foot_points(motion.skeleton, humanoid).ravel()]
+    lowest += [joints[role] for role in GROUND_ROLES if role in joints]
+    heights = poses.positions[:, lowest, 2].min(axis=1)
+    return ground_level(heights / size, motion.frame_rate)
+
+
+def detect_supports(motion: Motion, humanoid: HumanoidMap) -> Flags:
+    """Return when each of `SUPPORTS` bears on the floor, shape (n_frames, 4)."""
+    return support_probabilities(motion, humanoid) > 0.5

@@ -1,0 +1,115 @@
+"""Where hands and knees bear on the floor, and the goals of a fit that holds them in place."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, Flags
+from ..motion import Motion, WorldPoses
+from ..motion.humanoid import HUMAN_LEG_LENGTH_M, HumanoidMap, leg_length
+from ..motion_fitting import FittedMotion, Goal
+from ..motion_fitting.goals import (
+    BonePoint,
+    FollowPosition,
+    FollowRotation,
+    StayInPlace,
+    hinge_axis,
+    hinge_limit,
+)
+from .body_supports import SUPPORTS, SupportJoints, find_supports
+from .plant_settings import PlantSettings
+from .sole import estimate_loads, measure_standing_heights
+from .support import Support, resting_steps
+
+SHOULDER_RAD, ELBOW_RAD, WRIST_RAD = np.radians([4.0, 4.0, 15.0])
+"""Radians by which the joints of an arm may turn, as those of a leg do; the hand follows its own
+rotation in the world."""
+HAND_RAD = np.radians(2.5)
+"""Radians of a hand in the world, as of a foot."""
+HAND_M = 0.012
+"""Meters, for a leg of 0.9 m, by which a wrist may leave its path in contact, as an ankle."""
+
+
+@dataclass(frozen=True, eq=False)
+class LimbContact(Support):
+    """How a hand or knee bears on the floor.
+
+    Its points are wrist and knuckles, or the knee twice.
+
+    Attributes
+    ----------
+    limb : SupportJoints
+    """
+
+    limb: SupportJoints
+
+
+def find_limb_contacts(
+    motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, supports: Flags
+) -> list[LimbContact]:
+    """Return how hands and knees bear on the floor, of those that do at all.
+
+    Parameters
+    ----------
+    motion : Motion
+    poses : WorldPoses
+        Of the motion.
+    humanoid : HumanoidMap
+    supports : bool, shape (n_frames, 4)
+        When each of `SUPPORTS` is in contact.
+    """
+    size = leg_length(motion.skeleton, humanoid) / HUMAN_LEG_LENGTH_M
+    found = []
+    for limb in find_supports(motion.skeleton, humanoid):
+        contact = supports[:, SUPPORTS.index(limb.name)]
+        if not contact.any():
+            continue
+        points = [BonePoint(joint, np.zeros(3)) for joint in limb.points]
+        positions = np.stack([point.position(poses) for point in points], axis=1)
+        level = measure_standing_heights(positions, contact, motion.frame_rate)
+        load = estimate_loads(positions, level, motion.frame_rate, size)
+        height = np.sum(load * (positions[..., 2] - level), axis=1)
+        steps = resting_steps(height, contact, size)
+        found.append(LimbContact(size, contact, points, load, steps, limb))
+    return found
+
+
+def limb_tolerances(contacts: Sequence[LimbContact]) -> dict[int, float]:
+    """Return by how many radians the joints of arms may turn that bear on hands."""
+    tolerances = (SHOULDER_RAD, ELBOW_RAD, WRIST_RAD)
+    return {
+        joint: tolerance
+        for contact in contacts
+        if contact.limb.is_arm
+        for joint, tolerance in zip(contact.limb.chain, tolerances, strict=True)
+    }
+
+
+def limb_goals(
+    fitted: FittedMotion, contacts: Sequence[LimbContact], settings: PlantSettings, creep: float
+) -> list[Goal]:
+    """Return what hands and knees have to meet, and what keeps arms as they were recorded.
+
+    `creep` is the distance in meters, for a leg of 0.9 m, that they may move in Max Contact
+    Time.
+    """
+    goals: list[Goal] = []
+    for contact in contacts:
+        speed = creep * contact.size / settings.hold
+        goals.append(StayInPlace(contact.points, contact.step_load, contact.steps, speed))
+        if contact.limb.is_arm:
+            goals += _arm_goals(fitted, contact)
+    return goals
+
+
+def _arm_goals(fitted: FittedMotion, contact: LimbContact) -> list[Goal]:
+    poses, (_, elbow, wrist) = fitted.poses, contact.limb.chain
+    weight = np.repeat(contact.contact[:, None].astype(np.float64), 3, axis=1)
+    point, tolerance = BonePoint(wrist, np.zeros(3)), HAND_M * contact.size
+    goals: list[Goal] = [
+        FollowPosition(point, poses.positions[:, wrist], weight, tolerance),
+        FollowRotation(wrist, poses.rotations[:, wrist], HAND_RAD),
+    ]
+    axis = hinge_axis(fitted, elbow, wrist)
+    return goals if axis is None else [*goals, hinge_limit(fitted, elbow, wrist, axis, 0.0)]
