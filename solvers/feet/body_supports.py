@@ -1,5 +1,6 @@
 """Find out when hands and knees bear on the floor."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +18,8 @@ from ..motion.humanoid import (
     measure_feet,
 )
 from ..signals import two_state_probabilities
-from .legs import SIDES
+from .legs import SIDES, LegJoints
+from .standing_feet import MIN_CONTACT_S, rests_on_hips, without_short_contacts
 
 SUPPORTS = ("leftHand", "rightHand", "leftKnee", "rightKnee")
 """Columns of the contacts of hands and knees."""
@@ -29,16 +31,19 @@ GROUND_ROLES = (
 """Joints that may be the lowest of a body, next to ankles and toes."""
 
 LEARNED = ContactModel(
-    bias=6.74,
-    speed_weight=20.2,
-    speed=0.314,
-    height_weight=54.4,
-    height=0.281,
-    memory=0.363,
-    landing_rate=2.07,
-    lift_rate=0.195,
+    bias=2.18,
+    speed_weight=23.9,
+    speed=0.512,
+    height_weight=78.8,
+    height=0.538,
+    memory=0.18,
+    landing_rate=3.83,
+    lift_rate=3.04,
 )
 """Learned by `tests/training/learn_contacts.py` from made hands and knees."""
+MIN_SEAT_HEIGHT = 0.12
+"""Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
+below which it bears the body. It guards push-ups, whose pelvis comes down to 0.15."""
 
 
 @dataclass(frozen=True)
@@ -120,6 +125,13 @@ def _ground(motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, size: floa
     return ground_level(heights / size, motion.frame_rate)
 
 
-def detect_supports(motion: Motion, humanoid: HumanoidMap) -> Flags:
-    """Return when each of `SUPPORTS` bears on the floor, shape (n_frames, 4)."""
-    return support_probabilities(motion, humanoid) > 0.5
+def detect_supports(motion: Motion, humanoid: HumanoidMap, legs: Sequence[LegJoints]) -> Flags:
+    """Return when each of `SUPPORTS` bears on the floor, shape (n_frames, 4).
+
+    Hands and knees of a body that sits or lies touch the floor, but bear little of its weight
+    and may move, as its feet.
+    """
+    contacts = support_probabilities(motion, humanoid) > 0.5
+    sits = rests_on_hips(motion, humanoid, legs, MIN_SEAT_HEIGHT)
+    contacts &= ~sits[:, None]
+    return without_short_contacts(contacts, MIN_CONTACT_S * motion.frame_rate)

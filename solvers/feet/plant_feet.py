@@ -148,7 +148,7 @@ def _find_contacts(
     elif feet.shape[1] > N_FEET:
         supports = feet[:, N_FEET:]
     else:
-        supports = detect_supports(motion, humanoid_map)
+        supports = detect_supports(motion, humanoid_map, legs)
     return np.hstack([feet[:, :N_FEET], supports])
 
 

@@ -40,9 +40,10 @@ def detect_standing_feet(
     a body that sits or lies on the floor bear its weight: they touch the floor and may move.
     """
     contacts = detect_contacts(motion, humanoid_map)
-    rests = _rests_on_hips(motion, humanoid_map, legs)
+    rests = rests_on_hips(motion, humanoid_map, legs, MIN_HIP_HEIGHT)
     if rests.any():
-        contacts = _without_short_contacts(contacts & ~rests, MIN_CONTACT_S * motion.frame_rate)
+        weightless = contacts & ~rests[:, None]
+        contacts = without_short_contacts(weightless, MIN_CONTACT_S * motion.frame_rate)
     hips = humanoid_map.indices(motion.skeleton).get("hips", 0)
     is_still = still_joints(motion)
     if is_still[hips]:
@@ -53,10 +54,12 @@ def detect_standing_feet(
     return contacts
 
 
-def _rests_on_hips(
-    motion: Motion, humanoid_map: HumanoidMap, legs: Sequence[LegJoints]
+def rests_on_hips(
+    motion: Motion, humanoid_map: HumanoidMap, legs: Sequence[LegJoints], min_height: float
 ) -> NDArray[np.bool_]:
-    """Return when the pelvis is on the floor, shape (n_frames, 1).
+    """Return when the pelvis is on the floor, shape (n_frames,).
+
+    That is when its lowest joint is below a height, a ratio to the length of a leg.
 
     On the back with flexed legs it tilts, so that the hip joints are above its center.
     """
@@ -70,12 +73,10 @@ def _rests_on_hips(
     if np.linalg.norm(rest[hips] - rest[pelvis].mean(axis=0)) < MAX_PELVIS_SIZE * length:
         pelvis.append(hips)
     lowest = heights[:, pelvis].min(axis=1)
-    return np.asarray(lowest - ground < MIN_HIP_HEIGHT * length)[:, None]
+    return np.asarray(lowest - ground < min_height * length)
 
 
-def _without_short_contacts(
-    contacts: NDArray[np.bool_], min_frames: float
-) -> NDArray[np.bool_]:
+def without_short_contacts(contacts: NDArray[np.bool_], min_frames: float) -> NDArray[np.bool_]:
     """Return the contacts without shorter ones, except at the ends, where they may continue."""
     kept = contacts.copy()
     for foot in kept.T:

@@ -18,6 +18,9 @@ of the body may be as high itself."""
 REST_M = ((0.1, 0.2), (0.2, 0.6))
 """Meters above the ground at which a hand rests on a thigh or hangs, and a knee is bent: of a
 body that lies or sits, and of others."""
+SWEEP_SPEEDS = (0.1, 1.0)
+"""Meters per second of what an actor drags over the floor, such as the hands of one who lies
+down."""
 HAND_M = 0.09
 """Meters from wrist to knuckles."""
 
@@ -84,7 +87,7 @@ def _sweep(time: Array, rng: np.random.Generator) -> tuple[Array, Flags]:
     """Wipe or drag over the floor, back and forth."""
     path, contacts = _lean(time, rng)
     for side in range(2):
-        speed, hertz = rng.uniform(0.3, 1.5), rng.uniform(0.3, 1.2)
+        speed, hertz = np.exp(rng.uniform(*np.log(SWEEP_SPEEDS))), rng.uniform(0.1, 1.0)
         phase, direction = rng.uniform(0.0, 6.3), rng.uniform(0.0, 6.3)
         gone = speed / (2.0 * np.pi * hertz) * np.sin(2.0 * np.pi * hertz * time + phase)
         path[:, side, :2] += gone[:, None] * (np.cos(direction), np.sin(direction))

@@ -56,7 +56,7 @@ def test_feet_are_planted_until_the_actor_lies(recordings):
     assert not planted.contacts[lying].any()
     assert (planted.contacts[standing] == contacts[standing]).all()
     moved = ankle_displacements(motion, planted.motion)
-    assert moved[400:].max() < 1e-5
+    assert moved[400:].max() < 1e-4
     assert moved[standing].max() > 0.005
 
 
@@ -90,16 +90,16 @@ def test_no_contact_is_shorter_because_the_actor_lies_down(monkeypatch):
     lying = lie_on_the_back(0.0)
     still = np.repeat(lying.rotations[:1], lying.n_frames, axis=0)
     lying = lying.with_poses(still, lying.root_positions)
-    rests = np.ones((lying.n_frames, 1), dtype=np.bool_)
+    rests = np.ones(lying.n_frames, dtype=np.bool_)
     rests[20:22] = False
-    monkeypatch.setattr(standing_feet, "_rests_on_hips", lambda *_: rests)
+    monkeypatch.setattr(standing_feet, "rests_on_hips", lambda *_: rests)
     legs = find_legs(lying.skeleton)
 
     assert detect_contacts(lying).all()
     assert not detect_standing_feet(lying, find_humanoid_map(lying.skeleton), legs).any()
     rests[20:40] = False
     standing = detect_standing_feet(lying, find_humanoid_map(lying.skeleton), legs)
-    assert (standing == ~rests).all()
+    assert (standing == ~rests[:, None]).all()
 
 
 def test_hips_at_the_floor_say_nothing_about_lying():
