@@ -1,4 +1,4 @@
-"""Contacts of the feet, keyed on custom properties that the animator can edit."""
+"""Contacts of feet, hands and knees, keyed on custom properties that the animator can edit."""
 
 import hashlib
 
@@ -14,8 +14,16 @@ from ..scene import history
 from .bone_channels import animated_curves
 from .curves import CONSTANT, GENERATED, write_values
 
-PROPERTIES = ("mocap_contact_left", "mocap_contact_right")
-GROUP = "Foot contacts"
+FOOT_PROPERTIES = ("mocap_contact_left", "mocap_contact_right")
+SUPPORT_PROPERTIES = (
+    "mocap_contact_left_hand",
+    "mocap_contact_right_hand",
+    "mocap_contact_left_knee",
+    "mocap_contact_right_knee",
+)
+"""In the order of `SUPPORTS` of the solvers."""
+PROPERTIES = FOOT_PROPERTIES + SUPPORT_PROPERTIES
+GROUP = "Contacts"
 DETECTED = "mocap_assist_detected_contacts"
 """Property of an action: a digest of its contact keys, if they were detected."""
 
@@ -25,21 +33,32 @@ def read_contacts(
 ) -> Flags | None:
     """Return the contacts of the left and the right foot, shape (n_frames, 2).
 
-    None where the action has no such keys for all of these frames: they were not cleaned yet.
+    With keys of a hand or knee the shape is (n_frames, 6), in the order of `PROPERTIES`. None
+    where the action has no keys of the feet for all of these frames: they were not cleaned yet.
     """
     curves = animated_curves(action, slot)
     standing = []
-    for channel in [curves.get((_path(name), 0)) for name in PROPERTIES]:
+    for channel in [curves.get((_path(name), 0)) for name in FOOT_PROPERTIES]:
         if channel is None or not len(times := channel.keys[:, 0]):
             return None
         if times[0] > frames[0] or times[-1] < frames[-1]:
             return None
         standing.append(channel.values(frames) > 0.5)
+    others = [curves.get((_path(name), 0)) for name in SUPPORT_PROPERTIES]
+    if any(channel is not None and len(channel.keys) for channel in others):
+        never = np.zeros(len(frames), dtype=np.bool_)
+        standing += [
+            channel.values(frames) > 0.5 if channel is not None and len(channel.keys) else never
+            for channel in others
+        ]
     return np.stack(standing, axis=1)
 
 
 def contact_keys(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> list[Array]:
-    """Return frame and value of the keys of each foot, shape (n_keys, 2); none if muted."""
+    """Return frame and value of the keys of each part, shape (n_keys, 2); none if muted.
+
+    The parts are those of `PROPERTIES`.
+    """
     curves = animated_curves(action, slot)
     channels = [curves.get((_path(name), 0)) for name in PROPERTIES]
     return [np.empty((0, 2)) if each is None else each.keys for each in channels]
@@ -59,7 +78,10 @@ def write_contacts(
     *,
     detected: bool = False,
 ) -> None:
-    """Key the two custom properties of the armature wherever a foot comes down or lifts off.
+    """Key custom properties of the armature wherever a foot comes down or lifts off.
+
+    `contacts` have shape (n_frames, 2), or (n_frames, 6) with hands and knees, whose properties
+    are keyed only if one of them bears on the floor, or had keys.
 
     The keys are held until the next one: 1 the foot stands, 0 it does not. Few as they are,
     they are moved, added and removed like any others in the Dope Sheet. The first and the last
@@ -69,9 +91,14 @@ def write_contacts(
     one of them is edited, contacts are detected again next time.
     """
     bag = compat.ensure_channelbag(action, slot)
-    detected &= _untouched(action, slot) or not any(map(len, contact_keys(action, slot)))
-    for name, standing in zip(PROPERTIES, contacts.T, strict=True):
+    keys = contact_keys(action, slot)
+    detected &= _untouched(action, slot) or not any(map(len, keys))
+    n_feet = len(FOOT_PROPERTIES)
+    are_rare = not contacts[:, n_feet:].any() and not any(map(len, keys[n_feet:]))
+    for name, standing in zip(PROPERTIES, contacts.T, strict=False):
         _declare(armature, name, int(standing[0]))
+        if name in SUPPORT_PROPERTIES and are_rare:
+            continue
         curve = bag.fcurves.find(_path(name), index=0)
         if curve is None:
             curve = compat.new_curve(bag, _path(name), 0, GROUP)
@@ -118,7 +145,7 @@ def _declare(armature: bpy.types.Object, name: str, value: int) -> None:
     armature.id_properties_ui(name).update(
         min=0,
         max=1,
-        description="1 while the foot is planted, 0 while it moves",
+        description="1 while this part of the body bears on the floor, 0 while it moves",
     )
 
 
@@ -129,7 +156,9 @@ def _untouched(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> bool:
 
 def _digest(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> str:
     keys = [each.ravel().tolist() for each in contact_keys(action, slot)]
-    return hashlib.sha256(repr(keys).encode()).hexdigest()
+    feet, others = keys[: len(FOOT_PROPERTIES)], keys[len(FOOT_PROPERTIES) :]
+    text = repr(keys if any(others) else feet)  # of feet alone it is as in earlier versions
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _path(name: str) -> str:

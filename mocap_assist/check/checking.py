@@ -8,7 +8,7 @@ import bpy
 from ...solvers.arrays import Array
 from ...solvers.denoising import Issue
 from ..actions.armature_read import read_take
-from ..actions.contact_keys import read_contacts
+from ..actions.contact_keys import FOOT_PROPERTIES, read_contacts
 from ..actions.limits import read_limits
 from ..actions.marker_take import MarkerTake, read_markers
 from ..actions.markers import markers_of, point_names
@@ -31,7 +31,8 @@ def read_checking(
     scene, subject = here.find()
     contacts, limits = None, None
     if isinstance(take, ArmatureTake):
-        contacts = read_contacts(*played_source(subject), take.frames)
+        keyed = read_contacts(*played_source(subject), take.frames)
+        contacts = None if keyed is None else keyed[:, : len(FOOT_PROPERTIES)]
         limits = read_limits(subject, take, take.rig.bones)
     return partial(
         check,

@@ -104,7 +104,7 @@ class ArmatureReading(NamedTuple):
         )
         now = self._found(self.references, self.raw)
         if cleaned.planted is not None:
-            contacts, detected = cleaned.planted.contacts, now.contacts() is None
+            contacts, detected = cleaned.planted.all_contacts, now.contacts() is None
             write_contacts(now.armature, action, slot, take.frames, contacts, detected=detected)
         history.record(action, now.played, entry)
         if choices.result_as is CleanOutput.DELTA_LAYER:

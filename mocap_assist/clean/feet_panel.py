@@ -1,22 +1,29 @@
-"""Panel: contacts of the feet as editable keys."""
+"""Panel: contacts of feet, hands and knees as editable keys."""
 
 from typing import ClassVar
 
 import bpy
 
-from ..actions.contact_keys import PROPERTIES
+from ..actions.contact_keys import FOOT_PROPERTIES, PROPERTIES
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists
 from ..panels.visibility import shows_armature
 from ..runtime.selection import selected_armature
 
 PLANT = "mocap_assist.plant_feet"
-SIDES = ("Left Foot Contact", "Right Foot Contact")
+LABELS = (
+    "Left Foot Contact",
+    "Right Foot Contact",
+    "Left Hand Contact",
+    "Right Hand Contact",
+    "Left Knee Contact",
+    "Right Knee Contact",
+)
 HINT = "Key 1 while the foot is planted, 0 while it moves, then press Plant Feet."
 
 
 class FeetPanel(PanelMixin):
-    """The keyed contacts, and the button that plants the feet by them."""
+    """The keyed contacts, and the button that plants the body by them."""
 
     bl_label = "Feet"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}
@@ -27,9 +34,10 @@ class FeetPanel(PanelMixin):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, armature = self.layout, selected_armature(context)
-        if armature is not None and all(name in armature for name in PROPERTIES):
+        if armature is not None and all(name in armature for name in FOOT_PROPERTIES):
             column = layout.column(align=True)
-            for name, text in zip(PROPERTIES, SIDES, strict=True):
-                column.prop(armature, f'["{name}"]', text=text)
+            for name, text in zip(PROPERTIES, LABELS, strict=True):
+                if name in armature:
+                    column.prop(armature, f'["{name}"]', text=text)
             draw_sentence(layout, context, HINT)
         layout.operator(PLANT, icon="CON_FLOOR")

@@ -57,7 +57,7 @@ def write_planted(
     action, slot = yield from write_take.steps(armature, played, take, result.moved, {})
     _, armature, played = read.find()
     detected = animators_contacts(played, take.frames) is None
-    write_contacts(armature, action, slot, take.frames, planted.contacts, detected=detected)
+    write_contacts(armature, action, slot, take.frames, planted.all_contacts, detected=detected)
     entry = {
         "operation": "plant_feet",
         "settings": history.plain(*settings),

@@ -33,6 +33,10 @@ class StripRow(Enum):
     CORRECTED = "Corrected"
     LEFT_FOOT = "Left Foot"
     RIGHT_FOOT = "Right Foot"
+    LEFT_HAND = "Left Hand"
+    RIGHT_HAND = "Right Hand"
+    LEFT_KNEE = "Left Knee"
+    RIGHT_KNEE = "Right Knee"
 
 
 class Mark(Enum):
@@ -46,6 +50,10 @@ class Mark(Enum):
     CORRECTED = "Corrected"
     LEFT_FOOT = "Left Foot"
     RIGHT_FOOT = "Right Foot"
+    LEFT_HAND = "Left Hand"
+    RIGHT_HAND = "Right Hand"
+    LEFT_KNEE = "Left Knee"
+    RIGHT_KNEE = "Right Knee"
 
 
 COLORS: Mapping[Mark, Color] = {
@@ -57,6 +65,10 @@ COLORS: Mapping[Mark, Color] = {
     Mark.CORRECTED: (0.95, 0.85, 0.45, 1.0),
     Mark.LEFT_FOOT: (0.35, 0.80, 0.45, 1.0),
     Mark.RIGHT_FOOT: (0.20, 0.70, 0.75, 1.0),
+    Mark.LEFT_HAND: (0.35, 0.80, 0.45, 1.0),
+    Mark.RIGHT_HAND: (0.20, 0.70, 0.75, 1.0),
+    Mark.LEFT_KNEE: (0.35, 0.80, 0.45, 1.0),
+    Mark.RIGHT_KNEE: (0.20, 0.70, 0.75, 1.0),
 }
 ISSUE_ROWS: Mapping[str, StripRow] = {
     "spike": StripRow.SPIKES,
@@ -67,13 +79,21 @@ ISSUE_ROWS: Mapping[str, StripRow] = {
     "cut": StripRow.CUTS,
 }
 """By kind of an issue."""
+CONTACT_ROWS = (
+    (StripRow.LEFT_FOOT, Mark.LEFT_FOOT),
+    (StripRow.RIGHT_FOOT, Mark.RIGHT_FOOT),
+    (StripRow.LEFT_HAND, Mark.LEFT_HAND),
+    (StripRow.RIGHT_HAND, Mark.RIGHT_HAND),
+    (StripRow.LEFT_KNEE, Mark.LEFT_KNEE),
+    (StripRow.RIGHT_KNEE, Mark.RIGHT_KNEE),
+)
+"""In the order of the contact keys."""
 MARKS: Mapping[StripRow, tuple[Mark, ...]] = {
     StripRow.CONFIDENCE: (Mark.LOW, Mark.MEDIUM, Mark.HIGH),
     **dict.fromkeys(ISSUE_ROWS.values(), (Mark.ISSUE,)),
     StripRow.FILLED: (Mark.FILLED,),
     StripRow.CORRECTED: (Mark.CORRECTED,),
-    StripRow.LEFT_FOOT: (Mark.LEFT_FOOT,),
-    StripRow.RIGHT_FOOT: (Mark.RIGHT_FOOT,),
+    **{row: (mark,) for row, mark in CONTACT_ROWS},
 }
 
 
@@ -149,12 +169,12 @@ def issue_ranges(
 
 
 def contact_ranges(keys: Array, step: float, mark: Mark) -> tuple[Range, ...]:
-    """Return the frames in which a foot is down.
+    """Return the frames in which a foot, hand or knee is down.
 
     Parameters
     ----------
     keys : shape (n_keys, 2)
-        Frame and value of keys that hold until the next one: 1 the foot is down, 0 it is not.
+        Frame and value of keys that hold until the next one: 1 it is down, 0 it is not.
     step : float
         Frames from one sample to the next.
     mark : Mark

@@ -17,6 +17,7 @@ from ..blender.compat import Source
 from ..scene import history
 from .confidence_colors import reliability_source
 from .strip_ranges import (
+    CONTACT_ROWS,
     Mark,
     Range,
     Rows,
@@ -49,7 +50,7 @@ class ActionKeys(NamedTuple):
     confidence: Mapping[str, Array]
     """By bone, frame and value of its keys, shape (n_keys, 2)."""
     contacts: tuple[Array, ...]
-    """Frame and value of the keys of the left and the right foot, shape (n_keys, 2)."""
+    """Frame and value of the keys of each part of `CONTACT_ROWS`, shape (n_keys, 2)."""
 
 
 class Strip(NamedTuple):
@@ -146,9 +147,8 @@ def strip_from(
             _frames(keys.corrected, bones), keys.step, Mark.CORRECTED
         ),
     }
-    feet = ((StripRow.LEFT_FOOT, Mark.LEFT_FOOT), (StripRow.RIGHT_FOOT, Mark.RIGHT_FOOT))
-    for (row, mark), foot in zip(feet, keys.contacts, strict=True):
-        rows[row] = contact_ranges(foot, keys.step, mark)
+    for (row, mark), part in zip(CONTACT_ROWS, keys.contacts, strict=True):
+        rows[row] = contact_ranges(part, keys.step, mark)
     found = {row: ranges for row, ranges in rows.items() if ranges}
     return Strip(keys.first, keys.last, keys.step, found) if found else None
 

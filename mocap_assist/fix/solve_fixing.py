@@ -27,7 +27,7 @@ for one or two props."""
 
 @dataclass(frozen=True, eq=False)
 class FixedDepth:
-    """What Track would write, the motion after the other steps, and contacts of the feet."""
+    """What Track would write, the motion after the other steps, and its contacts."""
 
     tracked: Tracked
     motion: Motion
@@ -145,5 +145,5 @@ def _tracked(fixed: FixedTake) -> FixedDepth:
     tracked = build_tracked(
         0, captured.motion, captured.captured, captured.actor.floor, captured.remarks
     )
-    contacts = None if planted is None else planted.contacts
+    contacts = None if planted is None else planted.all_contacts
     return FixedDepth(tracked, fixed.recording, contacts)

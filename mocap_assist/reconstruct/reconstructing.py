@@ -119,7 +119,7 @@ def write_reconstructed(
         write_reliability(armature, action, slot, take.frames, reliability, term)
     if rebuilt.planted is not None:
         detected = animators_contacts(reading.played, take.frames) is None
-        contacts = rebuilt.planted.contacts
+        contacts = rebuilt.planted.all_contacts
         write_contacts(armature, action, slot, take.frames, contacts, detected=detected)
     history.record(action, reading.recorded, _entry(settings, rebuilt))
     put_to_use(armature, action, slot, settings.choices.result_as)

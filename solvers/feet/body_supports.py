@@ -11,7 +11,6 @@ from ..motion.humanoid import (
     HUMAN_LEG_LENGTH_M,
     ContactModel,
     HumanoidMap,
-    ball_of_foot,
     foot_points,
     ground_level,
     leg_length,

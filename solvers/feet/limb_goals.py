@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Flags
+from ..arrays import Flags
 from ..motion import Motion, WorldPoses
 from ..motion.humanoid import HUMAN_LEG_LENGTH_M, HumanoidMap, leg_length
 from ..motion_fitting import FittedMotion, Goal
@@ -23,7 +23,7 @@ from .sole import estimate_loads, measure_standing_heights
 from .support import Support, resting_steps
 
 SHOULDER_RAD, ELBOW_RAD, WRIST_RAD = np.radians([4.0, 4.0, 15.0])
-"""Radians by which the joints of an arm may turn, as those of a leg do; the hand follows its own
+"""Radians by which the joints of an arm may turn, as those of a leg; the hand follows its own
 rotation in the world."""
 HAND_RAD = np.radians(2.5)
 """Radians of a hand in the world, as of a foot."""

@@ -70,9 +70,10 @@ def plant_feet(
     As in Kovar et al. [1]_ footplants are met, and the motion is otherwise smooth and close to
     the original. A foot in contact may roll; only the loaded part of the sole, heel, ball or
     both, must not move. Nor must hands and knees that bear on the floor, with
-    `settings.hands_and_knees`. The rotations of the legs, of such arms, and the position of the root in all frames
-    are found at once: they hold the soles with the least smooth change of knees, feet and root
-    (`planting_goals`, `fit_motion`). Bones never stretch, and no joint of the trunk rotates.
+    `settings.hands_and_knees`. The rotations of the legs, of such arms, and the position of
+    the root in all frames are found at once: they hold what is loaded with the least smooth
+    change of knees, feet, arms and root (`planting_goals`, `fit_motion`). Bones never stretch,
+    and no joint of the trunk rotates.
     Segments of a joined take are planted separately; a segment of less than a quarter of a
     second has no contact.
 
@@ -256,7 +257,7 @@ def _check_contacts(contacts: Flags, motion: Motion) -> Flags:
     n_frames, widths = motion.n_frames, (N_FEET, N_FEET + len(SUPPORTS))
     if contacts.shape not in [(n_frames, width) for width in widths]:
         raise InvalidMotionError(
-            f"Contacts need shape ({n_frames}, 2), left and right, or ({n_frames}, 6) with hands"
-            f" and knees, not {contacts.shape}."
+            f"Contacts need shape ({n_frames}, 2), left and right, or ({n_frames}, 6) with"
+            f" hands and knees, not {contacts.shape}."
         )
     return contacts

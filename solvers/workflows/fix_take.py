@@ -9,6 +9,7 @@ from ..arrays import Flags
 from ..denoising import PlantSettings
 from ..depth_scene import DepthRecording
 from ..errors import InvalidMotionError
+from ..feet import SIDES
 from ..motion import JointLimits, JointRecording, Motion, Tracks
 from ..physics import NoPhysicsError, simulate
 from ..progress import Progress, unwatched, within
@@ -141,7 +142,7 @@ def fix_take(
     recording : Motion, Tracks, JointRecording, MotionFromJoints or DepthRecording
         NaN where nothing was observed.
     settings : FixSettings
-    contacts : bool, shape (n_frames, 2), left and right
+    contacts : bool, shape (n_frames, 2) or (n_frames, 6), as `plant_feet` takes them
         Contacts of the feet as keyed by an animator, for motions; detected by default.
     limits : JointLimits
         Joints beyond them count as issues; nothing is clamped.
@@ -168,6 +169,8 @@ def fix_take(
     start = take_before(recording, chain, within(progress, FIXED, COMPARED))
     if chain.planted is not None:
         contacts = chain.planted.contacts
+    elif contacts is not None:
+        contacts = contacts[:, : len(SIDES)]
     step = within(progress, COMPARED, MEASURED)
     after = measure_take(chain.recording, contacts=contacts, limits=limits, progress=step)
     if contacts is None and after.quality.feet:

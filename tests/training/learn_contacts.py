@@ -4,7 +4,8 @@
 
 Feet (foot_contacts.py) from made ones with random parameters and walks of CMU's development
 subjects, hands and knees (body_supports.py) from made ones alone, with noise and slow errors.
-No force plate and no scored take is among them. The model's log loss over all frames is minimized, so that its probabilities are calibrated.
+No force plate and no scored take is among them. The model's log loss over all frames is
+minimized, so that its probabilities are calibrated.
 """
 
 from collections.abc import Iterable, Iterator

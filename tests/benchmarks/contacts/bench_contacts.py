@@ -25,6 +25,7 @@ from ..shared.tables import Scores
 from .part_ablation import planters_without, retarget_table
 from .part_detection import detection_tables
 from .part_pins import pin_tables
+from .part_supports import support_tables
 from .part_takes import take_tables
 from .part_walks import PLANTERS, walk_tables
 
@@ -38,7 +39,7 @@ OTHER_MAKERS = (
 SCORED_ACTORS = ("bk", "dg")
 N_ABLATED = 8
 N_OF_A_SENSOR = 8
-PARTS = ("detection", "walks", "takes", "pins", "ablation")
+PARTS = ("detection", "supports", "walks", "takes", "pins", "ablation")
 
 
 def main() -> None:
@@ -62,6 +63,8 @@ def _tables(part: str, dev: bool, full: bool) -> Iterable[Scores | str]:
     movements = takes.DEVELOPMENT if dev else takes.SCORED
     if part == "detection":
         return detection_tables()
+    if part == "supports":
+        return support_tables(clips.DEV_ACTORS if dev else SCORED_ACTORS)
     if part == "walks":
         return walk_tables((clips.development if dev else clips.scored)(full))
     if part == "takes":

@@ -120,7 +120,7 @@ def _rise_on_toes(time: Array) -> _Plan:
 def _one_leg(time: Array) -> _Plan:
     """Stand on the left leg from 1 to 5 s, the right foot held 30 cm above the floor."""
     hips, ankles = _still(time)
-    up = _smooth_step((time - 1.0) / 0.6) - _smooth_step((time - 4.4) / 0.6)
+    up = smooth_step((time - 1.0) / 0.6) - smooth_step((time - 4.4) / 0.6)
     ankles[:, 1, 2] += 0.3 * up
     ankles[:, 1, 1] += 0.15 * up
     hips[:, 2] -= 0.03
@@ -158,7 +158,7 @@ def _run(time: Array) -> _Plan:
     for foot, lag in enumerate((0.0, 0.35)):
         cycle, phase = np.divmod(time + lag, 0.7)
         swing = np.clip((phase - 0.25) / 0.45, 0.0, 1.0)
-        landed_s = 0.7 * (cycle + _smooth_step(swing)) - lag + 0.125
+        landed_s = 0.7 * (cycle + smooth_step(swing)) - lag + 0.125
         ankles[:, foot, 0] *= 0.5
         ankles[:, foot, 1] = -2.8 * landed_s
         ankles[:, foot, 2] += 0.3 * np.sin(np.pi * swing) ** 2
@@ -175,7 +175,7 @@ def _side_steps(time: Array) -> _Plan:
     for foot, lag in enumerate((0.0, 0.6)):
         cycle, phase = np.divmod(time - lag + 1.2, 1.2)
         swing = np.clip(phase / 0.4, 0.0, 1.0)
-        ankles[:, foot, 0] += 0.2 * (cycle - 1.0 + _smooth_step(swing))
+        ankles[:, foot, 0] += 0.2 * (cycle - 1.0 + smooth_step(swing))
         ankles[:, foot, 2] += 0.04 * np.sin(np.pi * swing) ** 2
         contacts[:, foot] = phase >= 0.4
     return _Plan(hips, ankles, contacts)
@@ -186,13 +186,13 @@ def _box(time: Array) -> _Plan:
     hips, ankles = _still(time)
     contacts = np.ones((len(time), 2), np.bool_)
     for foot, start in enumerate((1.0, 2.0)):
-        step = _smooth_step((time - start) / 0.6)
+        step = smooth_step((time - start) / 0.6)
         inside = (time > start) & (time < start + 0.6)
         lift = np.sin(np.pi * np.clip((time - start) / 0.6, 0.0, 1.0)) ** 2
         ankles[:, foot, 1] -= 0.35 * step
         ankles[:, foot, 2] += 0.2 * step + 0.12 * lift
         contacts[:, foot] = ~inside
-    body = _smooth_step((time - 1.5) / 1.0)
+    body = smooth_step((time - 1.5) / 1.0)
     hips[:, 1] -= 0.35 * body
     hips[:, 2] += 0.2 * body - 0.12
     return _Plan(hips, ankles, contacts)
@@ -203,7 +203,7 @@ def _chair(time: Array) -> _Plan:
     hips, ankles = _still(time)
     hips[:, 1:] = (0.0, 0.5)
     ankles[:, :, 1] = -0.42
-    up = _smooth_step((time - 2.0) / 0.7)
+    up = smooth_step((time - 2.0) / 0.7)
     ankles[:, 1] += up[:, None] * (0.2, -0.05, 0.3)
     return _Plan(hips, ankles, np.stack([np.ones_like(time) > 0.0, time <= 2.0], axis=1))
 
@@ -221,7 +221,7 @@ PLANS: dict[str, Callable[[Array], _Plan]] = {
 }
 
 
-def _smooth_step(ratio: Array) -> Array:
+def smooth_step(ratio: Array) -> Array:
     """Go from 0 to 1 with minimum jerk (Flash and Hogan 1985)."""
     ratio = np.clip(ratio, 0.0, 1.0)
     return np.asarray(ratio**3 * (10.0 - 15.0 * ratio + 6.0 * ratio**2))

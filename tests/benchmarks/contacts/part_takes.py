@@ -83,7 +83,7 @@ def take_figures(
     roles = find_humanoid_map(given.skeleton).indices(given.skeleton)
     knees = [leg.knee for leg in legs]
     elbows = [roles[role] for role in ("leftLowerArm", "rightLowerArm") if role in roles]
-    knee, elbow = (_acceleration_ratio(given, planted, joints) for joints in (knees, elbows))
+    knee, elbow = (acceleration_ratio(given, planted, joints) for joints in (knees, elbows))
     change = float(np.degrees(angle_between(planted.rotations, given.rotations)).max())
     hips = _worst_hips(planted) / max(_worst_hips(given), 1e-9)
     moved = np.linalg.norm(planted.root_positions - given.root_positions, axis=1).max()
@@ -114,7 +114,7 @@ def _slides(
     return 100.0 * float(found.mean()) if len(found) else 0.0, 1000.0 * max(drifts)
 
 
-def _acceleration_ratio(given: Motion, planted: Motion, joints: Sequence[int]) -> float:
+def acceleration_ratio(given: Motion, planted: Motion, joints: Sequence[int]) -> float:
     """Return the largest acceleration of joint angles relative to that in the given motion."""
     if not joints:
         return 1.0

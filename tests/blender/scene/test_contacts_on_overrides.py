@@ -39,9 +39,9 @@ def save_and_open(bpy, path):
 def test_override_keeps_its_foot_contacts_after_reloading(override, blank, tmp_path, contacts):
     again = save_and_open(blank, tmp_path / "shot.blend")
 
-    assert [again[name] for name in contacts.PROPERTIES] == [0, 1]
+    assert [again[name] for name in contacts.FOOT_PROPERTIES] == [0, 1]
     blank.context.scene.frame_set(10)
-    assert [again[name] for name in contacts.PROPERTIES] == [1, 0]
+    assert [again[name] for name in contacts.FOOT_PROPERTIES] == [1, 0]
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
@@ -54,4 +54,4 @@ def test_key_without_a_value_means_no_contact(override, blank, tmp_path, contact
 
     again = save_and_open(blank, tmp_path / "shot.blend")
 
-    assert [again[name] for name in contacts.PROPERTIES] == [0, 1]
+    assert [again[name] for name in contacts.FOOT_PROPERTIES] == [0, 1]

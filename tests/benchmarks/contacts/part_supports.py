@@ -1,0 +1,138 @@
+"""Hands and knees on the floor: detected against known ones, and held in place."""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping
+
+import numpy as np
+
+from solvers.arrays import Flags
+from solvers.feet import PlantSettings, find_legs, plant_feet
+from solvers.feet.body_supports import SUPPORTS, detect_supports
+from solvers.feet.limb_goals import find_limb_contacts
+from solvers.motion import Motion, find_humanoid_map, forward_kinematics
+from solvers.recordings import read_acclaim
+from solvers.rotations import angle_between
+
+from ..shared import clips
+from ..shared.tables import number, table
+from .detectors import SPEED
+from .made_supports import joints_of, made_supports
+from .part_takes import INPUTS, acceleration_ratio
+
+RATE = 30.0
+"""Hertz."""
+PARTS = {"hands": slice(0, 2), "knees": slice(2, 4)}
+"""Columns of `SUPPORTS`."""
+HEIGHT_M = 0.1
+"""Meters above the lowest joint of the take, of the peer."""
+OURS, FEET_ALONE, GIVEN = "feet, hands and knees", "feet alone", "as given"
+COLUMNS = (
+    "frames in contact", "slide, cm/s", "elbow, times given", "knee", "largest change, deg",
+)  # fmt: skip
+Planter = Callable[[Motion], Motion]
+
+
+def support_tables(actors: Iterable[str]) -> list[str]:
+    """Return the tables of detection and of slide."""
+    made = [take.motion for take in made_supports(RATE).values()]
+    captured = [
+        clips.every(read_acclaim(path), clips.STEP)
+        for actor in actors
+        for path in sorted(clips.HDM05.glob(f"HDM_{actor}_lieDownFloor_*_120.amc"))
+    ]
+    return [
+        _detection_table(),
+        *(
+            _slide_table(f"Made bodies on hands and knees, {what}", map(spoil, made))
+            for what, spoil in INPUTS.items()
+        ),
+        _slide_table("HDM05, actors lie down", captured),
+    ]
+
+
+def _detection_table() -> str:
+    """Return precision and recall of each take and part of the body."""
+    detectors: Mapping[str, Callable[[Motion], Flags]] = {
+        "ours": _detected,
+        "height and speed": _below_thresholds,
+    }
+    rows = {}
+    totals: dict[tuple[str, str], np.ndarray] = defaultdict(lambda: np.zeros(3))
+    for name, take in made_supports(RATE).items():
+        for part, columns in PARTS.items():
+            cells = []
+            for method, detect in detectors.items():
+                found, known = detect(take.motion)[:, columns], take.contacts[:, columns]
+                counts = np.array([(found & known).sum(), found.sum(), known.sum()])
+                totals[method, part] += counts
+                cells.append(_precision_and_recall(*counts))
+            rows[f"{name}, {part}"] = cells
+    for part in PARTS:
+        rows[f"all, {part}"] = [
+            _precision_and_recall(*totals[method, part]) for method in detectors
+        ]
+    title = f"**Hands and knees of made bodies: precision and recall, {RATE:g} Hz**"
+    return f"{title}\n\n{table(['take', *detectors], rows)}\n"
+
+
+def _precision_and_recall(both: float, found: float, known: float) -> str:
+    """Return both, or how many frames were detected where there is no contact."""
+    if not known:
+        return "none detected" if not found else f"{found:g} frames detected"
+    return f"{both / max(found, 1):.2f} {both / known:.2f}"
+
+
+def _detected(motion: Motion) -> Flags:
+    humanoid = find_humanoid_map(motion.skeleton)
+    return detect_supports(motion, humanoid, find_legs(motion.skeleton, humanoid))
+
+
+def _below_thresholds(motion: Motion) -> Flags:
+    """Return what is low and slow above the lowest joint of the take."""
+    positions = forward_kinematics(motion).positions
+    found = []
+    for support in SUPPORTS:
+        path = positions[:, motion.skeleton.index(joints_of(support)[0])]
+        speed = np.linalg.norm(np.gradient(path, axis=0), axis=1) * motion.frame_rate
+        height = path[:, 2] - positions[..., 2].min()
+        found.append((height < HEIGHT_M) & (speed < SPEED))
+    return np.stack(found, axis=1)
+
+
+def _slide_table(title: str, inputs: Iterable[Motion]) -> str:
+    figures: dict[str, list[list[float]]] = defaultdict(list)
+    for given in inputs:
+        planted = plant_feet(given)
+        assert planted.supports is not None
+        if not planted.supports.any():
+            continue
+        alone = plant_feet(given, settings=PlantSettings(hands_and_knees=False))
+        for name, motion in (
+            (OURS, planted.motion), (FEET_ALONE, alone.motion), (GIVEN, given)
+        ):  # fmt: skip
+            figures[name].append(_figures(given, motion, planted.supports))
+    rows = {
+        name: [number(float(value)) for value in (
+            np.sum(of_takes, axis=0)[0], np.mean(of_takes, axis=0)[1],
+            *np.max(of_takes, axis=0)[2:],
+        )]
+        for name, of_takes in figures.items()
+    }  # fmt: skip
+    n_takes = len(next(iter(figures.values()), []))
+    return f"**{title}, {n_takes} takes**\n\n{table(['planted', *COLUMNS], rows)}\n"
+
+
+def _figures(given: Motion, motion: Motion, supports: Flags) -> list[float]:
+    """Return the figures of `COLUMNS`."""
+    humanoid, poses = find_humanoid_map(given.skeleton), forward_kinematics(given)
+    limbs = find_limb_contacts(given, poses, humanoid, supports)
+    after = forward_kinematics(motion)
+    n_frames = float(supports.sum())
+    slide = 100.0 * sum(limb.slide(after) for limb in limbs) / n_frames * given.frame_rate
+    roles = humanoid.indices(given.skeleton)
+    ratios = [
+        acceleration_ratio(given, motion, [roles[f"left{role}"], roles[f"right{role}"]])
+        for role in ("LowerArm", "LowerLeg")
+    ]
+    change = np.degrees(angle_between(motion.rotations, given.rotations)).max()
+    return [n_frames, slide, *ratios, float(change)]
