@@ -1,4 +1,4 @@
-"""The goals of a fit that holds feet, hands and knees in place with the least change of the motion."""
+"""The goals of a fit that holds feet, hands and knees in place with the least change."""
 
 from collections.abc import Sequence
 

@@ -64,7 +64,7 @@ def _tables(part: str, dev: bool, full: bool) -> Iterable[Scores | str]:
     if part == "detection":
         return detection_tables()
     if part == "supports":
-        return support_tables(clips.DEV_ACTORS if dev else SCORED_ACTORS)
+        return support_tables(clips.DEV_ACTORS if dev else SCORED_ACTORS, movements)
     if part == "walks":
         return walk_tables((clips.development if dev else clips.scored)(full))
     if part == "takes":

@@ -1,13 +1,12 @@
 """Bodies whose hands and knees bear on the floor in known frames, because they were made so.
 
-Hands are put onto planned wrists by two-bone IK; knees are fixed, and the hips swing about them.
+Hands reach for planned wrists by two-bone IK; knees are fixed, and the hips swing about them.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-
 from numpy.typing import ArrayLike
 
 from solvers.arrays import Array, Flags
@@ -28,6 +27,8 @@ ON_ALL_FOURS, ON_HANDS_AND_FEET = np.radians([80.0, 95.0])
 """Tilts of a trunk whose hands are on the floor."""
 FLAT, TUCKED, INSTEP = np.radians([0.0, 60.0, 157.0])
 """Tilts of a foot that stands flat, on its toes, or lies on its instep."""
+TUCKED_ANKLE_M = 0.15
+"""Height of the ankle of a foot on its toes."""
 FRONT = np.array([0.09, -0.4, ANKLE_HEIGHT_M])
 """Ankle of a foot in front of a body that kneels on one knee."""
 
@@ -43,9 +44,9 @@ class _Plan:
     wrists : shape (n_frames, 2, 3), meters; NaN lets the arms hang
     contacts : shape (n_frames, 4)
     feet : radians
-        Tilt of both feet.
-    front : shape (3,), meters
-        Left ankle, if its foot stands flat in front of the body.
+        Tilt of the left and the right foot.
+    ankles : shape (n_frames, 2, 3), meters
+        Where legs reach; NaN lets thighs and shins be.
     """
 
     hips: Array
@@ -54,8 +55,8 @@ class _Plan:
     shins: Array
     wrists: Array
     contacts: Flags
-    feet: float
-    front: Array | None = None
+    feet: tuple[float, float]
+    ankles: Array
 
 
 def made_supports(frame_rate: float) -> dict[str, MadeTake]:
@@ -75,27 +76,26 @@ def _take(plan: _Plan, frame_rate: float) -> MadeTake:
         thigh, shin = plan.thighs[:, number], plan.shins[:, number]
         rotations[:, skeleton.index(f"{side}UpLeg")] = _about_x(-thigh - plan.tilt)
         rotations[:, skeleton.index(f"{side}Leg")] = _about_x(thigh - shin)
-        foot, toes = _about_x([plan.feet, np.pi if plan.feet == INSTEP else 0.0])
-        rotations[:, skeleton.index(f"{side}Foot")] = multiply(_about_x(shin), foot)
-        rotations[:, skeleton.index(f"{side}ToeBase")] = multiply(inverse(foot), toes)
         down = quaternion_from_rotation_vector([0.0, (1.0, -1.0)[number] * 1.2, 0.0])
         rotations[:, skeleton.index(f"{side}Arm")] = down
     motion = Motion(skeleton, rotations, plan.hips, frame_rate)
-    if plan.front is not None:
-        motion = _with_foot_in_front(motion, np.tile(plan.front, (n_frames, 1)))
     for number, side in enumerate(SIDES):
+        motion = _with_foot(motion, side, plan.ankles[:, number], plan.feet[number])
         wrist = plan.wrists[:, number]
         if np.isfinite(wrist).all():
             motion = _with_hand(motion, side, wrist)
     return MadeTake(motion, plan.contacts)
 
 
-def _with_foot_in_front(motion: Motion, ankle: Array) -> Motion:
-    leg = [motion.skeleton.index(f"Left{part}") for part in ("UpLeg", "Leg", "Foot")]
-    motion = reach(motion, (leg[0], leg[1], leg[2]), ankle, ReachSettings(softness=0.0))
-    rotations = motion.rotations.copy()
-    rotations[:, leg[2]] = inverse(forward_kinematics(motion).rotations[:, leg[1]])
-    rotations[:, motion.skeleton.index("LeftToeBase")] = IDENTITY
+def _with_foot(motion: Motion, side: str, ankle: Array, tilt: float) -> Motion:
+    """Reach for an ankle, unless it is NaN, and tilt the foot; its toes stay level."""
+    leg = [motion.skeleton.index(side + part) for part in ("UpLeg", "Leg", "Foot")]
+    if np.isfinite(ankle).all():
+        motion = reach(motion, (leg[0], leg[1], leg[2]), ankle, ReachSettings(softness=0.0))
+    rotations, shin = motion.rotations.copy(), forward_kinematics(motion).rotations[:, leg[1]]
+    foot, toes = _about_x([tilt, np.pi if tilt == INSTEP else 0.0])
+    rotations[:, leg[2]] = multiply(inverse(shin), foot)
+    rotations[:, motion.skeleton.index(f"{side}ToeBase")] = multiply(inverse(foot), toes)
     return motion.with_poses(rotations)
 
 
@@ -123,7 +123,7 @@ def _on_all_fours(time: Array) -> _Plan:
     return _Plan(
         _above_knees(time, thigh), np.full_like(time, ON_ALL_FOURS),
         _both(thigh), np.full((len(time), 2), -np.pi / 2), wrists,
-        np.ones((len(time), 4), np.bool_), INSTEP,
+        np.ones((len(time), 4), np.bool_), (INSTEP, INSTEP), _free(time),
     )  # fmt: skip
 
 
@@ -131,46 +131,63 @@ def _crawl(time: Array) -> _Plan:
     """Walk on hands and feet; each hand is lifted for 0.4 s of every 1.2 s."""
     hips = np.tile([0.0, 0.0, 0.55], (len(time), 1))
     hips[:, 1] -= 0.25 * time
-    wrists = np.zeros((len(time), 2, 3))
-    contacts = np.zeros((len(time), 4), np.bool_)
-    for hand, lag in enumerate((0.0, 0.6)):
+    wrists, hands = _steps(time, (0.0, 0.6))
+    ankles, _ = _steps(time, (0.9, 0.3))
+    wrists += (0.0, -0.45, WRIST_M)
+    ankles += (0.0, 0.25, TUCKED_ANKLE_M)
+    ankles[..., 0] *= 0.5
+    contacts = np.hstack([hands, np.zeros_like(hands)])
+    legs = np.zeros((len(time), 2))
+    tilt = np.full_like(time, ON_HANDS_AND_FEET)
+    # Bent a little, so that the knees bend forward.
+    return _Plan(
+        hips, tilt, legs + 0.9, legs - 1.2, wrists, contacts, (TUCKED, TUCKED), ankles
+    )  # fmt: skip
+
+
+def _steps(time: Array, lags: tuple[float, float]) -> tuple[Array, Flags]:
+    """Return steps of 30 cm, lifted by 10 cm for 0.4 s of every 1.2 s, and when they rest."""
+    path = np.zeros((len(time), 2, 3))
+    path[..., 0] = (0.2, -0.2)
+    down = np.zeros((len(time), 2), np.bool_)
+    for number, lag in enumerate(lags):
         cycle, phase = np.divmod(time - lag + 1.2, 1.2)
         swing = np.clip(phase / 0.4, 0.0, 1.0)
-        wrists[:, hand, 0] = (0.2, -0.2)[hand]
-        wrists[:, hand, 1] = -0.45 - 0.3 * (cycle - 1.0 + smooth_step(swing)) - 0.25 * lag
-        wrists[:, hand, 2] = WRIST_M + 0.1 * np.sin(np.pi * swing) ** 2
-        contacts[:, hand] = phase >= 0.4
-    legs = 0.1 * np.sin(2.0 * np.pi * time / 1.2)
-    thighs, shins = (np.stack([tilt + legs, tilt - legs], axis=1) for tilt in (0.9, -1.25))
-    tilt = np.full_like(time, ON_HANDS_AND_FEET)
-    return _Plan(hips, tilt, thighs, shins, wrists, contacts, TUCKED)
+        path[:, number, 1] = -0.3 * (cycle - 1.0 + smooth_step(swing)) - 0.25 * lag
+        path[:, number, 2] = 0.1 * np.sin(np.pi * swing) ** 2
+        down[:, number] = phase >= 0.4
+    return path, down
 
 
 def _push_ups(time: Array) -> _Plan:
     """Lower and lift a straight body on its hands."""
     down = 0.5 - 0.5 * np.cos(2.0 * np.pi * time / 2.0)
     tilt = np.radians(74.0 + 12.0 * down)
-    feet = np.array([0.0, 0.75, 0.15])
+    feet = np.array([0.0, 0.75, TUCKED_ANKLE_M])
     hips = feet + 0.88 * np.stack([0.0 * tilt, -np.sin(tilt), np.cos(tilt)], axis=1)
     wrists = np.zeros((len(time), 2, 3))
     wrists[:] = ([0.28, -0.55, WRIST_M], [-0.28, -0.55, WRIST_M])
     contacts = np.zeros((len(time), 4), np.bool_)
     contacts[:, :2] = True
     along = _both(-tilt)
-    return _Plan(hips, tilt, along, along, wrists, contacts, TUCKED)
+    return _Plan(hips, tilt, along, along, wrists, contacts, (TUCKED, TUCKED), _free(time))
 
 
 def _kneel(time: Array) -> _Plan:
-    """Come down onto the right knee within 0.8 s, sway, and rise; it bears from 1.8 to 4.5 s."""
+    """Come down onto the right knee in 0.8 s, sway, and rise; it bears from 1.8 to 4.5 s."""
     up = 1.0 - smooth_step((time - 1.0) / 0.8) + smooth_step((time - 4.5) / 0.8)
     thigh = 0.15 * np.sin(2.0 * np.pi * 0.5 * time)
     hips = _above_knees(time, thigh)
     hips[:, 2] += 0.35 * up
     contacts = np.zeros((len(time), 4), np.bool_)
     contacts[:, 3] = (time >= 1.8) & (time <= 4.5)
-    free = np.full((len(time), 2, 3), np.nan)
+    ankles = _free(time)
+    ankles[:, 0] = FRONT
     shins = np.full((len(time), 2), -np.pi / 2)
-    return _Plan(hips, np.zeros_like(time), _both(thigh), shins, free, contacts, INSTEP, FRONT)
+    return _Plan(
+        hips, np.zeros_like(time), _both(thigh), shins, _free(time), contacts, (FLAT, INSTEP),
+        ankles,
+    )  # fmt: skip
 
 
 def _pick_up(time: Array) -> _Plan:
@@ -184,7 +201,9 @@ def _pick_up(time: Array) -> _Plan:
     wrists[..., 1] = (-0.05 - 0.4 * down)[:, None]
     wrists[..., 2] = (0.85 - 0.7 * down)[:, None]
     none = np.zeros((len(time), 4), np.bool_)
-    return _Plan(hips, 1.0 * down, _both(thigh), _both(-thigh), wrists, none, FLAT)
+    return _Plan(
+        hips, 1.0 * down, _both(thigh), _both(-thigh), wrists, none, (FLAT, FLAT), _free(time)
+    )
 
 
 def _above_knees(time: Array, thigh: Array) -> Array:
@@ -193,6 +212,10 @@ def _above_knees(time: Array, thigh: Array) -> Array:
     hips[:, 1] = THIGH_M * np.sin(thigh)
     hips[:, 2] = KNEE_M + THIGH_M * np.cos(thigh)
     return hips
+
+
+def _free(time: Array) -> Array:
+    return np.full((len(time), 2, 3), np.nan)
 
 
 def _both(values: Array) -> Array:

@@ -6,13 +6,16 @@ from collections.abc import Callable, Iterable, Mapping
 import numpy as np
 
 from solvers.arrays import Flags
-from solvers.feet import PlantSettings, find_legs, plant_feet
+from solvers.feet import SIDES, PlantSettings, find_legs, plant_feet
 from solvers.feet.body_supports import SUPPORTS, detect_supports
 from solvers.feet.limb_goals import find_limb_contacts
-from solvers.motion import Motion, find_humanoid_map, forward_kinematics
+from solvers.feet.support import Support
+from solvers.motion import Motion, WorldPoses, find_humanoid_map, forward_kinematics
 from solvers.recordings import read_acclaim
 from solvers.rotations import angle_between
+from solvers.signals import find_runs
 
+from ..first_press import takes
 from ..shared import clips
 from ..shared.tables import number, table
 from .detectors import SPEED
@@ -27,12 +30,13 @@ HEIGHT_M = 0.1
 """Meters above the lowest joint of the take, of the peer."""
 OURS, FEET_ALONE, GIVEN = "feet, hands and knees", "feet alone", "as given"
 COLUMNS = (
-    "frames in contact", "slide, cm/s", "elbow, times given", "knee", "largest change, deg",
+    "frames in contact", "slide, cm/s", "worst drift, mm", "elbow, times given",
+    "largest change, deg",
 )  # fmt: skip
 Planter = Callable[[Motion], Motion]
 
 
-def support_tables(actors: Iterable[str]) -> list[str]:
+def support_tables(actors: Iterable[str], movements: Iterable[takes.Take]) -> list[str]:
     """Return the tables of detection and of slide."""
     made = [take.motion for take in made_supports(RATE).values()]
     captured = [
@@ -42,11 +46,15 @@ def support_tables(actors: Iterable[str]) -> list[str]:
     ]
     return [
         _detection_table(),
+        _movement_table(movements),
         *(
-            _slide_table(f"Made bodies on hands and knees, {what}", map(spoil, made))
+            _slide_table(f"{title}, {what}", map(spoil, motions))
+            for title, motions in (
+                ("Made bodies on hands and knees", made),
+                ("HDM05, actors lie down", captured),
+            )
             for what, spoil in INPUTS.items()
         ),
-        _slide_table("HDM05, actors lie down", captured),
     ]
 
 
@@ -73,6 +81,20 @@ def _detection_table() -> str:
         ]
     title = f"**Hands and knees of made bodies: precision and recall, {RATE:g} Hz**"
     return f"{title}\n\n{table(['take', *detectors], rows)}\n"
+
+
+def _movement_table(movements: Iterable[takes.Take]) -> str:
+    """Return what is detected in kicks, hops, punches, dances and walks."""
+    rows, others = {}, 0
+    for take in movements:
+        found = _detected(takes.read(take)).sum(axis=0)
+        if found.any():
+            rows[str(take)] = [f"{count:g}" for count in found]
+        else:
+            others += 1
+    rows[f"{others} other takes"] = ["0"] * len(SUPPORTS)
+    title = "**All kinds of movement: frames in which a hand or knee is detected**"
+    return f"{title}\n\n{table(['take', *SUPPORTS], rows)}\n"
 
 
 def _precision_and_recall(both: float, found: float, known: float) -> str:
@@ -129,10 +151,21 @@ def _figures(given: Motion, motion: Motion, supports: Flags) -> list[float]:
     after = forward_kinematics(motion)
     n_frames = float(supports.sum())
     slide = 100.0 * sum(limb.slide(after) for limb in limbs) / n_frames * given.frame_rate
+    drift = 1000.0 * max(_drift(limb, after) for limb in limbs)
     roles = humanoid.indices(given.skeleton)
-    ratios = [
-        acceleration_ratio(given, motion, [roles[f"left{role}"], roles[f"right{role}"]])
-        for role in ("LowerArm", "LowerLeg")
-    ]
+    elbows = acceleration_ratio(given, motion, [roles[f"{side}LowerArm"] for side in SIDES])
     change = np.degrees(angle_between(motion.rotations, given.rotations)).max()
-    return [n_frames, slide, *ratios, float(change)]
+    return [n_frames, slide, drift, elbows, float(change)]
+
+
+def _drift(limb: Support, poses: WorldPoses) -> float:
+    """Return the farthest way of the loaded point over the floor within a contact, meters."""
+    positions = np.stack([point.position(poses) for point in limb.points], axis=1)
+    steps = np.einsum("fp,fpi->fi", limb.step_load, np.diff(positions, axis=0))[:, :2]
+    return max(
+        (
+            float(np.linalg.norm(np.cumsum(steps[start:stop], axis=0), axis=1).max())
+            for start, stop in find_runs(limb.contact[1:] & limb.contact[:-1])
+        ),
+        default=0.0,
+    )
