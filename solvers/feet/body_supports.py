@@ -12,10 +12,10 @@ from ..motion.humanoid import (
     ContactModel,
     HumanoidMap,
     foot_points,
-    ground_level,
     leg_length,
     measure_feet,
 )
+from ..motion.skeletons import ground_level
 from ..signals import two_state_probabilities
 from .legs import SIDES, LegJoints
 from .standing_feet import MIN_CONTACT_S, rests_on_hips, without_short_contacts

@@ -14,7 +14,7 @@ from ...signals import (
     smooth_gaussian,
     two_state_probabilities,
 )
-from ..skeletons import Motion, Skeleton, forward_kinematics
+from ..skeletons import Motion, Skeleton, forward_kinematics, ground_level
 from .canonical import ball_of_foot
 from .roles import HumanoidMap, find_humanoid_map
 
@@ -29,14 +29,6 @@ definition."""
 SPEED_NOISE = 0.15
 """Meters per second: noise moves smoothed feet no faster along each axis. Chosen by hand: x0.7
 and x1.7 change F1 of noisy captures by less than 0.02 (`test_jitter_changes_little`)."""
-
-GROUND_WINDOW_S = 0.5
-"""Seconds before and after a frame in which the lower foot stands. It guards feet that
-swing in the air (`test_stances_of_a_fifth_of_a_second_keep_their_length`)."""
-
-MAX_CLIMB_M = 0.3
-"""Maximum height of ground above the lowest of the take. It guards feet that hang or rest in
-the air (`test_hanging_feet_have_no_contact`)."""
 
 
 @dataclass(frozen=True)
@@ -298,23 +290,3 @@ def _above_ground(heights: Array, seen: Flags, frame_rate: float) -> Array:
         return heights
     ground = ground_level(heights[:, seen].min(axis=1), frame_rate)
     return np.asarray(heights - ground[:, None])
-
-
-def ground_level(lowest: Array, frame_rate: float) -> Array:
-    """Return the height of the ground in each frame, shape (n_frames,), meters.
-
-    It is the highest level within a second above which the lowest point stays for a second: a
-    foot on a box is on the ground if the other one follows.
-
-    Parameters
-    ----------
-    lowest : shape (n_frames,), meters, for a leg of 0.9 m
-        Height of the lowest point, such as the lower foot.
-    frame_rate : float, hertz
-    """
-    from scipy.ndimage import maximum_filter1d, minimum_filter1d  # slow to import
-
-    window = round(GROUND_WINDOW_S * frame_rate)
-    level = minimum_filter1d(lowest, 2 * window + 1, mode="nearest")
-    level = maximum_filter1d(level, 4 * window + 1, mode="nearest")
-    return np.asarray(np.minimum(level, level.min() + MAX_CLIMB_M))

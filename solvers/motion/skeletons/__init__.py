@@ -4,6 +4,7 @@ from .body_trackers import NUITRACK, ZED_BODIES
 from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
 from .file_conventions import AxisName, FileConventions, unit_name
 from .frame_rate import MAX_FRAME_RATE_HZ, check_frame_rate
+from .ground import ground_level
 from .joint_limits import ROTATION_VECTOR, JointLimits
 from .joint_recording import INFERRED, TRACKED, JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
@@ -54,6 +55,7 @@ __all__ = [
     "describe_shots",
     "find_shot_boundaries",
     "forward_kinematics",
+    "ground_level",
     "is_short_shot",
     "joint_parents",
     "local_rotations",

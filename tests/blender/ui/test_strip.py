@@ -92,7 +92,7 @@ def test_gap_is_filled_and_spike_is_corrected(blank, reading, actor):
 
 @pytest.fixture
 def stepping(load, actor):
-    """Feet are down from frame 10 to 20 and from frame 31 on, a hand in the first ten frames."""
+    """Feet are down from frame 10 to 20 and from frame 31 on, a hand in the first 10 frames."""
     contacts = np.zeros((60, 6), bool)
     contacts[9:20, 0] = contacts[30:, 1] = contacts[:10, 3] = True
     load("mocap_assist.actions.contact_keys").write_contacts(
