@@ -42,7 +42,8 @@ LEARNED = ContactModel(
 """Learned by `tests/training/learn_contacts.py` from made hands and knees."""
 MIN_SEAT_HEIGHT = 0.12
 """Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
-below which it bears the body. It guards push-ups, whose pelvis comes down to 0.15."""
+below which it bears the body. Chosen by hand: x0.5 holds hands of bodies that lie down and
+turns their arms twice as far, x2 lets go of hands while an actor gets down."""
 
 
 @dataclass(frozen=True)

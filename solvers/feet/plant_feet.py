@@ -194,8 +194,9 @@ def _planted(
     settings: PlantSettings,
     slides: Sequence[float] = (0.0, 0.0),
 ) -> Planted:
+    before, after = slides
     supports = contacts[:, N_FEET:] if settings.hands_and_knees else None
-    return Planted(motion, contacts[:, :N_FEET], *slides, supports)
+    return Planted(motion, contacts[:, :N_FEET], before, after, supports)
 
 
 def _plant_piece(
