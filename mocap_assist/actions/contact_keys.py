@@ -12,7 +12,7 @@ from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
 from .bone_channels import animated_curves
-from .curves import CONSTANT, GENERATED, write_values
+from .curves import CONSTANT, GENERATED, Channel, write_values
 
 FOOT_PROPERTIES = ("mocap_contact_left", "mocap_contact_right")
 SUPPORT_PROPERTIES = (
@@ -46,12 +46,16 @@ def read_contacts(
         standing.append(channel.values(frames) > 0.5)
     others = [curves.get((_path(name), 0)) for name in SUPPORT_PROPERTIES]
     if any(channel is not None and len(channel.keys) for channel in others):
-        never = np.zeros(len(frames), dtype=np.bool_)
-        standing += [
-            channel.values(frames) > 0.5 if channel is not None and len(channel.keys) else never
-            for channel in others
-        ]
+        standing += [_bears(channel, frames) for channel in others]
     return np.stack(standing, axis=1)
+
+
+def _bears(channel: Channel | None, frames: NDArray[np.float64]) -> Flags:
+    """Return when a hand or knee bears on the floor: keys hold until the next one."""
+    if channel is None or not len(channel.keys):
+        return np.zeros(len(frames), dtype=np.bool_)
+    last = np.searchsorted(channel.keys[:, 0], frames, side="right") - 1
+    return np.asarray((last >= 0) & (channel.keys[last, 1] > 0.5))
 
 
 def contact_keys(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> list[Array]:

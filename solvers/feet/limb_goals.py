@@ -27,8 +27,8 @@ SHOULDER_RAD, ELBOW_RAD = np.radians(4.0), np.radians(2.0)
 their hands accelerate, relative to the take: 1.03 times. Shoulder: x0.5 makes it 1.12, x2
 changes nothing. Elbow: x0.5 makes it 1.00 and turns shoulders farther, x2 makes it 1.17."""
 WRIST_RAD = np.radians(15.0)
-"""Radians of a wrist, whose hand follows its own rotation in the world. Chosen by hand: x0.5 and
-x2 turn arms by 0.1 degrees less and more."""
+"""Radians of a wrist, whose hand follows its own rotation in the world. Chosen by hand: x0.5
+and x2 turn arms by 0.1 degrees less and more."""
 HAND_RAD = np.radians(2.5)
 """Radians of a hand in the world. Chosen by hand: x0.5 makes elbows accelerate 1.04 times, x2
 turns arms by 1.9 degrees in place of 1.2."""

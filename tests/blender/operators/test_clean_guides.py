@@ -90,6 +90,28 @@ def test_plant_feet_detects_contacts_again_until_a_key_is_edited(walker, load, b
     assert (contacts.read_contacts(second, second.slots[0], **played) == mine).all()
 
 
+def test_keyed_hand_stays_in_place_and_keeps_its_keys(walker, load, blank, keys_of):
+    """No hand of a walk is found in contact, so that only the field is there to be keyed."""
+    contacts = load("mocap_assist.actions.contact_keys")
+    played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
+    blank.ops.mocap_assist.plant_feet()
+    first = walker.animation_data.action
+    assert contacts.read_contacts(first, first.slots[0], **played).shape[1] == 2
+    for frame, value in ((30, 1), (35, 0)):
+        walker["mocap_contact_left_hand"] = value
+        walker.keyframe_insert('["mocap_contact_left_hand"]', frame=frame)
+
+    blank.ops.mocap_assist.plant_feet()
+
+    second = walker.animation_data.action
+    stored = contacts.read_contacts(second, second.slots[0], **played)
+    assert np.flatnonzero(stored[:, 2]).tolist() == [29, 30, 31, 32, 33]
+    assert not stored[:, 3:].any()
+    before, after = keys_of(first), keys_of(second)
+    moved = {name[1].split('"')[1] for name, keys in after.items() if keys != before.get(name)}
+    assert "LeftForeArm" in moved and "RightForeArm" not in moved
+
+
 def test_edited_contacts_stay_when_other_frames_are_cleaned(walker, clean, load, blank):
     contacts = load("mocap_assist.actions.contact_keys")
     scene = blank.context.scene
