@@ -1,17 +1,20 @@
 """`index` and `find`: build a clip library, and search it for similar motion."""
 
 import argparse
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
 from ..errors import InvalidMotionError, InvalidSettingError
 from ..faults import escaped
+from ..files import real_path
 from ..motion import JointRecording
-from ..processes import threads_from
+from ..processes import Workers, threads_from
 from ..progress import Progress, within
 from ..recordings import read_tracked
 from ..retrieval import ClipEntry, FindSettings, Match, find_similar, load_clip_library
 from ..workflows import IndexReport, index_files
+from .farm import cluster_workers
 from .files import add_body_option
 from .options import arguments_from, settings_from_arguments
 from .verb_description import Outcome, Task
@@ -37,16 +40,18 @@ def perform_index(task: Task, prepared: None, progress: Progress) -> Outcome:
     """Update a library from files and folders."""
     arguments = task.arguments
     assert task.target is not None
-    report = index_files(
-        task.target,
-        task.sources,
-        tags=arguments.tag,
-        body=arguments.body,
-        jobs=arguments.jobs,
-        n_threads=threads_from(arguments),
-        remove_missing=arguments.remove_missing,
-        progress=progress,
-    )
+    with _workers(task) as workers:
+        report = index_files(
+            task.target,
+            task.sources,
+            tags=arguments.tag,
+            body=arguments.body,
+            jobs=arguments.jobs,
+            n_threads=threads_from(arguments),
+            workers=workers,
+            remove_missing=arguments.remove_missing,
+            progress=progress,
+        )
     figures = {
         "library": str(task.target),
         "n_clips": report.n_clips,
@@ -58,6 +63,16 @@ def perform_index(task: Task, prepared: None, progress: Progress) -> Outcome:
     }
     failures = tuple(why for _, why in report.refused)
     return Outcome(_format_report(report, task.target), figures, failures)
+
+
+def _workers(task: Task) -> AbstractContextManager[Workers | None]:
+    """Return the workers of a cluster that see the recordings, or None for this machine."""
+    address: str | None = task.arguments.cluster
+    if address is None:
+        return nullcontext()
+    named = [real_path(path) for path in task.sources]
+    folders = {path if path.is_dir() else path.parent for path in named}
+    return cluster_workers(address, sorted(folders))
 
 
 def _format_report(report: IndexReport, library: Path) -> str:

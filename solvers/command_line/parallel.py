@@ -10,10 +10,10 @@ from pathlib import Path
 from time import sleep
 from typing import Any
 
-from ..processes import threads_from
+from ..processes import LocalWorkers, Workers, threads_from
 from ..progress import unwatched
 from .batch import FinishedTask, attempt_task, record_end
-from .farm import LocalWorkers, Workers, cluster_workers
+from .farm import cluster_workers
 from .screen import Screen
 from .sharing import RENEWAL_INTERVAL_S
 from .tasks import check_output_folder
@@ -23,6 +23,8 @@ from .verb_description import Task, Verb
 def workers_for(tasks: Sequence[Task]) -> AbstractContextManager[Workers | None]:
     """Return the workers that the command line requests; None for this process.
 
+    A verb without an output folder, such as `index`, sends its parts to workers itself.
+
     Raises
     ------
     InvalidSettingError
@@ -30,8 +32,9 @@ def workers_for(tasks: Sequence[Task]) -> AbstractContextManager[Workers | None]
     """
     arguments = tasks[0].arguments
     cluster: str | None = getattr(arguments, "cluster", None)
-    if cluster is not None:
-        named = [arguments.output_folder, getattr(arguments, "library", None)]
+    folder: Path | None = getattr(arguments, "output_folder", None)
+    if cluster is not None and folder is not None:
+        named = [folder, getattr(arguments, "library", None)]
         return cluster_workers(cluster, [path.absolute() for path in named if path is not None])
     n_jobs: int = getattr(arguments, "jobs", 1)
     if n_jobs == 1 or len(tasks) == 1:

@@ -124,7 +124,7 @@ def _add_common_options(parser: argparse.ArgumentParser, makes: OutputKind) -> N
             "--jobs", type=int, default=1, metavar="N",
             help="Number of files to process in parallel [default 1]",
         )  # fmt: skip
-        if has_manifest:
+        if has_manifest or makes is OutputKind.LIBRARY:
             add_cluster_option(workers)
     add_threads_option(parser)
     parser.add_argument(

@@ -3,6 +3,7 @@
 Nothing here imports numpy: `threads` must act before that is imported.
 """
 
+from .executors import LocalWorkers, Workers
 from .locks import try_lock
 from .machine import host_name, is_running, this_machine
 from .parent import end_with_stdin
@@ -11,7 +12,9 @@ from .threads import add_threads_option, thread_environment, threads_from, threa
 from .workers import worker_pool
 
 __all__ = [
+    "LocalWorkers",
     "ScratchFolder",
+    "Workers",
     "add_threads_option",
     "end_with_stdin",
     "host_name",

@@ -1,15 +1,14 @@
-"""Read files and describe them for a library, sequentially or in parallel."""
+"""Read files and describe them for a library, here or on workers."""
 
 from collections import deque
 from collections.abc import Iterable, Iterator
-from concurrent.futures import Future
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import BrokenExecutor, Future
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
 from ..faults import Failure, attempt
-from ..processes import worker_pool
+from ..processes import Workers
 from ..recordings import read_tracked
 from ..retrieval import Clip, DescribedClip, Origin, describe_clip
 
@@ -35,22 +34,34 @@ class FileDescription(NamedTuple):
     sentence: str = ""
     is_permanent: bool = False
     """Whether the content is the reason: the file is refused again until it changes."""
+    has_crashed: bool = False
+    """Whether the process that read it crashed."""
 
 
 def describe_files(
-    files: Iterable[ClipRequest], jobs: int, n_threads: int = 1
+    files: Iterable[ClipRequest], workers: Workers | None = None
 ) -> Iterator[FileDescription]:
     """Yield the description of each file, in the given order.
 
     A file that cannot be used is refused with one sentence. The other files are still read,
-    even if reading one of them crashes its process.
+    even if reading one of them crashes its process. Results do not depend on the workers: what
+    another machine refuses for a reason of its own, such as its memory, is read here.
+
+    Parameters
+    ----------
+    files : ClipRequest, any number
+    workers : Workers, optional
+        Where to read them; by default in this process.
     """
-    if jobs <= 1:
+    if workers is None:
         yield from map(describe_file, files)
         return
     waiting = deque(files)
     while waiting:
-        yield from _until_crash(waiting, jobs, n_threads)
+        for described in _until_crash(waiting, workers):
+            is_refused_there = described.clip is None and not described.is_permanent
+            again = is_refused_there and not described.has_crashed and workers.batch
+            yield describe_file(described.request) if again else described
 
 
 def describe_file(request: ClipRequest) -> FileDescription:
@@ -71,38 +82,42 @@ def _describe(request: ClipRequest) -> DescribedClip:
 
 
 def _until_crash(
-    waiting: "deque[ClipRequest]", jobs: int, n_threads: int
+    waiting: "deque[ClipRequest]", workers: Workers
 ) -> Iterator[FileDescription]:
     """Describe files and remove them from the queue until it is empty or a process crashes.
 
-    After a crash the first file of the queue runs in a process of its own, which shows
-    whether this file is the cause.
+    After a crash the first file of the queue is read alone, which shows whether this file is
+    the cause.
     """
     running: deque[Future[FileDescription]] = deque()
-    with worker_pool(jobs, n_threads) as pool:
+    with workers.open(len(waiting)) as executor:
         try:
-            with suppress(BrokenProcessPool):
+            with suppress(BrokenExecutor):
                 while waiting:
-                    while len(running) < min(len(waiting), QUEUED_PER_PROCESS * jobs):
-                        running.append(pool.submit(describe_file, waiting[len(running)]))
-                    done = running[0].result()
-                    running.popleft()
-                    waiting.popleft()
-                    yield done
+                    n_queued = QUEUED_PER_PROCESS * workers.n_processes()
+                    for _ in range(min(n_queued, len(waiting))):
+                        while len(running) < min(n_queued, len(waiting)):
+                            request = waiting[len(running)]
+                            running.append(executor.submit(describe_file, request))
+                        done = running[0].result()
+                        running.popleft()
+                        waiting.popleft()
+                        yield done
                 return
         finally:
-            pool.shutdown(cancel_futures=True)
-    yield _describe_in_new_process(waiting.popleft(), n_threads)
+            executor.shutdown(cancel_futures=True)
+    yield _describe_alone(waiting.popleft(), workers)
 
 
-def _describe_in_new_process(request: ClipRequest, n_threads: int) -> FileDescription:
-    with worker_pool(1, n_threads) as pool:
+def _describe_alone(request: ClipRequest, workers: Workers) -> FileDescription:
+    with workers.open(1) as executor:
         try:
-            return pool.submit(describe_file, request).result()
-        except BrokenProcessPool:
+            return executor.submit(describe_file, request).result()
+        except BrokenExecutor:
             return FileDescription(
                 request,
                 None,
                 f"{request.origin.path}: the process that read it crashed, perhaps for lack of"
                 " memory. Split the take into parts.",
+                has_crashed=True,
             )

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..errors import InvalidMotionError
 from ..files import is_missing, real_path, reason_of
+from ..processes import LocalWorkers, Workers
 from ..progress import Progress, unwatched
 from ..retrieval import ClipEntry, ClipLibrary, DescribedClip, Origin, open_clip_library
 from ..retrieval.index import find_tags_fault
@@ -52,6 +53,7 @@ def index_files(
     body: str | None = None,
     jobs: int = 1,
     n_threads: int = 1,
+    workers: Workers | None = None,
     remove_missing: bool = False,
     progress: Progress = unwatched,
 ) -> IndexReport:
@@ -77,6 +79,9 @@ def index_files(
         Number of files to read in parallel, each in a process of its own.
     n_threads : int
         Threads of linear algebra in each of these processes.
+    workers : Workers, optional
+        Processes that read the files instead, such as those of a cluster. The library is the
+        same, byte for byte: this process alone writes it, in the order of the files.
     remove_missing : bool
         Whether to remove clips whose files were in the folders and are gone.
     progress : Progress
@@ -98,9 +103,9 @@ def index_files(
     with open_clip_library(library_path) as library:
         indexing = _Indexing(library, tuple(dict.fromkeys(tags)))
         files = indexing.to_read(sources)
-        for index, description in enumerate(
-            describe_files(files, min(jobs, len(files)), n_threads)
-        ):
+        if workers is None and min(jobs, len(files)) > 1:
+            workers = LocalWorkers(jobs, n_threads)
+        for index, description in enumerate(describe_files(files, workers)):
             progress(index / len(files), Path(description.request.origin.path).name)
             indexing.take(description)
         indexing.write()

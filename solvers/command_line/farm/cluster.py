@@ -38,6 +38,13 @@ class WorkerCluster:
         self.batch = token_hex(8)
         self._client, self._address, self._paths = client, address, paths
 
+    def n_processes(self) -> int:
+        """Return the number of tasks that the workers run at once now; one if all have died."""
+        try:
+            return max(sum(self._client.nthreads().values()), 1)
+        except _scheduler_errors():
+            raise MocapAssistError(_is_gone(self._address)) from None
+
     @contextmanager
     def open(self, n_tasks: int) -> Iterator[Executor]:
         """Yield an executor on all workers, also those that join later."""
@@ -65,7 +72,10 @@ class ClusterExecutor(Executor):
         """Submit a call; arguments from `WorkerCluster.share` arrive as their values."""
         future: Future[Any] = Future()
         call = partial(_call_after, self._check, function)
-        remote = self._executor.submit(call, *args, **kwargs)
+        try:
+            remote = self._executor.submit(call, *args, **kwargs)
+        except _scheduler_errors():
+            raise MocapAssistError(_is_gone(self._address)) from None
         remote.add_done_callback(partial(self._pass_on, future))
         return future
 
@@ -101,7 +111,7 @@ def cluster_workers(address: str, paths: Sequence[Path]) -> Iterator[WorkerClust
     address : str
         Address of the scheduler, such as tcp://farm01:8786.
     paths : sequence of Path
-        What all workers must see: the output folder, and a library that they open.
+        What all workers must see: recordings, the output folder, a library that they open.
 
     Raises
     ------
@@ -116,7 +126,8 @@ def cluster_workers(address: str, paths: Sequence[Path]) -> Iterator[WorkerClust
             "--cluster needs the Python package distributed, which is not installed here."
             " Install it: python -m pip install distributed."
         ) from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # One sentence is enough.
+    for name in ("distributed", "distributed.client"):  # One sentence is enough.
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         asyncio.run(_try_connection(address))
         client = Client(address, timeout=CONNECTION_TIMEOUT_S, set_as_default=False)
@@ -176,6 +187,13 @@ def _check_once(expected: str, paths: tuple[Path, ...]) -> None:
 def _call_after(check: Callable[[], None], function: Callable[..., Any], *args: Any) -> Any:
     check()
     return function(*args)
+
+
+def _scheduler_errors() -> tuple[type[Exception], ...]:
+    """Return what a client raises once its scheduler has ended."""
+    from distributed.client import ClosedClientError
+
+    return OSError, RuntimeError, ClosedClientError
 
 
 def _identity(value: Any) -> Any:

@@ -1,10 +1,13 @@
 """Files are described in order, whatever happens to one of them."""
 
 import os
+from concurrent.futures import ThreadPoolExecutor
+from threading import current_thread, main_thread
 
 import pytest
 
 from solvers.errors import SolveCancelled
+from solvers.processes import LocalWorkers
 from solvers.recordings import write_bvh
 from solvers.retrieval import Origin
 from solvers.samples import GaitSettings, walking_gait
@@ -32,7 +35,7 @@ def clip_request(tmp_path):
 
 
 def test_file_becomes_a_library_entry(clip_request):
-    _, clip, sentence, _ = describe_file(clip_request[1])
+    _, clip, sentence, *_ = describe_file(clip_request[1])
     assert (clip.entry.name, clip.entry.tags, clip.entry.n_frames) == ("clip 1", ("walk",), 60)
     assert clip.entry.origin == clip_request[1].origin
     assert (clip.postures.n_frames, clip.postures.frame_rate, sentence) == (40, 20.0, "")
@@ -41,13 +44,33 @@ def test_file_becomes_a_library_entry(clip_request):
 def test_file_that_crashes_its_process_is_refused_and_others_are_described(clip_request):
     deadly = clip_request[1]._replace(tags=(Deadly(),))
 
-    found = list(describe_files([clip_request[0], deadly, *clip_request[2:]], jobs=2))
+    found = list(
+        describe_files([clip_request[0], deadly, *clip_request[2:]], LocalWorkers(2, 1))
+    )
 
     assert [one.request.name for one in found] == [f"clip {number}" for number in range(4)]
     assert [one.clip is None for one in found] == [False, True, False, False]
     assert found[1].sentence.startswith(
         f"{clip_request[1].origin.path}: the process that read it crashed"
     )
+
+
+def test_file_that_another_machine_cannot_read_is_read_here(clip_request, monkeypatch):
+    read = describing.read_tracked
+
+    def fail_elsewhere(path, **body):
+        if current_thread() is not main_thread():
+            raise MemoryError
+        return read(path, **body)
+
+    class Elsewhere(LocalWorkers):
+        def open(self, n_tasks):
+            return ThreadPoolExecutor(1)
+
+    monkeypatch.setattr(describing, "read_tracked", fail_elsewhere)
+    for batch, is_described in (("", False), ("batch", True)):
+        (found,) = describe_files(clip_request[:1], Elsewhere(1, 1, batch))
+        assert (found.clip is not None) == is_described
 
 
 def test_error_is_one_sentence_with_the_file(clip_request, tmp_path, monkeypatch):
@@ -74,4 +97,4 @@ def test_cancellation_is_no_refusal(clip_request, monkeypatch):
 
     monkeypatch.setattr(describing, "read_tracked", cancel)
     with pytest.raises(SolveCancelled):
-        list(describe_files(clip_request, jobs=1))
+        list(describe_files(clip_request))

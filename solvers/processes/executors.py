@@ -1,4 +1,4 @@
-"""Define where the tasks of a batch run: in processes of this machine, or elsewhere."""
+"""Define where tasks run: in processes of this machine, or elsewhere."""
 
 from collections.abc import Iterator
 from concurrent.futures import Executor
@@ -6,7 +6,7 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from ...processes import worker_pool
+from .workers import worker_pool
 
 
 class Workers(Protocol):
@@ -19,6 +19,9 @@ class Workers(Protocol):
     """Number of crashes after which a task has failed; in its last attempt it runs alone."""
     advice: str
     """A sentence for the user whose task crashed."""
+
+    def n_processes(self) -> int:
+        """Return how many tasks they run at once now; workers may join and leave."""
 
     def open(self, n_tasks: int) -> AbstractContextManager[Executor]:
         """Yield an executor; its futures raise BrokenExecutor if the process crashed."""
@@ -37,6 +40,10 @@ class LocalWorkers:
     max_crashes: int = 3
     """A crash ends all tasks of the pool. Most of them finish in the second attempt."""
     advice: str = "Process a part of the take, or use fewer --jobs."
+
+    def n_processes(self) -> int:
+        """Return the number of jobs."""
+        return self.n_jobs
 
     @contextmanager
     def open(self, n_tasks: int) -> Iterator[Executor]:
