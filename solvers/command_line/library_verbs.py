@@ -1,6 +1,7 @@
 """`index` and `find`: build a clip library, and search it for similar motion."""
 
 import argparse
+from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,13 @@ from ..motion import JointRecording
 from ..processes import Workers, threads_from
 from ..progress import Progress, within
 from ..recordings import read_tracked
-from ..retrieval import ClipEntry, FindSettings, Match, find_similar, load_clip_library
+from ..retrieval import (
+    FindSettings,
+    FoundClip,
+    find_in_libraries,
+    libraries_in,
+    load_clip_library,
+)
 from ..workflows import IndexReport, index_files
 from .farm import cluster_workers
 from .files import add_body_option
@@ -33,6 +40,11 @@ def add_index_options(parser: argparse.ArgumentParser) -> None:
         "--remove-missing", action="store_true",
         help="Remove clips from the library whose files were in these folders and are gone",
     )  # fmt: skip
+    parser.add_argument(
+        "--vocabulary", type=Path, metavar="LIBRARY",
+        help="Describe clips by the vocabulary of LIBRARY and never learn another one, so that"
+        " find can search several libraries; LIBRARY may be the library itself",
+    )  # fmt: skip
     add_body_option(parser)
 
 
@@ -49,6 +61,7 @@ def perform_index(task: Task, prepared: None, progress: Progress) -> Outcome:
             jobs=arguments.jobs,
             n_threads=threads_from(arguments),
             workers=workers,
+            vocabulary_of=arguments.vocabulary,
             remove_missing=arguments.remove_missing,
             progress=progress,
         )
@@ -112,9 +125,8 @@ def add_find_options(parser: argparse.ArgumentParser) -> None:
 
 
 def perform_find(task: Task, prepared: None, progress: Progress) -> Outcome:
-    """Search a library with a recording."""
+    """Search one or more libraries with a recording."""
     arguments = task.arguments
-    library_file = task.sources[1]
     query = read_tracked(
         task.source,
         scale=arguments.scale,
@@ -132,27 +144,35 @@ def perform_find(task: Task, prepared: None, progress: Progress) -> Outcome:
         query = query.slice(first, last)
     if not hasattr(arguments, "n_matches"):
         arguments.n_matches = DEFAULT_N_MATCHES
-    with load_clip_library(library_file) as library:
-        entries = {entry.name: entry for entry in library.entries}
-        if not entries:
-            raise InvalidMotionError(
-                f"The library {library_file} has no clips; index some first."
-            )
-        matches = find_similar(
-            query,
-            library,
-            settings=settings_from_arguments(arguments, FindSettings),
-            ignore=arguments.ignore,
-            progress=within(progress, 0.5, 1.0),
-        )
-    figures = [_figures(match, entries[match.clip]) for match in matches]
-    return Outcome(_table(matches, entries), {"matches": figures})
+    libraries = libraries_in(task.sources[1:])
+    found = find_in_libraries(
+        query,
+        libraries,
+        settings=settings_from_arguments(arguments, FindSettings),
+        ignore=arguments.ignore,
+        progress=within(progress, 0.5, 1.0),
+    )
+    if not found:
+        _refuse_empty(libraries)
+    figures = [_figures(each) for each in found]
+    return Outcome(_table(found, len(libraries) > 1), {"matches": figures})
 
 
-def _figures(match: Match, entry: ClipEntry) -> dict[str, Any]:
-    origin = entry.origin
+def _refuse_empty(libraries: Sequence[Path]) -> None:
+    """Raise InvalidMotionError if no library has clips."""
+    for path in libraries:
+        with load_clip_library(path) as library:
+            if library.entries:
+                return
+    which = f"The library {libraries[0]} has" if len(libraries) == 1 else "The libraries have"
+    raise InvalidMotionError(f"{which} no clips; index some first.")
+
+
+def _figures(found: FoundClip) -> dict[str, Any]:
+    match, entry, origin = found.match, found.entry, found.entry.origin
     return {
         "clip": match.clip,
+        "library": str(found.library),
         "score": match.score,
         "first_frame": match.frames.start,
         "last_frame": match.frames.stop - 1,
@@ -163,17 +183,18 @@ def _figures(match: Match, entry: ClipEntry) -> dict[str, Any]:
     }
 
 
-def _table(matches: tuple[Match, ...], entries: dict[str, ClipEntry]) -> str:
-    if not matches:
+def _table(found: Sequence[FoundClip], names_library: bool) -> str:
+    if not found:
         return "No similar clip was found."
-    rows = [("clip", "score", "frames", "seconds", "tags")]
-    for match in matches:
-        entry = entries[match.clip]
+    head = ("clip", *(["library"] * names_library), "score", "frames", "seconds", "tags")
+    rows = [head]
+    for each in found:
+        match, entry = each.match, each.entry
         first, last = match.frames.start, match.frames.stop - 1
         begin, end = (frame / entry.frame_rate for frame in (first, last))
         rows.append((
-            match.clip, f"{match.score:.2f}", f"{first}-{last}", f"{begin:.1f}-{end:.1f}",
-            ", ".join(entry.tags),
+            match.clip, *([escaped(each.library.name)] * names_library), f"{match.score:.2f}",
+            f"{first}-{last}", f"{begin:.1f}-{end:.1f}", ", ".join(entry.tags),
         ))  # fmt: skip
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return "\n".join(

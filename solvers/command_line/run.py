@@ -40,7 +40,8 @@ FILES = {
     OutputKind.MANY_FILES: "Recordings to read, or folders of them",
     OutputKind.REPORT: "Output folders of batches",
     OutputKind.LIBRARY: "The library, and then recordings to add, or folders of them",
-    OutputKind.MATCHES: "The recording to search with, and then the library",
+    OutputKind.MATCHES: "The recording to search with, and then libraries with one vocabulary,"
+    " or folders of them",
 }
 FAILED = 2
 INTERRUPTED = 130

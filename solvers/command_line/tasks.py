@@ -79,9 +79,9 @@ def _task_with_library(
                 " of them."
             )
         return Task(tuple(files[1:]), files[0], arguments)
-    if len(files) != 2:
+    if len(files) < 2:
         raise InvalidSettingError(
-            f"Name the recording and then the library; the names are {len(files)}."
+            f"Only {files[0]} is named: name the recording and then one or more libraries."
         )
     return Task(tuple(files), None, arguments)
 

@@ -66,7 +66,7 @@ class OutputKind(Enum):
     ONE_FILE = "one file of all files"
     REPORT = "a report on folders"
     LIBRARY = "a library, which is named first, of all other files"
-    MATCHES = "matches of a file in a library, which is named last"
+    MATCHES = "matches of a file in libraries, which are named last"
     MANY_FILES = "a folder of files of all files"
 
 

@@ -8,9 +8,16 @@
 'slow'
 """
 
+from .find_in_libraries import FoundClip, find_in_libraries
 from .find_similar import find_similar
 from .index import Clip, ClipEntry, DescribedClip, Match, Origin, describe_clip
-from .library import ClipLibrary, build_clip_library, load_clip_library, open_clip_library
+from .library import (
+    ClipLibrary,
+    build_clip_library,
+    libraries_in,
+    load_clip_library,
+    open_clip_library,
+)
 from .search import FindMethod, FindSettings
 
 __all__ = [
@@ -20,11 +27,14 @@ __all__ = [
     "DescribedClip",
     "FindMethod",
     "FindSettings",
+    "FoundClip",
     "Match",
     "Origin",
     "build_clip_library",
     "describe_clip",
+    "find_in_libraries",
     "find_similar",
+    "libraries_in",
     "load_clip_library",
     "open_clip_library",
 ]

@@ -83,9 +83,7 @@ def find_similar(
     vocabulary, entries = library.vocabulary, library.numbered()
     if vocabulary is None or not entries:
         return ()
-    tracks = query.tracks if isinstance(query, JointRecording) else query
-    if tracks is not query or (isinstance(tracks, Tracks) and tracks.confidence is not None):
-        settings = settings.for_sensor()
+    settings = settings_for(query, settings)
     described = describe_query(postures, vocabulary, settings)
     ignored = library.numbers_of(ignore)
     if settings.method is FindMethod.PUBLISHED:
@@ -94,21 +92,33 @@ def find_similar(
         ranking = rank_clips(
             described.segments, described.weights, library.search_index, settings, ignored
         )
-    n_matches = settings.n_matches or len(ranking.clips)
-    matches = _build_matches(ranking, n_matches, entries)
-    alignment = _ClipAligner(described, vocabulary, tracks.n_frames, tracks.frame_rate)
+    matches = build_matches(ranking, entries, settings)
+    aligner = ClipAligner(query, described, vocabulary)
     aligning = within(progress, 0.3, 1.0)
     for rank in range(min(settings.n_aligned, len(matches))):
         aligning(rank / settings.n_aligned, "Aligning")
-        matches[rank] = alignment.match(ranking, rank, matches[rank], library)
+        number = int(ranking.clips[rank])
+        postures = library.postures(number, int(ranking.frames[rank, 1]))
+        matches[rank] = aligner.match(
+            matches[rank], entries[number], postures, ranking.frames[rank]
+        )
     progress(1.0)
     return tuple(matches)
 
 
-def _build_matches(
-    ranking: Ranking, max_matches: int, entries: Mapping[int, ClipEntry]
+def settings_for(query: Recording, settings: FindSettings) -> FindSettings:
+    """Return the settings for a query, which may be of a sensor."""
+    is_sensor = isinstance(query, JointRecording) or (
+        isinstance(query, Tracks) and query.confidence is not None
+    )
+    return settings.for_sensor() if is_sensor else settings
+
+
+def build_matches(
+    ranking: Ranking, entries: Mapping[int, ClipEntry], settings: FindSettings
 ) -> list[Match]:
-    """Build matches with the frames of the segments."""
+    """Build the requested matches, with the frames of the segments."""
+    max_matches = settings.n_matches or len(ranking.clips)
     clips = [entries[number] for number in ranking.clips[:max_matches].tolist()]
     lengths = np.array([clip.n_frames for clip in clips], dtype=np.intp)
     rates = np.array([clip.frame_rate for clip in clips])
@@ -135,27 +145,28 @@ def _clip_frames(
     return np.where(frames >= last, n_frames - 1, np.minimum(recording_frames, n_frames - 1))
 
 
-class _ClipAligner:
+class ClipAligner:
     """Align a query with clips."""
 
     def __init__(
-        self,
-        described: DescribedQuery,
-        vocabulary: Vocabulary,
-        n_frames: int,
-        frame_rate: float,
+        self, query: Recording, described: DescribedQuery, vocabulary: Vocabulary
     ) -> None:
         self._weights = np.sqrt(described.weights)[:, None]
         features = described.features * self._weights
         self._features = features.reshape(len(features), -1)
         self._vocabulary = vocabulary
-        self._n_frames, self._frame_rate = n_frames, frame_rate
+        frames = query.tracks if isinstance(query, JointRecording) else query
+        self._n_frames, self._frame_rate = frames.n_frames, frames.frame_rate
 
-    def match(self, ranking: Ranking, rank: int, match: Match, library: ClipLibrary) -> Match:
-        """Return a match with the frames that the query is aligned with."""
-        number = int(ranking.clips[rank])
-        start, stop = ranking.frames[rank].tolist()
-        clip, entry = library.postures(number, stop), library.numbered()[number]
+    def match(
+        self,
+        match: Match,
+        entry: ClipEntry,
+        clip: ClipPostures,
+        segment: NDArray[np.int32],
+    ) -> Match:
+        """Return a match with the frames that the query is aligned with, near a segment."""
+        start, stop = segment.tolist()
         margin = round(MARGIN_FRACTION * (stop - start))
         first = max(start - margin, 0)
         window = slice(first, stop + margin)

@@ -81,9 +81,7 @@ def _describe(request: ClipRequest) -> DescribedClip:
     return describe_clip(Clip(request.name, recording, request.tags, request.origin))
 
 
-def _until_crash(
-    waiting: "deque[ClipRequest]", workers: Workers
-) -> Iterator[FileDescription]:
+def _until_crash(waiting: "deque[ClipRequest]", workers: Workers) -> Iterator[FileDescription]:
     """Describe files and remove them from the queue until it is empty or a process crashes.
 
     After a crash the first file of the queue is read alone, which shows whether this file is

@@ -7,9 +7,16 @@ from pathlib import Path
 from ..errors import InvalidMotionError
 from ..files import is_missing, real_path, reason_of
 from ..processes import LocalWorkers, Workers
-from ..progress import Progress, unwatched
-from ..retrieval import ClipEntry, ClipLibrary, DescribedClip, Origin, open_clip_library
-from ..retrieval.index import find_tags_fault
+from ..progress import Progress, unwatched, within
+from ..retrieval import (
+    ClipEntry,
+    ClipLibrary,
+    DescribedClip,
+    Origin,
+    load_clip_library,
+    open_clip_library,
+)
+from ..retrieval.index import Vocabulary, find_tags_fault
 from ..version import version
 from .clip_sources import ClipSource, clip_sources, is_action
 from .describe_files import ClipRequest, FileDescription, describe_files
@@ -54,6 +61,7 @@ def index_files(
     jobs: int = 1,
     n_threads: int = 1,
     workers: Workers | None = None,
+    vocabulary_of: Path | str | None = None,
     remove_missing: bool = False,
     progress: Progress = unwatched,
 ) -> IndexReport:
@@ -82,6 +90,9 @@ def index_files(
     workers : Workers, optional
         Processes that read the files instead, such as those of a cluster. The library is the
         same, byte for byte: this process alone writes it, in the order of the files.
+    vocabulary_of : Path or str, optional
+        A library whose vocabulary this library has from now on, so that they can be searched
+        together. Clips that it has are indexed again with it.
     remove_missing : bool
         Whether to remove clips whose files were in the folders and are gone.
     progress : Progress
@@ -93,14 +104,17 @@ def index_files(
         There is no such file or folder. The library is not a library, is damaged, comes from a
         newer version, cannot be written or created, or stays locked by another program.
     InvalidMotionError
-        A tag has control characters or is not valid UTF-8.
+        A tag has control characters or is not valid UTF-8. The other library has no clips.
     SolveCancelled
         Raised by `progress`.
     """
     sources = clip_sources(files_or_folders, body)
     if fault := find_tags_fault(tuple(tags)):
         raise InvalidMotionError(fault)
+    vocabulary = None if vocabulary_of is None else _vocabulary(vocabulary_of)
     with open_clip_library(library_path) as library:
+        if vocabulary is not None:
+            library.freeze_vocabulary(vocabulary, progress=within(progress, 0.0, 0.0))
         indexing = _Indexing(library, tuple(dict.fromkeys(tags)))
         files = indexing.to_read(sources)
         if workers is None and min(jobs, len(files)) > 1:
@@ -113,6 +127,16 @@ def index_files(
             indexing.remove_missing([real_path(each) for each in files_or_folders])
         progress(1.0)
         return indexing.report()
+
+
+def _vocabulary(library_path: Path | str) -> Vocabulary:
+    with load_clip_library(library_path) as library:
+        if library.vocabulary is None:
+            raise InvalidMotionError(
+                f"The library {library_path} has no clips, and so no vocabulary. Index clips of"
+                " many kinds of motion into it first."
+            )
+        return library.vocabulary
 
 
 Key = tuple[str, str]

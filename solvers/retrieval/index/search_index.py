@@ -20,6 +20,11 @@ class SearchIndex:
         self._alive = [alive for _, alive in blocks]
         self._starts = np.cumsum([0, *(block.n_segments for block in self._blocks)])
 
+    @property
+    def n_segments(self) -> int:
+        """Number of segments, also those of removed clips."""
+        return int(self._starts[-1])
+
     @cached_property
     def clips(self) -> Integers:
         """Clip number of each segment."""
@@ -80,11 +85,21 @@ class SearchIndex:
 
         Return None for a library that is too large to cache all distances.
         """
-        if len(self.clips) ** 2 > MAX_BLOCK_VALUES:
+        if not may_cache_distances(self.n_segments):
             return None
         return np.asarray(self._all_distances[np.ix_(segments, segments)])
 
     @cached_property
     def _all_distances(self) -> Single:
-        steps = weight_mean_posture(self.steps(np.arange(len(self.clips))), MEAN_POSTURE_WEIGHT)
-        return pairwise_warping_costs(steps.reshape(*steps.shape[:2], -1))
+        return default_distances(self.steps(np.arange(len(self.clips))))
+
+
+def may_cache_distances(n_segments: int) -> bool:
+    """Whether so many segments are few enough to keep the distances between all of them."""
+    return n_segments**2 <= MAX_BLOCK_VALUES
+
+
+def default_distances(steps: Single) -> Single:
+    """Return the distances between segments with equal part weights, from their summaries."""
+    weighted = weight_mean_posture(steps, MEAN_POSTURE_WEIGHT)
+    return pairwise_warping_costs(weighted.reshape(*weighted.shape[:2], -1))

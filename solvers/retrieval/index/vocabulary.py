@@ -60,6 +60,8 @@ SHAPES = {
 }
 LEARNED = {"centre": "center", "axes": "axes", "words": "words", "spread": "spread"}
 """Stored names of the learned arrays, and their attributes."""
+FROZEN = "frozen"
+"""Name of a stored 1; missing where the vocabulary may be learned again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +79,8 @@ class Vocabulary:
         Prior for joints that are not tracked.
     n_frames : int
         Number of frames in the training clips.
+    is_frozen : bool
+        Whether libraries share it: then it is never learned again.
     """
 
     center: Array
@@ -85,10 +89,17 @@ class Vocabulary:
     spread: Array
     posture_distribution: PostureDistribution
     n_frames: int
+    is_frozen: bool = False
 
     def is_outgrown(self, n_frames: float) -> bool:
         """Whether a library of so many frames at 20 Hz needs a new vocabulary."""
-        return self.n_frames < SUFFICIENT_FRAMES and n_frames > RELEARNING_RATIO * self.n_frames
+        is_kept = self.is_frozen or self.n_frames >= SUFFICIENT_FRAMES
+        return not is_kept and n_frames > RELEARNING_RATIO * self.n_frames
+
+    def describes_like(self, other: "Vocabulary") -> bool:
+        """Whether both describe any clip by the same numbers, so that searches may merge."""
+        one, two = vocabulary_arrays(self), vocabulary_arrays(other)
+        return all(one[name] == two[name] for name in (*LEARNED, "mean", "covariance"))
 
     def features(self, postures: ClipPostures) -> Array:
         """Return the features of each part, shape (n_frames, 5, 8), meters."""
@@ -169,6 +180,8 @@ def vocabulary_arrays(vocabulary: Vocabulary) -> dict[str, bytes]:
         "covariance": vocabulary.posture_distribution.covariance,
         "n_frames": np.array(vocabulary.n_frames),
     } | {name: getattr(vocabulary, attribute) for name, attribute in LEARNED.items()}
+    if vocabulary.is_frozen:
+        numbers[FROZEN] = np.array(1)
     return {name: values.astype("<f8").tobytes() for name, values in numbers.items()}
 
 
@@ -190,6 +203,7 @@ def vocabulary_from_arrays(stored: dict[str, bytes]) -> Vocabulary:
         **{attribute: read[name] for name, attribute in LEARNED.items()},
         posture_distribution=PostureDistribution(read["mean"], read["covariance"]),
         n_frames=int(read["n_frames"]),
+        is_frozen=FROZEN in stored,
     )
 
 

@@ -3,6 +3,7 @@
 import sqlite3
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -26,18 +27,13 @@ from ..index import (
     build_block,
     describe_all_segments,
     describe_clip,
-    learn_vocabulary,
-    merge_blocks,
 )
 from ..postures import ClipPostures
 from . import clip_rows as rows
 from . import library_file as files
 from .database_errors import readable_errors
+from .index_clips import index_all, index_more, learn_from_all
 from .refused_files import read_refused, write_refused
-
-MAX_BLOCK_SEGMENTS = 50_000
-"""Segments of a merged block at most: SQLite stores about four times as many in one row, and a
-larger merge needs much memory."""
 
 
 class ClipLibrary:
@@ -159,16 +155,38 @@ class ClipLibrary:
             raise InvalidMotionError(f"Two clips have the name {min(duplicates)}.")
         if not clips:
             return ()
-        postures = [clip.postures for clip in clips]
+        postures = [rows.stored_postures(clip.postures) for clip in clips]
         with readable_errors(self._path), files.transaction(self._database):
             self._refresh()
             written = rows.write_clips(self._database, clips, free_name)
             if self._needs_new_vocabulary(sum(clip.n_frames for clip in postures)):
-                self._index_all(progress)
+                index_all(self._database, learn_from_all(self._database), progress)
             else:
-                self._index(list(written), postures, progress)
+                assert self._vocabulary is not None
+                described = describe_all_segments(postures, self._vocabulary, progress)
+                index_more(self._database, self._blocks, build_block([*written], described))
             progress(1.0)
         return tuple(written.values())
+
+    def freeze_vocabulary(
+        self, vocabulary: Vocabulary, *, progress: Progress = unwatched
+    ) -> None:
+        """Use a vocabulary, such as that of another library, and never learn one again.
+
+        If the library had another one, its clips are indexed again.
+
+        Raises
+        ------
+        SolveCancelled
+            Raised by `progress`; the library is unchanged.
+        """
+        with readable_errors(self._path), files.transaction(self._database):
+            self._refresh()
+            former, frozen = self._vocabulary, replace(vocabulary, is_frozen=True)
+            if former is None or not former.describes_like(frozen):
+                index_all(self._database, frozen, progress)
+            elif not former.is_frozen:
+                files.write_vocabulary(self._database, frozen)
 
     def remove(self, names: Sequence[str]) -> None:
         """Remove clips by name.
@@ -262,39 +280,3 @@ class ClipLibrary:
         """Whether a library of this size needs a new vocabulary."""
         stored = sum(entry.seconds for entry in self._entries.values()) * CLIP_RATE_HZ
         return self._vocabulary is None or self._vocabulary.is_outgrown(stored + n_frames)
-
-    def _index_all(self, progress: Progress) -> None:
-        """Learn a new vocabulary and index all clips with it."""
-        numbers = rows.clip_numbers(self._database)
-        postures = [rows.read_postures(self._database, number) for number in numbers]
-        vocabulary = learn_vocabulary(postures)
-        files.write_vocabulary(self._database, vocabulary)
-        self._database.execute("DELETE FROM blocks")
-        described = describe_all_segments(postures, vocabulary, progress)
-        ends = np.cumsum([len(segments.frames) for segments in described]) // MAX_BLOCK_SEGMENTS
-        for one in np.unique(ends):
-            first, last = np.searchsorted(ends, one), np.searchsorted(ends, one, side="right")
-            block = build_block(numbers[first:last], described[first:last])
-            files.write_block(self._database, block)
-
-    def _index(
-        self, numbers: list[int], postures: list[ClipPostures], progress: Progress
-    ) -> None:
-        """Index clips in a new block, merged with smaller previous blocks."""
-        assert self._vocabulary is not None
-        block = build_block(
-            numbers, describe_all_segments(postures, self._vocabulary, progress)
-        )
-        group = [block]
-        for number, before in sorted(self._blocks.items(), reverse=True):
-            n_segments = sum(one.n_segments for one in group)
-            if (
-                before.n_segments > 2 * n_segments
-                or before.n_segments + n_segments > MAX_BLOCK_SEGMENTS
-            ):
-                break
-            group.insert(0, before)
-            self._database.execute("DELETE FROM blocks WHERE number = ?", (number,))
-        if len(group) > 1:
-            block = merge_blocks(group, np.array(rows.clip_numbers(self._database)))
-        files.write_block(self._database, block)

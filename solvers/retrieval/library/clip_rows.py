@@ -92,6 +92,15 @@ def _write_clip(database: sqlite3.Connection, entry: ClipEntry, postures: ClipPo
     return int(done.lastrowid or 0)
 
 
+def stored_postures(postures: ClipPostures) -> ClipPostures:
+    """Return postures as they are read again, so that each index of a clip is the same."""
+    return ClipPostures(
+        half_precision(postures.positions).astype(np.float64),
+        half_precision(postures.root_velocity).astype(np.float64),
+        CLIP_RATE_HZ,
+    )
+
+
 def clip_numbers(database: sqlite3.Connection) -> list[int]:
     """Return the numbers of all clips, oldest first."""
     with report_damage():

@@ -1,8 +1,10 @@
 """Create a library of clips, or open one from a file."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from ...errors import InvalidFileError
+from ...files import real_path
 from ...progress import Progress, unwatched
 from ..index import Clip
 from . import library_file as files
@@ -37,6 +39,27 @@ def load_clip_library(path: Path | str) -> ClipLibrary:
     """
     path = Path(path)
     return ClipLibrary(files.open_database(path), path)
+
+
+def libraries_in(files_or_folders: Sequence[Path]) -> list[Path]:
+    """Return the named libraries, and those in each named folder by name, each once.
+
+    Raises
+    ------
+    InvalidFileError
+        A folder has no library.
+    """
+    found = dict[Path, Path]()
+    for named in files_or_folders:
+        inside = [named]
+        if named.is_dir():
+            listed = sorted(named.iterdir())
+            inside = [path for path in listed if path.suffix.lower() in files.SUFFIXES]
+        if not inside:
+            raise InvalidFileError(f"There is no clip library in the folder {named}.")
+        for path in inside:
+            found.setdefault(real_path(path), path)
+    return [*found.values()]
 
 
 def open_clip_library(path: Path | str) -> ClipLibrary:

@@ -86,19 +86,57 @@ def test_find_searches_with_frames_and_parts_of_the_body(call, walks, library):
     assert len(ignored["matches"]) == 1
 
 
+def test_libraries_of_one_vocabulary_are_searched_together(call, walks, library, tmp_path):
+    shards, query = tmp_path / "shards", walks / "walk_140.bvh"
+    shards.mkdir()
+    for name in ("walk_100", "walk_120", "walk_140"):
+        words = (shards / f"{name}.clips", walks / f"{name}.bvh", "--vocabulary", library)
+        assert call("index", *words)[0] == 0
+    words = (shards / "walk_100.clips", walks / "walk_100.bvh")
+    assert "1 unchanged" in call("index", *words, "--vocabulary", words[0])[1]
+
+    together = json.loads(call("find", query, shards, "--json")[1])["matches"]
+    one = json.loads(call("find", query, library, "--json")[1])["matches"]
+    for each in together:
+        assert each.pop("library") == str(shards / f"{each['clip']}.clips")
+        assert not each.pop("tags")
+    assert [each["clip"] for each in together] == [each["clip"] for each in one]
+    for each, other in zip(together, one, strict=True):
+        assert (other.pop("library"), other.pop("tags")) == (str(library), ["walk"])
+        assert each.pop("score") == pytest.approx(other.pop("score"), abs=1e-5)
+        assert each == other
+
+    status, printed, _ = call("find", query, shards, library)
+    assert status == 0
+    assert printed.splitlines()[0].split()[:3] == ["clip", "library", "score"]
+    assert len(printed.splitlines()) == 1 + 3 + 3
+
+    call("index", tmp_path / "other.clips", query)
+    status, _, failed = call("find", query, library, tmp_path / "other.clips")
+    assert (status, failed.count("\n")) == (2, 1)
+    assert "have different vocabularies, so their clips cannot be ranked" in failed
+
+
 def test_wrong_library_arguments_are_reported_in_one_sentence(call, walks, library, tmp_path):
     query, none = walks / "walk_100.bvh", tmp_path / "none"
     (tmp_path / "empty").touch()
+    new = tmp_path / "new" / "new.clips"
+    new.parent.mkdir()
+    open_clip_library(new).close()
+    open_clip_library(new.with_name("too.clips")).close()
     limbs = ("left-arm", "right-arm", "left-leg", "right-leg")
     parts = [f"--no-{part}" for part in ("trunk", *limbs)]
     for words, sentence in (
-        (("find", query), "Name the recording and then the library; the names are 1."),
+        (("find", query), "walk_100.bvh is named: name the recording and then one or more lib"),
         (("find", query, none), "There is no clip library"),
         (("find", query, query), "is not a clip library"),
         (("find", query, tmp_path / "empty"), "is not a clip library"),
         (("find", none, library), "There is no file"),
         (("find", query, library, "--frames", "90:"), "90 frames; the range from 90 is empty"),
         (("find", query, library, *parts), "No part of the body is chosen"),
+        (("index", library, walks, "--vocabulary", none), "There is no clip library"),
+        (("index", none, walks, "--vocabulary", new), "has no clips, and so no vocabulary."),
+        (("find", query, new, new.parent), "The libraries have no clips; index some first."),
         (("index", library), "name the library and then recordings"),
         (("index", library, none), "There is no file or folder"),
         (("index", none / "a.clips", walks), "cannot be used"),

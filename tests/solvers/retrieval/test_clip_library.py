@@ -20,7 +20,7 @@ from solvers.retrieval import (
     load_clip_library,
     open_clip_library,
 )
-from solvers.retrieval.library import clip_library
+from solvers.retrieval.library import index_clips
 
 SPEEDS = (1.6, 2.0, 2.4, 2.8)
 
@@ -104,7 +104,7 @@ def test_clip_with_the_same_name_replaces_the_previous_one():
 def test_small_blocks_rank_like_a_single_one(monkeypatch):
     one = build_clip_library(clips(speeds=(2.0,)))
     one.add(clips())
-    monkeypatch.setattr(clip_library, "MAX_BLOCK_SEGMENTS", 3)
+    monkeypatch.setattr(index_clips, "MAX_BLOCK_SEGMENTS", 3)
     many = build_clip_library(clips(speeds=(2.0,)))
     many.add(clips())
 

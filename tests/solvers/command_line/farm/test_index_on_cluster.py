@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 from importlib.util import find_spec
 
 import pytest
@@ -44,7 +45,7 @@ def test_killed_worker_changes_no_byte_and_a_run_that_lost_its_scheduler_continu
     call, takes, tmp_path, monkeypatch
 ):
     expected, again = tmp_path / "expected.clips", tmp_path / "again.clips"
-    monkeypatch.setattr("solvers.workflows.index_files.MAX_BATCH_CLIPS", 4)
+    monkeypatch.setattr(sys.modules["solvers.workflows.index_files"], "MAX_BATCH_CLIPS", 4)
     refused = index_files(expected, [takes]).refused
 
     with local_cluster(2) as address:
