@@ -41,9 +41,10 @@ class WorkerCluster:
     def n_processes(self) -> int:
         """Return the number of tasks that the workers run at once now; one if all have died."""
         try:
-            return max(sum(self._client.nthreads().values()), 1)
+            n_threads: int = sum(self._client.nthreads().values())
         except _scheduler_errors():
             raise MocapAssistError(_is_gone(self._address)) from None
+        return max(n_threads, 1)
 
     @contextmanager
     def open(self, n_tasks: int) -> Iterator[Executor]:

@@ -1,10 +1,10 @@
-"""A batch on a Dask cluster: takes per minute, overhead, and what a killed worker costs.
+"""Batches and indexes on a Dask cluster: speed, overhead, and what a killed worker costs.
 
     make bench-farm
     make bench-farm ARGUMENTS=--docs    # into docs/benchmarks/farm.md
 
 All runs clean the same made-up walks with the command line, which starts anew each time. The
-workers of the cluster have cleaned a take before.
+workers of the cluster have done the same work before.
 """
 
 import argparse
@@ -26,6 +26,7 @@ from solvers.samples import GaitSettings, walking_gait
 
 from ..shared.report import DOCS, Report
 from ..shared.tables import table
+from .part_index import measure_index
 
 NOTING = "import sys; open(sys.argv[1], 'a').write(sys.argv[2] + chr(10))"
 POLL_INTERVAL_S = 0.02
@@ -35,13 +36,16 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks/farm.md")
-    parser.add_argument("--takes", type=int, default=24, help="number of takes [default 24]")
+    parser.add_argument("--takes", type=int, default=8, help="number of takes [default 8]")
     chosen = parser.parse_args()
     started = perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         texts = [_speeds(Path(folder), chosen.takes), _kill(Path(folder), chosen.takes)]
+        indexing = perf_counter()
+        index_texts = measure_index(Path(folder))
     report = Report(chosen.docs, DOCS / "benchmarks" / "farm.md")
-    report.part("farm", texts, perf_counter() - started)
+    report.part("farm", texts, indexing - started)
+    report.part("index", index_texts, perf_counter() - indexing)
 
 
 def _speeds(folder: Path, n_takes: int) -> str:

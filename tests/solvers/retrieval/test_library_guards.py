@@ -18,7 +18,7 @@ from solvers.retrieval import (
     load_clip_library,
     open_clip_library,
 )
-from solvers.retrieval.library import clip_library, library_file
+from solvers.retrieval.library import index_clips, library_file
 
 ODD = {
     "a\r\nb": r"'a\r\nb' has control characters",
@@ -160,7 +160,7 @@ def test_solver_error_is_not_reported_as_damage(tmp_path, monkeypatch):
     def fail(*_):
         raise ValueError("a mistake of ours")
 
-    monkeypatch.setattr(clip_library, "learn_vocabulary", fail)
+    monkeypatch.setattr(index_clips, "learn_vocabulary", fail)
     with open_clip_library(tmp_path / "a.clips") as library:
         with pytest.raises(ValueError, match="a mistake of ours") as caught:
             library.add([clip("walk", "wave", "/a/walk.bvh")])
