@@ -89,10 +89,10 @@ def find_in_libraries(
     InvalidSettingError
         Two libraries have different vocabularies, or the method searches only one library.
     """
-    if len(libraries) == 1:
-        return _find_in_one(query, libraries[0], settings, ignore, progress)
     if settings.method is FindMethod.PUBLISHED:
-        raise InvalidSettingError("The published method searches one library. Name only one.")
+        if len(libraries) > 1:
+            raise InvalidSettingError("The published method searches only one library.")
+        return _find_as_published(query, libraries[0], settings, ignore, progress)
     settings = settings_for(query, settings)
     postures = clip_postures(query, CLIP_RATE_HZ)
     shards = list[_Shard]()
@@ -103,7 +103,7 @@ def find_in_libraries(
     return _merge(query, shards, settings, within(progress, 0.9, 1.0)) if shards else ()
 
 
-def _find_in_one(
+def _find_as_published(
     query: Recording,
     path: Path,
     settings: FindSettings,

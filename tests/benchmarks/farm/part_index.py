@@ -121,7 +121,8 @@ def _shards(folder: Path) -> str:
         f"{N_SHARDS} libraries": list(pairwise(bounds)),
     }
     rows, expected = {}, list[list[FoundClip]]()
-    queries = [clip.recording for clip in excerpts[:: len(excerpts) // N_QUERIES]]
+    chosen = np.linspace(0, len(excerpts) - 1, N_QUERIES).astype(int)
+    queries = [excerpts[number].recording for number in chosen]
     for name, ranges in layouts.items():
         paths = [folder / f"{name} {number}.clips" for number in range(len(ranges))]
         for path, (start, stop) in zip(paths, ranges, strict=True):

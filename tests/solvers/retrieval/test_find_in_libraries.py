@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from acted_clips import ACTS, act
 
-from solvers.errors import InvalidFileError, InvalidSettingError
+from solvers.errors import InvalidFileError, InvalidMotionError, InvalidSettingError
 from solvers.recordings import read_tracked
 from solvers.retrieval import (
     Clip,
@@ -78,8 +78,10 @@ def test_shards_rank_real_clips_as_one_library_does(real_clips, real_libraries, 
 
         with load_clip_library(whole) as library:
             expected = find_similar(query.recording, library, settings=settings, ignore=ignored)
+        one = find_in_libraries(query.recording, [whole], settings=settings, ignore=ignored)
         found = find_in_libraries(query.recording, shards, settings=settings, ignore=ignored)
 
+        assert [each.match.clip for each in one] == [each.clip for each in expected]
         assert len(found) == (settings.n_matches or len(real_clips) - 1)
         for each, other in zip(found, expected, strict=True):
             assert each.match.clip == each.entry.name == other.clip
@@ -148,9 +150,11 @@ def test_libraries_with_different_vocabularies_are_refused(acted, tmp_path):
 
 
 def test_published_method_searches_one_library(acted):
-    settings = FindSettings(method=FindMethod.PUBLISHED)
-    with pytest.raises(InvalidSettingError, match="searches one library"):
-        find_in_libraries(act("kick"), libraries_in([acted]), settings=settings)
+    settings, one = FindSettings(method=FindMethod.PUBLISHED), acted / "bow.clips"
+    with pytest.raises(InvalidMotionError, match="atoms"):
+        find_in_libraries(act("kick"), [one], settings=settings)
+    with pytest.raises(InvalidSettingError, match="searches only one library"):
+        find_in_libraries(act("kick"), [one, acted / "kick.clips"], settings=settings)
 
 
 def test_frozen_vocabulary_is_never_learned_again(tmp_path, monkeypatch):
