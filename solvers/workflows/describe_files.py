@@ -1,9 +1,10 @@
 """Read files and describe them for a library, here or on workers."""
 
 from collections import deque
-from collections.abc import Iterable, Iterator
-from concurrent.futures import BrokenExecutor, Future
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,8 +14,11 @@ from ..recordings import read_tracked
 from ..retrieval import Clip, DescribedClip, Origin, describe_clip
 
 QUEUED_PER_PROCESS = 2
-"""Number of files submitted to each process before their results are fetched. It bounds the
+"""Number of tasks submitted to each process before their results are fetched. It bounds the
 memory; with one, a process would wait for the next file."""
+FILES_PER_REMOTE_TASK = 8
+"""Files of one task for workers of a cluster. It bounds the time that the writer spends on
+sending and receiving; a crash costs the other files of its task a second reading."""
 
 
 class ClipRequest(NamedTuple):
@@ -84,27 +88,47 @@ def _describe(request: ClipRequest) -> DescribedClip:
 def _until_crash(waiting: "deque[ClipRequest]", workers: Workers) -> Iterator[FileDescription]:
     """Describe files and remove them from the queue until it is empty or a process crashes.
 
-    After a crash the first file of the queue is read alone, which shows whether this file is
-    the cause.
+    After a crash the files of the first task are read alone, which shows whether one of them
+    is the cause.
     """
-    running: deque[Future[FileDescription]] = deque()
+    running: deque[tuple[int, Future[list[FileDescription]]]] = deque()
     with workers.open(len(waiting)) as executor:
         try:
             with suppress(BrokenExecutor):
                 while waiting:
-                    n_queued = QUEUED_PER_PROCESS * workers.n_processes()
-                    for _ in range(min(n_queued, len(waiting))):
-                        while len(running) < min(n_queued, len(waiting)):
-                            request = waiting[len(running)]
-                            running.append(executor.submit(describe_file, request))
-                        done = running[0].result()
-                        running.popleft()
+                    _submit(running, waiting, executor, workers)
+                    described = running[0][1].result()
+                    running.popleft()
+                    for each in described:
                         waiting.popleft()
-                        yield done
+                        yield each
                 return
         finally:
             executor.shutdown(cancel_futures=True)
-    yield _describe_alone(waiting.popleft(), workers)
+    for _ in range(running[0][0] if running else 1):
+        yield _describe_alone(waiting.popleft(), workers)
+
+
+def _submit(
+    running: "deque[tuple[int, Future[list[FileDescription]]]]",
+    waiting: "deque[ClipRequest]",
+    executor: Executor,
+    workers: Workers,
+) -> None:
+    """Submit tasks until there are enough for all processes; each with its number of files."""
+    n_tasks = QUEUED_PER_PROCESS * workers.n_processes()
+    n_files = (
+        min(max(len(waiting) // n_tasks, 1), FILES_PER_REMOTE_TASK) if workers.batch else 1
+    )
+    n_submitted = sum(n for n, _ in running)
+    while len(running) < n_tasks and n_submitted < len(waiting):
+        task = [*islice(waiting, n_submitted, n_submitted + n_files)]
+        running.append((len(task), executor.submit(_describe_several, task)))
+        n_submitted += len(task)
+
+
+def _describe_several(requests: Sequence[ClipRequest]) -> list[FileDescription]:
+    return [describe_file(request) for request in requests]
 
 
 def _describe_alone(request: ClipRequest, workers: Workers) -> FileDescription:
