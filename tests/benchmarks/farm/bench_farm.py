@@ -4,7 +4,7 @@
     make bench-farm ARGUMENTS=--docs    # into docs/benchmarks/farm.md
 
 All runs clean the same made-up walks with the command line, which starts anew each time. The
-workers of the cluster have done the same work before.
+workers of the cluster have worked before.
 """
 
 import argparse

@@ -35,6 +35,8 @@ N_DIFFERENT = 100
 CLIP_S = 2.0
 N_TIMED = 400
 """Clips that are indexed with each number of workers."""
+N_BEFORE = 40
+"""Clips that the workers of a cluster read before, so that they have imported all modules."""
 SIZES = (500, 1_000, 2_000, 4_000)
 N_SHARDS = 4
 FILES_STEP = 6
@@ -53,13 +55,13 @@ def measure_index(folder: Path) -> list[str]:
 
 def _throughput(folder: Path, walks: Sequence[Path]) -> str:
     """Return the table of clips per minute, with what a library differs in."""
-    takes = _listed(folder / "timed", walks)
+    takes, few = _listed(folder / "timed", walks), _listed(folder / "few", walks[:N_BEFORE])
     first, rows = b"", {}
     for n_workers in (1, 2):
         local, cluster = folder / f"local{n_workers}.clips", folder / f"{n_workers}.clips"
         seconds = _index(local, takes, "--jobs", str(n_workers))[0]
         with local_cluster(n_workers) as address:
-            _index(folder / f"warm{n_workers}.clips", takes, "--cluster", address)
+            _index(folder / f"before{n_workers}.clips", few, "--cluster", address)
             on_cluster = _index(cluster, takes, "--cluster", address)[0]
         first = first or local.read_bytes()
         same = [path.read_bytes() == first for path in (local, cluster)]
