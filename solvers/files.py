@@ -57,6 +57,16 @@ def is_missing(path: Path | str) -> bool:
     return False
 
 
+def make_folder(path: Path, below: Path) -> None:
+    """Create a folder and those that lead to it below another one.
+
+    `below` must exist. If it has vanished, such as with its share, it is not made again.
+    """
+    inner = path.relative_to(below)
+    for each in [*reversed(inner.parents[:-1]), inner]:
+        (below / each).mkdir(exist_ok=True)
+
+
 def path_fault(path: Path | str) -> str:
     """Return why a library cannot store a path; empty if it can."""
     try:

@@ -35,7 +35,7 @@ from ...solvers.command_line.tasks import check_output_folder, find_inputs, shar
 from ...solvers.command_line.verb_description import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
 from ...solvers.faults import Failure, attempt, escaped
-from ...solvers.files import is_missing, real_path
+from ...solvers.files import is_missing, make_folder, real_path
 from ...solvers.json_text import parse_json
 from ...solvers.processes import ScratchFolder
 from ...solvers.recordings.containers import check_folder_access, files_below, is_folder
@@ -212,6 +212,8 @@ def _perform(task: Task, stopped: Event) -> FinishedTask:
     if task.refusal:
         return FinishedTask(task, None, task.refusal)
     remove_picture(task)
+    if task.arguments.report:
+        make_folder(picture_file(task).parent, task.arguments.output_folder)
     with ScratchFolder() as scratch:
         figures = scratch.path / "figures"
         ended = run_child(_command(task, figures), _made_by(task), stopped)

@@ -26,7 +26,8 @@ def draw_result(scene: bpy.types.Scene, subject: bpy.types.Object, path: Path) -
             given = read_take(subject, scene, source=raw).parts[0].motion
             if given.n_frames == figures["result"].n_frames:
                 figures = {"given": given, **figures}
-        path.parent.mkdir(parents=True, exist_ok=True)
+        # Without the folders above: a batch's output folder that vanished stays away.
+        path.parent.mkdir(exist_ok=True)
         draw_stick_figures(figures, SIZE).save(path)
     except (MocapAssistError, OSError):
         path.unlink(missing_ok=True)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from ..errors import InvalidFileError
 from ..faults import Failure, attempt
-from ..files import is_missing
+from ..files import is_missing, make_folder
 from ..pictures import StickFigureSettings, draw_stick_figures
 from ..progress import Progress, Remark, collect_remarks, unwatched
 from ..recordings import is_depth_recording, read_motion_or_tracks
@@ -93,7 +93,7 @@ def _draw(task: Task) -> None:
     if not is_depth_recording(task.source):
         given = read(task.source, task.arguments, unwatched)
         motions = {"given": given, **motions} if given.n_frames == result.n_frames else motions
-    picture.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(picture.parent, task.arguments.output_folder)
     draw_stick_figures(motions, StickFigureSettings(n_figures=9, height=150)).save(picture)
 
 

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from solvers.command_line import batch
+from solvers.command_line.files import read
 from solvers.command_line.report import Entry, write_report
 from solvers.command_line.sharing import Records
 
@@ -212,6 +214,25 @@ def test_output_folder_that_vanishes_is_one_sentence(
     aside.rename(out)
     status, _, _ = call(*words)
     assert (status, len(records_in(out))) == (0, N_TAKES)
+
+
+def test_output_folder_that_vanishes_before_a_picture_is_not_made_again(
+    call, leg_file, tmp_path, monkeypatch
+):
+    out, aside = tmp_path / "out", tmp_path / "aside"
+
+    def move_and_read(*arguments):
+        out.rename(aside)
+        return read(*arguments)
+
+    monkeypatch.setattr(batch, "read", move_and_read)
+
+    status, _, err = call("convert", leg_file, "--output-folder", out, "--report")
+
+    assert (status, out.exists()) == (2, False)
+    assert err == (
+        f"The output folder {out} is gone; the batch stops. Run it again to continue.\n"
+    )
 
 
 def test_record_of_an_earlier_version_is_taken_up(call, small_batch, tmp_path, records_in):
