@@ -1,7 +1,7 @@
 """Write the job types of Flamenco that have the options of one verb, from its command line.
 
-`make docs` runs it. docs/technical/farm/flamenco.js, written by hand, serves all verbs: these
-are made of it, with a setting for each option.
+`make docs` runs it. solvers/command_line/farm/scripts/mocap_assist.js, written by hand, serves
+all verbs: these are made of it, with a setting for each option.
 """
 
 import argparse
@@ -10,14 +10,19 @@ import re
 from pathlib import Path
 from typing import Any
 
+from solvers.command_line.farm.job_types import (
+    JOB_TYPE,
+    NO_TEXT,
+    OF_ONE_VERB,
+    job_type_of,
+    kind_of,
+    options_of,
+    script_of,
+)
 from solvers.command_line.verbs import VERBS
 
-ROOT = Path(__file__).resolve().parents[2]
-FARM = ROOT / "docs" / "technical" / "farm"
-SOURCE = FARM / "flamenco.js"
-OF_ONE_VERB = ("fix", "denoise", "reconstruct")
-"""Verbs with a job type of their own: those with settings that takes of one batch share."""
-HEAD = "// Made of flamenco.js and the options of the verb: make docs.\n"
+SOURCE = script_of(JOB_TYPE)
+HEAD = "// Made of mocap_assist.js and the options of the verb: make docs.\n"
 OPTION_WORDS = """\
 const OPTIONS = {
 ROWS};
@@ -48,20 +53,15 @@ CUT = re.compile(r'    \{ key: "verb".*?\},\n', re.DOTALL)
 def main() -> None:
     """Write all job types of one verb."""
     for verb in OF_ONE_VERB:
-        path(verb).write_text(job_type(verb), encoding="utf-8", newline="\n")
-
-
-def path(verb: str) -> Path:
-    """Return the file of the job type of a verb."""
-    return FARM / f"flamenco_{verb}.js"
+        script_of(job_type_of(verb)).write_text(job_type(verb), encoding="utf-8", newline="\n")
 
 
 def job_type(verb: str) -> str:
     """Return the job type of a verb."""
     text = SOURCE.read_text(encoding="utf-8")
-    options = options_of(verb)
+    options = options_of(VERBS[verb].add_options)
     added = "".join(f"    {setting(option)},\n" for option in options)
-    rows = "".join(f"  {option.dest}: {json.dumps(words_of(option))},\n" for option in options)
+    rows = "".join(f"  {option.dest}: {json.dumps(kind_of(option))},\n" for option in options)
     changes = (
         ('  label: "Mocap Assist",', f'  label: "Mocap Assist: {verb}",'),
         ("  ],\n};\n", f"{added}  ],\n}};\n\n{OPTION_WORDS.replace('ROWS', rows)}"),
@@ -75,34 +75,15 @@ def job_type(verb: str) -> str:
     return HEAD + CUT.sub("", text, count=1)
 
 
-def options_of(verb: str) -> list[argparse.Action]:
-    """Return the options of a verb, without those of every batch."""
-    parser = argparse.ArgumentParser(add_help=False)
-    VERBS[verb].add_options(parser)
-    return [
-        option
-        for option in parser._actions
-        if option.option_strings and option.help is not argparse.SUPPRESS
-    ]
-
-
-def words_of(option: argparse.Action) -> list[str]:
-    """Return the kind of an option and its words on the command line."""
-    names = [name for name in option.option_strings if name.startswith("--")]
-    if option.nargs == 0:
-        return ["switch", names[0], names[-1] if len(names) > 1 else ""]
-    return ["many" if option.nargs else "one", names[0]]
-
-
 def setting(option: argparse.Action) -> str:
     """Return the setting of an option; left empty, the command has its default."""
     described: dict[str, Any] = {"key": option.dest, "type": "string"}
     if option.nargs == 0:
-        described["choices"] = ["", "yes", *(["no"] if words_of(option)[2] else [])]
+        described["choices"] = ["", "yes", *(["no"] if kind_of(option)[2] else [])]
     elif option.type is Path and not option.nargs:
         described["subtype"] = "file_path"
     described |= {
-        "default": "", "required": False,
+        "default": NO_TEXT, "required": False,
         "description": (option.help or "").replace("%%", "%"),
     }  # fmt: skip
     return json.dumps(described, ensure_ascii=False)

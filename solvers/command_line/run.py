@@ -25,7 +25,14 @@ from .batch import (
     task_entries,
     verb_name,
 )
-from .options import SentenceParser, add_cluster_option, add_sharing_options
+from .farm import FlamencoSettings, add_flamenco_options, job_of_batch, submit_job
+from .options import (
+    SentenceParser,
+    add_cluster_option,
+    add_sharing_options,
+    arguments_from,
+    settings_from_arguments,
+)
 from .parallel import run_tasks, until_released, workers_for
 from .report import PAGE, has_picture, write_report
 from .screen import Screen, escape_undecodable_names, printable
@@ -68,6 +75,8 @@ def run(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> int:
     escape_undecodable_names(sys.stdout)
     screen = Screen()
     try:
+        if getattr(arguments, "flamenco", None) is not None:
+            return _submit(verbs[arguments.verb], arguments, list(words[1:]))
         return _run_verb(verbs[arguments.verb], arguments, screen)
     except MocapAssistError as error:
         screen.write_line(str(error))
@@ -127,11 +136,25 @@ def _add_common_options(parser: argparse.ArgumentParser, makes: OutputKind) -> N
         )  # fmt: skip
         if has_manifest or makes is OutputKind.LIBRARY:
             add_cluster_option(workers)
+            add_flamenco_options(parser)
+            arguments_from(parser, FlamencoSettings)
     add_threads_option(parser)
     parser.add_argument(
         "--json", action="store_true",
         help="Print figures for programs: one line of JSON for each file",
     )  # fmt: skip
+
+
+def _submit(verb: Verb, arguments: argparse.Namespace, words: list[str]) -> int:
+    """Submit the batch to a Flamenco Manager and print the address of its page."""
+    settings = settings_from_arguments(arguments, FlamencoSettings)
+    add_common = partial(_add_common_options, makes=verb.makes)
+    job = job_of_batch(arguments, settings, words, add_common, verb.add_options)
+    submitted = submit_job(job, arguments.flamenco)
+    text = f"Submitted {job.name} in {settings.flamenco_tasks} tasks: {submitted.page}"
+    figures = {"job": submitted.identifier, "page": submitted.page}
+    sys.stdout.write(f"{json.dumps(figures) if arguments.json else text}\n")
+    return 0
 
 
 def _run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:

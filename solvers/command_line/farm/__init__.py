@@ -1,5 +1,23 @@
 """Run batches on many machines: workers of a Dask cluster, and jobs for render farms."""
 
 from .cluster import cluster_workers
+from .flamenco_jobs import (
+    COMMAND,
+    FlamencoJob,
+    FlamencoSettings,
+    SubmittedJob,
+    add_flamenco_options,
+    job_of_batch,
+    submit_job,
+)
 
-__all__ = ["cluster_workers"]
+__all__ = [
+    "COMMAND",
+    "FlamencoJob",
+    "FlamencoSettings",
+    "SubmittedJob",
+    "add_flamenco_options",
+    "cluster_workers",
+    "job_of_batch",
+    "submit_job",
+]

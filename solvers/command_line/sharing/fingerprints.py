@@ -7,8 +7,9 @@ from typing import Any
 from ...version import version
 
 IRRELEVANT_OPTIONS = {
-    "after", "again", "cluster", "files", "jobs", "json", "manifest", "output_folder", "report",
-    "shard", "wait", "work",
+    "after", "again", "cluster", "files", "flamenco", "flamenco_command", "flamenco_priority",
+    "flamenco_tasks", "jobs", "json", "manifest", "output_folder", "report", "shard", "wait",
+    "work",
 }  # fmt: skip
 """Options that do not change the result."""
 STAMP_LENGTH = 3

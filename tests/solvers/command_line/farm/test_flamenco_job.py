@@ -11,11 +11,19 @@ from pathlib import Path
 import pytest
 import write_flamenco
 
+from solvers.command_line.farm.job_types import (
+    JOB_TYPE,
+    OF_ONE_VERB,
+    job_type_of,
+    options_of,
+    script_of,
+    texts_of,
+    words_of,
+)
 from solvers.command_line.verbs import VERBS
 from solvers.recordings import Axis
 
 ROOT = Path(__file__).parents[4]
-JOB_TYPE = ROOT / "docs" / "technical" / "farm" / "flamenco.js"
 MANAGER = """
 const vm = require("vm"), fs = require("fs");
 const [file, settings] = process.argv.slice(1), tasks = [];
@@ -53,7 +61,7 @@ def compiled():
         words = {text: shlex.split(text) for text in texts}
         given = json.dumps(settings | {"words": words})
         done = subprocess.run(
-            ["node", "-e", MANAGER, str(job_type), given],
+            ["node", "-e", MANAGER, str(script_of(job_type)), given],
             capture_output=True, text=True, check=True, timeout=60,
         )  # fmt: skip
         return json.loads(done.stdout)
@@ -99,17 +107,17 @@ def test_settings_are_complete_and_checked(compiled):
     assert job["tasks"] == ["shards is 0; it must be at least 1."]
 
 
-@pytest.mark.parametrize("verb", write_flamenco.OF_ONE_VERB)
+@pytest.mark.parametrize("verb", OF_ONE_VERB)
 def test_job_types_of_one_verb_have_its_options(verb):
     """After a change: `make docs`."""
-    written = write_flamenco.path(verb).read_text(encoding="utf-8")
+    written = script_of(job_type_of(verb)).read_text(encoding="utf-8")
 
     assert written == write_flamenco.job_type(verb)
 
 
 def test_options_of_one_verb_are_words_of_its_command(compiled):
     job = compiled(
-        write_flamenco.path("denoise"), manifest="m", output_folder="o", shards=1, options="",
+        job_type_of("denoise"), manifest="m", output_folder="o", shards=1, options="",
         command="c", strength="0.5", feet="no", train="a.bvh 'b c.bvh'", preset="",
         forward="-y",
     )  # fmt: skip
@@ -126,3 +134,22 @@ def test_options_of_one_verb_are_words_of_its_command(compiled):
     assert (parsed.strength, parsed.feet) == (0.5, False)
     assert parsed.forward == Axis.MINUS_Y
     assert not any(word.startswith("--preset") for word in words)
+
+
+def test_words_of_a_submitted_job_are_those_of_the_script(compiled):
+    """`words_of` serves verbs without a job type of their own, and the scripts the others."""
+    add_options = VERBS["denoise"].add_options
+    options = options_of(add_options)
+    words = ["--train", "/a.bvh", "/b #'c.bvh", "--body=two words", "--no-feet", "--unswap"]
+
+    texts = texts_of(options, add_options, words)
+
+    job = compiled(
+        job_type_of("denoise"), manifest="m", output_folder="o", shards=1, options="",
+        command="c", **texts,
+    )  # fmt: skip
+    made = job["tasks"][0]["commands"][0]["parameters"]["args"][9:]
+    assert made == words_of(options, texts)
+    parser = argparse.ArgumentParser()
+    add_options(parser)
+    assert vars(parser.parse_args(made)) == vars(parser.parse_args(words))

@@ -1,4 +1,4 @@
-// Job type of Flamenco 3: a batch of Mocap Assist in parts, one task each. See ../farm.md.
+// Job type of Flamenco 3: a batch of Mocap Assist in parts, one task each. See docs/technical/farm.md.
 // Copy it into the folder "scripts" next to the Flamenco Manager.
 
 const JOB_TYPE = {

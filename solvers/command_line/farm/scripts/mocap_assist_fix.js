@@ -1,5 +1,5 @@
-// Made of flamenco.js and the options of the verb: make docs.
-// Job type of Flamenco 3: a batch of Mocap Assist in parts, one task each. See ../farm.md.
+// Made of mocap_assist.js and the options of the verb: make docs.
+// Job type of Flamenco 3: a batch of Mocap Assist in parts, one task each. See docs/technical/farm.md.
 // Copy it into the folder "scripts" next to the Flamenco Manager.
 
 const JOB_TYPE = {

@@ -1,0 +1,215 @@
+"""Submit batches to a Flamenco Manager, whose workers process a part of the takes per task."""
+
+import argparse
+import platform
+import shlex
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ...errors import InvalidSettingError, MocapAssistError
+from ...progress import Progress, unwatched
+from ...settings import Settings, setting
+from ...version import version
+from ..sharing import read_manifest
+from .flamenco_manager import FlamencoManager
+from .job_types import JOB_TYPE, job_type_of, options_of, script_of, texts_of, words_of
+
+COMMAND = "python3 -m solvers"
+"""Command of Mocap Assist on workers that have the checkout on their path."""
+PASSED_ON = ("again", "after", "jobs", "threads")
+"""Options of every batch that each task has, too."""
+NOT_PASSED_ON = {
+    "shard": "Flamenco gives each task its part of the takes. Leave out --shard.",
+    "cluster": "The workers of Flamenco process the takes. Leave out --cluster.",
+}
+AddOptions = Callable[[argparse.ArgumentParser], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlamencoSettings(Settings):
+    """Choices for a job."""
+
+    flamenco_tasks: int = setting(
+        10,
+        "Number of tasks that share the takes; more let more workers help",
+        label="Tasks",
+        minimum=1,
+        maximum=10_000,
+    )
+    flamenco_priority: int = setting(
+        50, "Priority among the jobs of the farm", label="Priority", minimum=0, maximum=100
+    )
+
+
+class FlamencoJob(NamedTuple):
+    """A batch for a Flamenco Manager; picklable."""
+
+    verb: str
+    manifest: Path
+    output_folder: Path
+    texts: dict[str, str]
+    """The settings of the job type that are options of its verb."""
+    options: list[str]
+    """Words for the end of the command."""
+    command: str = COMMAND
+    settings: FlamencoSettings = FlamencoSettings()
+
+    @property
+    def job_type(self) -> str:
+        """Name of its job type."""
+        return job_type_of(self.verb)
+
+    @property
+    def name(self) -> str:
+        """Name in the Manager's list."""
+        return f"{self.verb} {self.manifest.stem}"
+
+    def settings_of_type(self) -> dict[str, Any]:
+        """Return a value for each setting of the job type."""
+        shared = {
+            "manifest": str(self.manifest),
+            "output_folder": str(self.output_folder),
+            "shards": self.settings.flamenco_tasks,
+            "options": shlex.join(self.options),
+            "command": self.command,
+        }
+        of_verb = {"verb": self.verb} if self.job_type == JOB_TYPE else {}
+        return {**of_verb, **shared, **self.texts}
+
+    def request(self, etag: object) -> dict[str, Any]:
+        """Return the job as the Manager's interface describes it.
+
+        Parameters
+        ----------
+        etag : str
+            Hash of the job type, by which the Manager refuses a job for another version of it.
+        """
+        return {
+            "name": self.name,
+            "type": self.job_type,
+            "type_etag": etag,
+            "priority": self.settings.flamenco_priority,
+            "submitter_platform": platform.system().lower(),
+            "settings": self.settings_of_type(),
+            "metadata": {"mocap_assist.version": version()},
+        }
+
+
+class SubmittedJob(NamedTuple):
+    """A job that a Manager has accepted."""
+
+    identifier: str
+    page: str
+    """Address of its page in the Manager's web interface."""
+
+
+def submit_job(
+    job: FlamencoJob, address: str, *, progress: Progress = unwatched
+) -> SubmittedJob:
+    """Submit a job to the Flamenco Manager at an address.
+
+    Raises
+    ------
+    InvalidSettingError
+        The address is invalid, or the Manager refuses the job.
+    MocapAssistError
+        The Manager cannot be reached, is of another version, or has no such job type.
+    """
+    manager = FlamencoManager(address)
+    progress(0.0, "Connecting")
+    manager.check_version()
+    found = manager.job_type(job.job_type)
+    script = script_of(job.job_type)
+    if found is None:
+        raise MocapAssistError(
+            f"The Flamenco Manager at {manager.address} has no job type {job.job_type}. Copy"
+            f" {script} into the folder scripts next to the Manager."
+        )
+    keys = {each.get("key") for each in found["settings"] if isinstance(each, dict)}
+    if keys != job.settings_of_type().keys():
+        raise MocapAssistError(
+            f"The job type {job.job_type} of the Flamenco Manager at {manager.address} is of"
+            f" another version of Mocap Assist. Copy {script} into its folder scripts."
+        )
+    progress(0.5, "Submitting")
+    identifier = manager.submit(job.request(found.get("etag", "")))
+    return SubmittedJob(identifier, f"{manager.address}/app/jobs/{identifier}")
+
+
+def add_flamenco_options(parser: argparse._ActionsContainer) -> None:
+    """Add the options to submit a batch, but for those of `FlamencoSettings`."""
+    parser.add_argument(
+        "--flamenco", metavar="ADDRESS",
+        help="Submit the batch to a Flamenco Manager, such as http://farm:8080, instead of"
+        " processing it here; needs --manifest and --output-folder",
+    )  # fmt: skip
+    parser.add_argument(
+        "--flamenco-command", metavar="COMMAND", default=argparse.SUPPRESS,
+        help=f"Command of Mocap Assist on the workers of Flamenco [default {COMMAND}]",
+    )  # fmt: skip
+
+
+def job_of_batch(
+    arguments: argparse.Namespace,
+    settings: FlamencoSettings,
+    words: list[str],
+    add_common: AddOptions,
+    add_own: AddOptions,
+) -> FlamencoJob:
+    """Return the job of a command line.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        The parsed command line.
+    settings : FlamencoSettings
+    words : list of str
+        The command line, without the verb.
+    add_common, add_own : callable
+        Add the options of every batch, and those of the verb, to a parser.
+
+    Raises
+    ------
+    InvalidSettingError
+        An option is missing, or excludes Flamenco.
+    InvalidFileError
+        The manifest is invalid.
+    """
+    _check_options(vars(arguments))
+    read_manifest(arguments.manifest)
+    own = options_of(add_own)
+    common = [each for each in options_of(add_common) if each.dest in PASSED_ON]
+
+    def add_all(parser: argparse.ArgumentParser) -> None:
+        add_common(parser)
+        add_own(parser)
+
+    texts = texts_of([*own, *common], add_all, words)
+    of_verb = {each.dest: texts[each.dest] for each in own}
+    has_own_type = job_type_of(arguments.verb) != JOB_TYPE
+    return FlamencoJob(
+        verb=arguments.verb,
+        manifest=arguments.manifest.absolute(),
+        output_folder=arguments.output_folder.absolute(),
+        texts=of_verb if has_own_type else {},
+        options=words_of([*([] if has_own_type else own), *common], texts),
+        command=getattr(arguments, "flamenco_command", COMMAND),
+        settings=settings,
+    )
+
+
+def _check_options(given: Mapping[str, Any]) -> None:
+    excluded = [reason for name, reason in NOT_PASSED_ON.items() if given.get(name) is not None]
+    if excluded:
+        raise InvalidSettingError(excluded[0])
+    if given.get("output_folder") is None:
+        raise InvalidSettingError(
+            "--flamenco needs a folder: name it with --output-folder DIR."
+        )
+    if given.get("files") or given.get("manifest") is None:
+        raise InvalidSettingError(
+            "Workers of Flamenco read the takes from a list on shared storage: name it with"
+            " --manifest FILE, and no takes on the command line."
+        )
