@@ -44,6 +44,7 @@ from .show_raw import MOCAP_OT_show_raw
 from .simulate import MOCAP_OT_simulate
 from .solve_skeleton import MOCAP_OT_solve_skeleton
 from .stack_variants import MOCAP_OT_stack_variants
+from .submit_folder import MOCAP_OT_submit_folder
 from .track_depth import MOCAP_OT_track_depth
 from .use_matches import MOCAP_OT_use_matches
 from .vary import MOCAP_OT_vary
@@ -57,6 +58,7 @@ OPERATORS = (
     MOCAP_OT_fix_take,
     MOCAP_OT_fix_takes,
     MOCAP_OT_fix_folder,
+    MOCAP_OT_submit_folder,
     MOCAP_OT_accept_fix,
     MOCAP_OT_change_axes,
     MOCAP_OT_show_depth,

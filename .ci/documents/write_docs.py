@@ -29,7 +29,7 @@ NOT_BUTTONS = {"import_job"}
 """Operators that another operator starts: no user sees them."""
 PAGES = {
     "importing": "import_recording load_sample add_workspace change_axes show_depth",
-    "fixing": "fix_take fix_takes fix_folder accept_fix",
+    "fixing": "fix_take fix_takes fix_folder submit_folder accept_fix",
     "tracking": "track_depth retrack",
     "reconstruction": "reconstruct",
     "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_issue mark_issues"

@@ -10,6 +10,7 @@ from ..check.reverting import why_not_revert
 from ..languages import translated
 from ..panels.drawing import draw_job, draw_sentence, exists, split_column
 from ..panels.fix_card import shown_card
+from ..panels.preference_values import preferred
 from ..panels.visibility import shows_take
 from ..track.tracking import selected_preview
 from .fixing import why_not_fix
@@ -18,7 +19,9 @@ from .queue import Status, selected_takes, shown_queue
 FIX, ACCEPT, REVERT = (
     f"mocap_assist.{name}" for name in ("fix_take", "accept_fix", "revert_to_raw")
 )
-FIX_TAKES, FIX_FOLDER = "mocap_assist.fix_takes", "mocap_assist.fix_folder"
+FIX_TAKES, FIX_FOLDER, SUBMIT_FOLDER = (
+    f"mocap_assist.{name}" for name in ("fix_takes", "fix_folder", "submit_folder")
+)
 MAX_ROWS = 6
 """Rows of the list of takes; more scroll. Chosen by hand for a default sidebar."""
 LAST_STEPS = ("plant_feet", "physics")
@@ -68,6 +71,8 @@ class FixPanel(PanelMixin):
         if len(selected_takes(context)) > 1:
             row.operator(FIX_TAKES)
         row.operator(FIX_FOLDER, text="Fix Folder...", icon="FILE_FOLDER")
+        if preferred("flamenco_manager"):
+            row.operator(SUBMIT_FOLDER, text="Submit Folder...", icon="NETWORK_DRIVE")
         if reason:
             draw_sentence(layout, context, reason, icon="INFO")
         elif card := shown_card(context):

@@ -10,6 +10,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.add_workspace*": "import",
     "bpy.types.windowmanager.mocap_assist_all_panels*": "import",
     "bpy.ops.mocap_assist.*fix*": "fix",
+    "bpy.ops.mocap_assist.submit_folder*": "fix",
     "bpy.types.mocap_pg_fix*": "fix",
     "bpy.types.mocap_pg_queued*": "fix",
     "bpy.types.windowmanager.mocap_assist_fix_details*": "fix",

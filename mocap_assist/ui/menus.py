@@ -10,6 +10,7 @@ BUTTONS = (
     "mocap_assist.fix_take",
     "mocap_assist.fix_takes",
     "mocap_assist.fix_folder",
+    "mocap_assist.submit_folder",
     "mocap_assist.accept_fix",
     "mocap_assist.track_depth",
     "mocap_assist.retrack",

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 import bpy
 
+from ...solvers.command_line.farm import COMMAND
 from ...solvers.errors import MocapAssistError
 from ...solvers.recordings.live import PORT
 from ..actions.armature_write import Output
@@ -81,6 +82,16 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         description="IPv4 addresses or networks of your trackers, with commas between",
         default="",
     )
+    flamenco_manager: bpy.props.StringProperty(
+        name="Flamenco Manager",
+        description="Address that Submit Folder sends jobs to, such as http://farm:8080",
+        default="",
+    )
+    flamenco_command: bpy.props.StringProperty(
+        name="Command of Workers",
+        description="Command of Mocap Assist on the workers of the farm",
+        default=COMMAND,
+    )
     raw_color: bpy.props.FloatVectorProperty(
         name="Raw Color",
         description="Color of the recorded action in the overlay",
@@ -118,6 +129,9 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         for name in ("tab", "result_as", "show_research", "keep_solver_ready", "live_port"):
             layout.prop(self, name)
         _draw_network(layout, context, self)
+        layout.prop(self, "flamenco_manager")
+        if self.flamenco_manager:
+            layout.prop(self, "flamenco_command")
         overlay = layout.column(heading="Overlay")
         for name in ("raw_color", "clean_color", "line_width"):
             overlay.prop(self, name)

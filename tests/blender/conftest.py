@@ -43,6 +43,7 @@ IN_ONE_BLENDER = {
     "fixing/test_fix_for_a_rig.py": (5, 2),
     "fixing/test_fix_take.py": (5, 2),
     "fixing/test_many_takes.py": (5, 2),
+    "fixing/test_submit_folder.py": (5, 2),
     "importing/test_failing_readers.py": (5, 2),
     "importing/test_import_to_retarget.py": (4, 5),
     "importing/test_joint_recordings.py": (5, 2),

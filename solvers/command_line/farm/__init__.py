@@ -10,6 +10,7 @@ from .flamenco_jobs import (
     job_of_batch,
     submit_job,
 )
+from .job_types import texts_of_settings
 
 __all__ = [
     "COMMAND",
@@ -20,4 +21,5 @@ __all__ = [
     "cluster_workers",
     "job_of_batch",
     "submit_job",
+    "texts_of_settings",
 ]

@@ -13,7 +13,6 @@ from ...progress import Progress, unwatched
 from ...settings import Settings, setting
 from ...version import version
 from ..sharing import read_manifest
-from .flamenco_manager import FlamencoManager
 from .job_types import JOB_TYPE, job_type_of, options_of, script_of, texts_of, words_of
 
 COMMAND = "python3 -m solvers"
@@ -47,11 +46,13 @@ class FlamencoJob(NamedTuple):
     """A batch for a Flamenco Manager; picklable."""
 
     verb: str
+    title: str
+    """Name of the takes."""
     manifest: Path
     output_folder: Path
     texts: dict[str, str]
     """The settings of the job type that are options of its verb."""
-    options: list[str]
+    options: tuple[str, ...] = ()
     """Words for the end of the command."""
     command: str = COMMAND
     settings: FlamencoSettings = FlamencoSettings()
@@ -64,7 +65,7 @@ class FlamencoJob(NamedTuple):
     @property
     def name(self) -> str:
         """Name in the Manager's list."""
-        return f"{self.verb} {self.manifest.stem}"
+        return f"{self.verb} {self.title}"
 
     def settings_of_type(self) -> dict[str, Any]:
         """Return a value for each setting of the job type."""
@@ -117,6 +118,8 @@ def submit_job(
     MocapAssistError
         The Manager cannot be reached, is of another version, or has no such job type.
     """
+    from .flamenco_manager import FlamencoManager  # and HTTP, which other verbs need not load
+
     manager = FlamencoManager(address)
     progress(0.0, "Connecting")
     manager.check_version()
@@ -191,10 +194,11 @@ def job_of_batch(
     has_own_type = job_type_of(arguments.verb) != JOB_TYPE
     return FlamencoJob(
         verb=arguments.verb,
+        title=arguments.manifest.stem,
         manifest=arguments.manifest.absolute(),
         output_folder=arguments.output_folder.absolute(),
         texts=of_verb if has_own_type else {},
-        options=words_of([*([] if has_own_type else own), *common], texts),
+        options=tuple(words_of([*([] if has_own_type else own), *common], texts)),
         command=getattr(arguments, "flamenco_command", COMMAND),
         settings=settings,
     )

@@ -3,7 +3,10 @@
 import argparse
 import shlex
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
+
+from ...settings import Settings
 
 JOB_TYPE = "mocap-assist"
 """Job type for all verbs. A Flamenco Manager names a job type after its script."""
@@ -66,6 +69,14 @@ def texts_of(
         option.default = argparse.SUPPRESS
     given = vars(parser.parse_args(words))
     return {option.dest: _text(given.get(option.dest)) for option in options}
+
+
+def texts_of_settings(
+    add_options: Callable[[argparse.ArgumentParser], None], settings: Settings
+) -> dict[str, str]:
+    """Return the text of each option: the value of its setting, or an empty one."""
+    texts = {option.dest: NO_TEXT for option in options_of(add_options)}
+    return texts | {item.name: _text(getattr(settings, item.name)) for item in fields(settings)}
 
 
 def words_of(options: Sequence[argparse.Action], texts: Mapping[str, str]) -> list[str]:

@@ -7,6 +7,7 @@ import pytest
 from clusters.flamenco_stub import (
     JOB_ID,
     JOBS,
+    SCRIPTS,
     TYPE,
     VERSION,
     Answer,
@@ -15,7 +16,6 @@ from clusters.flamenco_stub import (
 )
 
 from solvers.command_line.farm import flamenco_manager
-from solvers.command_line.farm.job_types import SCRIPTS
 from solvers.version import version
 
 

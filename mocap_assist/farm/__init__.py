@@ -1,0 +1,1 @@
+"""Submit takes to a render farm: the button Submit Folder."""

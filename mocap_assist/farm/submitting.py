@@ -1,0 +1,61 @@
+"""Submit Folder: read the preferences, and report what the Flamenco Manager accepted."""
+
+from functools import partial
+from pathlib import Path
+
+import bpy
+
+from ...solvers.errors import InvalidSettingError
+from ..panels.preference_values import preferred
+from .button_settings import FarmBundle
+from .solve_submitting import Submission, Submitted, submit_takes
+
+OUTPUT_ENDING = "_fixed"
+"""Ending of the default output folder, next to that of the takes."""
+NO_MANAGER = "Enter the address of your Flamenco Manager in the preferences of Mocap Assist."
+OFFLINE = (
+    "Blender's online access is off. Allow it in Preferences > System to submit jobs to a farm."
+)
+RETARGETS = (
+    "The farm fixes takes without a scene, and cannot retarget them. Clear Retarget To in Last"
+    " Steps."
+)
+
+
+def why_not_submit(context: bpy.types.Context) -> str:
+    """Return why no job can be submitted, or an empty text."""
+    if not preferred("flamenco_manager").strip():
+        return NO_MANAGER
+    return "" if bpy.app.online_access else OFFLINE
+
+
+def read_submission(
+    takes: Path, output_folder: Path | None, settings: FarmBundle
+) -> "partial[Submitted]":
+    """Return the submission of a folder.
+
+    The address and the command come from the preferences: a .blend file of another person
+    cannot set them.
+    """
+    if bpy.context.scene.mocap_assist.fix.rig:
+        raise InvalidSettingError(RETARGETS)
+    problem = Submission(
+        takes=takes,
+        output_folder=output_folder or takes.with_name(takes.name + OUTPUT_ENDING),
+        address=preferred("flamenco_manager"),
+        command=preferred("flamenco_command"),
+        settings=settings.job,
+        fixing=settings.fixing,
+    )
+    return partial(submit_takes, problem)
+
+
+def report_submitted(
+    takes: Path,
+    output_folder: Path | None,
+    settings: FarmBundle,
+    submitted: Submitted,
+    solved_digest: str | None = None,
+) -> str:
+    """Return the message for the status bar."""
+    return f"Submitted {submitted.n_takes} takes of {takes.name} to {submitted.job.page}."

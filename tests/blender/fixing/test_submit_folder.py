@@ -1,0 +1,118 @@
+"""Submit Folder: a farm fixes the takes of a folder, and the scene stays as it is."""
+
+import json
+import time
+
+import bpy
+import pytest
+from clusters.flamenco_stub import JOB_ID, JOBS, TYPE, flamenco_stub
+from modal_events import event
+
+OFFLINE = "Blender's online access is off. Allow it in Preferences > System to submit jobs"
+
+
+@pytest.fixture
+def manager(load):
+    """A Flamenco Manager that the preferences name, and Blender may reach."""
+    system = bpy.context.preferences.system
+    with flamenco_stub() as stub:
+        preferences = load("mocap_assist.panels.preference_values").preferences()
+        preferences.flamenco_manager = stub.address
+        preferences.flamenco_command = "mocap-assist"
+        system.use_online_access = True
+        yield stub
+        system.use_online_access = False
+        bpy.ops.mocap_assist.reset_preferences()
+
+
+@pytest.fixture
+def folder(load, tmp_path):
+    """Two takes of one name in a folder, and one below it."""
+    samples, recordings = load("solvers.samples"), load("solvers.recordings")
+    walk = samples.walking_gait(samples.GaitSettings(duration=0.2, frame_rate=30.0))
+    (tmp_path / "shoot" / "day2").mkdir(parents=True)
+    for name in ("a.bvh", "day2/b.bvh"):
+        recordings.write_bvh(walk, tmp_path / "shoot" / name)
+    (tmp_path / "shoot" / "a.asf").write_bytes((tmp_path / "shoot" / "a.bvh").read_bytes())
+    return tmp_path / "shoot"
+
+
+@pytest.fixture
+def why_gray(load, window):
+    """Return why the button is gray, or an empty text."""
+    module = load("mocap_assist.farm.submitting")
+    return lambda: module.why_not_submit(window.context)
+
+
+def test_folder_is_submitted_as_a_job(blank, manager, folder):
+    status = blank.ops.mocap_assist.submit_folder(
+        directory=str(folder), flamenco_tasks=3, physics=True
+    )
+
+    assert status == {"FINISHED"}
+    out = folder.with_name("shoot_fixed")
+    (takes,) = out.iterdir()
+    assert [json.loads(line) for line in takes.read_text().splitlines()] == [
+        {"input": str(folder / "a.asf"), "output": "a.asf.bvh"},
+        {"input": str(folder / "a.bvh"), "output": "a.bvh.bvh"},
+        {"input": str(folder / "day2" / "b.bvh"), "output": "day2/b.bvh"},
+    ]
+    (_, path, body) = manager.requests[-1]
+    assert (path, body["name"], body["type"]) == (JOBS, "fix shoot", "mocap-assist-fix")
+    assert {name: value for name, value in body["settings"].items() if value != ""} == {
+        "manifest": str(takes),
+        "output_folder": str(out),
+        "shards": 3,
+        "command": "mocap-assist",
+        "physics": "yes",
+        "plant_feet": "yes",
+    }
+    assert not blank.data.objects
+
+
+def test_window_goes_on_until_the_manager_answers(make_button, manager, folder, window, load):
+    bundle = load("mocap_assist.farm.button_settings").FarmBundle
+    fixing = load("solvers.workflows").FixSettings()
+    settings = bundle(load("solvers.command_line.farm").FlamencoSettings(), fixing)
+    button = make_button("submit_folder", settings)
+    button.directory, button.output_folder, button.is_chosen = str(folder), "", True
+
+    assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+    while (status := button.modal(window.context, event("TIMER"))) == {"RUNNING_MODAL"}:
+        time.sleep(0.01)
+
+    page = f"{manager.address}/app/jobs/{JOB_ID}"
+    assert (status, window.reports) == (
+        {"FINISHED"}, [({"INFO"}, f"Submitted 3 takes of shoot to {page}.")],
+    )  # fmt: skip
+
+
+def test_failure_of_the_manager_is_reported(blank, manager, folder):
+    manager.changed[TYPE] = manager.answer("/api/v3/jobs/type/unknown")
+
+    with pytest.raises(RuntimeError, match=r"no job type mocap-assist-fix\. Copy .*_fix\.js"):
+        blank.ops.mocap_assist.submit_folder(directory=str(folder))
+
+
+def test_take_that_the_farm_cannot_retarget_is_refused(blank, manager, folder):
+    blank.context.scene.mocap_assist.fix.rig = "Rig"
+
+    with pytest.raises(RuntimeError, match="Clear Retarget To in Last Steps"):
+        blank.ops.mocap_assist.submit_folder(directory=str(folder))
+
+    assert not manager.requests and not folder.with_name("shoot_fixed").exists()
+
+
+def test_button_is_gray_without_a_manager_or_online_access(
+    blank, manager, folder, draw, load, why_gray
+):
+    blank.ops.mocap_assist.import_recording(filepath=str(folder / "a.bvh"))
+    assert why_gray() == "" and "mocap_assist.submit_folder" in draw("MOCAP_PT_fix")
+    bpy.context.preferences.system.use_online_access = False
+    assert why_gray().startswith(OFFLINE)
+
+    load("mocap_assist.panels.preference_values").preferences().flamenco_manager = ""
+
+    assert why_gray().startswith("Enter the address of your Flamenco Manager")
+    assert "mocap_assist.submit_folder" not in draw("MOCAP_PT_fix")
+    assert not blank.ops.mocap_assist.submit_folder.poll()
