@@ -14,9 +14,11 @@ NOT_SHOWN = (
     "solvers/depth_tracking/forest/", "solvers/depth_tracking/forest_training/",
     "solvers/reconstruction/residual_correction/learn_", "solvers/rotations/",
     "solvers/retrieval/index/", "solvers/retrieval/library/values.py",
-    "solvers/retrieval/library/clip_rows.py", "solvers/recordings/live/frames.py",
+    "solvers/retrieval/library/clip_rows.py",
     *(f"solvers/recordings/streams/{name}.py"
-      for name in ("axes", "layouts", "lz4", "mocopi", "osc", "rokoko", "senders", "vmc")),
+      for name in ("frames/joint_frames", "senders")),
+    *(f"solvers/recordings/streams/protocols/{name}.py"
+      for name in ("axes", "layouts", "lz4", "mocopi", "osc", "rokoko", "vmc")),
     "solvers/motion/skeletons/skeleton.py", "solvers/motion/skeletons/limb_ik.py",
     "solvers/motion/skeletons/warping.py", "solvers/motion/skeletons/joint_recording.py",
     "solvers/motion/skeletons/joint_limits.py",

@@ -6,7 +6,7 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 
 from ...solvers.motion import joint_parents
-from ...solvers.recordings.live import LiveFrame
+from ...solvers.recordings.streams import LiveFrame
 from ..scene.units import unit_of
 from .overlay_drawing import Color, draw_lines
 from .view_drawing import ViewDrawing

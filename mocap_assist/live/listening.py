@@ -7,8 +7,12 @@ import bpy
 from bpy.app import handlers
 
 from ...solvers.gestures import Mode
-from ...solvers.recordings.live import allowed_networks
-from ...solvers.recordings.streams import ListenerState, StreamListener, StreamProtocol
+from ...solvers.recordings.streams import (
+    ListenerState,
+    StreamListener,
+    StreamProtocol,
+    allowed_networks,
+)
 from ...solvers.workflows import LiveSession, SessionUpdate
 from ..drawing.live_figure import LiveFigure
 from ..drawing.overlay_drawing import Color

@@ -11,8 +11,14 @@ from ...solvers.arrays import Array, Single
 from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion import HumanoidMap, Motion, find_humanoid_map, forward_kinematics
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings.live import PoseFrame, StreamFrame, allowed_networks
-from ...solvers.recordings.streams import ListenerState, StreamListener, StreamProtocol
+from ...solvers.recordings.streams import (
+    ListenerState,
+    PoseFrame,
+    StreamFrame,
+    StreamListener,
+    StreamProtocol,
+    allowed_networks,
+)
 from ...solvers.retargeting import LiveRetargeting, RetargetSettings
 from ...solvers.rotations import IDENTITY
 from ...solvers.workflows import LiveMotion, LiveTake, LiveTakeSettings, PoseTake

@@ -3,7 +3,7 @@
 import bpy
 
 from ...solvers.errors import InvalidSettingError
-from ...solvers.recordings.live import PORT
+from ...solvers.recordings.streams import PORT
 from ..panels.preference_values import preferences, preferred
 
 OFFLINE = (

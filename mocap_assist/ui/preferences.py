@@ -7,7 +7,7 @@ import bpy
 
 from ...solvers.command_line.farm import COMMAND
 from ...solvers.errors import MocapAssistError
-from ...solvers.recordings.live import PORT
+from ...solvers.recordings.streams import PORT
 from ..actions.armature_write import Output
 from ..check.key_map import draw_keys
 from ..drawing import overlay_drawing

@@ -8,8 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from ..errors import InvalidSettingError
 from ..motion import JointRecording, Motion, Tracks, resample
 from ..progress import Progress, within
-from ..recordings.live import PORT
-from ..recordings.streams import Packets, StreamProtocol, encode_recording
+from ..recordings.streams import PORT, Packets, StreamProtocol, encode_recording
 from .files import add_reading_options, read_recorded
 from .verb_description import Outcome, Task
 

@@ -42,8 +42,8 @@ from solvers.progress import unwatched
 from solvers.recordings import DepthSettings, open_bodies, read_depth, read_recording
 from solvers.recordings.containers.png_header import read_png_header
 from solvers.recordings.depth_files.folder import is_depth_folder
-from solvers.recordings.live.frames import decode_frame
 from solvers.recordings.streams import StreamDecoder, StreamProtocol
+from solvers.recordings.streams.frames.joint_frames import decode_frame
 from solvers.retrieval import Clip, find_similar, load_clip_library
 
 DATA = Path(__file__).parents[1] / "data"

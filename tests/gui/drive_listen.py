@@ -34,7 +34,8 @@ def perform(*gestures):
 
 def send(recording, protocol):
     """Send a recording in real time."""
-    streams, port = load("solvers.recordings.streams"), load("solvers.recordings.live").PORT
+    streams = load("solvers.recordings.streams")
+    port = streams.PORT
     start = time.monotonic()
     for packets in streams.encode_recording(recording, streams.StreamProtocol[protocol]):
         while time.monotonic() - start < packets.time:

@@ -5,8 +5,9 @@ from ipaddress import IPv4Network
 from time import monotonic
 from typing import NamedTuple, Self
 
-from ..live import Receiver, StreamCounts, StreamFrame, StreamReader
+from .frames import StreamCounts, StreamFrame, StreamReader
 from .protocols import StreamDecoder, StreamProtocol
+from .receiver import Receiver
 
 MAX_USELESS_S = 3.0
 """Seconds without a valid frame after which another sender is followed. It guards against

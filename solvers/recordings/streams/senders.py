@@ -10,14 +10,21 @@ from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import SENSOR_JOINTS, JointRecording, Motion, Sensor, Tracks, forward_kinematics
 from ...motion.humanoid import posture_joint_indices, postures_from_motion
-from ..live import MAX_JOINTS, LiveFrame, PoseFrame, encode_frame, frames_from_recording
-from .layouts import MOCOPI, XSENS, StreamLayout, humanoid_layout, motion_in_layout
-from .mediapipe import encode_mediapipe
-from .mocopi import encode_frame_packet, encode_skeleton_packet
-from .protocols import StreamProtocol
-from .rokoko import encode_rokoko
-from .vmc import encode_vmc
-from .xsens import encode_xsens
+from .frames import MAX_JOINTS, LiveFrame, PoseFrame, encode_frame, frames_from_recording
+from .protocols import (
+    MOCOPI,
+    XSENS,
+    StreamLayout,
+    StreamProtocol,
+    encode_frame_packet,
+    encode_mediapipe,
+    encode_rokoko,
+    encode_skeleton_packet,
+    encode_vmc,
+    encode_xsens,
+    humanoid_layout,
+    motion_in_layout,
+)
 
 N_SKELETON_FRAMES = 60
 """Number of frames from one skeleton of mocopi to the next: a receiver may start late."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from typing import Generic, TypeVar
 
-from ...recordings.live import StreamFrame
+from ...recordings.streams import StreamFrame
 
 MAX_FIRST_FRAMES = 8192
 """Number of frames that are kept. It bounds the memory of the fastest streams."""

@@ -11,7 +11,7 @@ from ...errors import InvalidFileError
 from ...gestures import Gesture, GestureEvent, GestureRecognizer, GestureSettings, Mode
 from ...motion import JointRecording
 from ...motion.humanoid import POSTURE_JOINTS, posture_joint_indices
-from ...recordings.live import (
+from ...recordings.streams import (
     LiveFrame,
     PoseFrame,
     StreamFrame,

@@ -17,7 +17,7 @@ from ...reconstruction import (
     reconstruct,
 )
 from ...reconstruction.joint_rotations import motion_from_positions
-from ...recordings.live import LiveFrame, StreamFrame, recording_from_frames
+from ...recordings.streams import LiveFrame, StreamFrame, recording_from_frames
 from .first_frames import FirstFrames
 from .live_motion import DEFAULT_SETTINGS, LiveMotion, LiveTakeSettings
 from .time_slots import TimeSlots, is_continued

@@ -7,7 +7,7 @@ import numpy as np
 from ...errors import InvalidFileError, InvalidMotionError
 from ...motion import Motion, find_humanoid_map
 from ...motion.humanoid import ESSENTIAL_ROLES
-from ...recordings.live import PoseFrame, StreamFrame, measured_rate, motion_from_poses
+from ...recordings.streams import PoseFrame, StreamFrame, measured_rate, motion_from_poses
 from .first_frames import FirstFrames
 from .live_motion import DEFAULT_SETTINGS, LiveMotion, LiveTakeSettings
 from .time_slots import TimeSlots, is_continued

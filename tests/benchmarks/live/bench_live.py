@@ -19,8 +19,7 @@ import numpy as np
 from solvers.motion import JointRecording, Motion, find_humanoid_map
 from solvers.reconstruction import ReconstructSettings, reconstruct
 from solvers.recordings import read_recording
-from solvers.recordings.live import frames_from_recording
-from solvers.recordings.streams import StreamProtocol
+from solvers.recordings.streams import StreamProtocol, frames_from_recording
 from solvers.retargeting import LiveRetargeting
 from solvers.samples import GaitSettings, walker_skeleton, walking_gait
 from solvers.workflows import LiveTake

@@ -10,8 +10,12 @@ import numpy as np
 
 from solvers.motion import JointRecording, Motion, Skeleton, find_humanoid_map
 from solvers.motion import forward_kinematics as world_poses_of
-from solvers.recordings.live import PoseFrame
-from solvers.recordings.streams import StreamListener, StreamProtocol, encode_recording
+from solvers.recordings.streams import (
+    PoseFrame,
+    StreamListener,
+    StreamProtocol,
+    encode_recording,
+)
 from solvers.retargeting import LiveRetargeting
 from solvers.rotations import IDENTITY
 from solvers.workflows import LiveTake, PoseTake

@@ -18,8 +18,12 @@ from threadpoolctl import threadpool_limits
 
 from solvers.gestures.events import Gesture, GestureEvent
 from solvers.gestures.settings import GestureSettings
-from solvers.recordings.live import StreamReader
-from solvers.recordings.live.frames import decode_frame, encode_frame, frames_from_recording
+from solvers.recordings.streams import StreamReader
+from solvers.recordings.streams.frames.joint_frames import (
+    decode_frame,
+    encode_frame,
+    frames_from_recording,
+)
 from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.workflows.live.live_session import LiveSession
 

@@ -13,7 +13,7 @@ from solvers.gestures.recognition import recognize_gestures
 from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.recordings import read_joints
-from solvers.recordings.live.frames import frames_from_recording
+from solvers.recordings.streams import frames_from_recording
 from solvers.workflows.live.live_session import pose_from_frame
 
 from ..shared.clips import DATA

@@ -74,7 +74,7 @@ def listen(load, window, port, monkeypatch):
 @pytest.fixture
 def act(load, window, port):
     """Let the made actor perform before a button that listens; frames arrive as sent."""
-    frames, samples = load("solvers.recordings.live.frames"), load("solvers.samples")
+    frames, samples = load("solvers.recordings.streams"), load("solvers.samples")
 
     def perform(button, *gestures):
         recording = samples.perform_gestures(gestures, samples.PerformanceSettings(noise=0.003))

@@ -163,7 +163,7 @@ def test_figure_stands_on_the_ground_at_the_origin(listen, act, load):
 
 def test_missing_and_unreliable_bones_are_not_drawn(load):
     figure = load("mocap_assist.drawing.live_figure").LiveFigure((1, 1, 1, 1), 2.0)
-    frames, motion = load("solvers.recordings.live.frames"), load("solvers.motion")
+    frames, motion = load("solvers.recordings.streams"), load("solvers.motion")
     names = motion.SENSOR_JOINTS[motion.Sensor.KINECT_V1]
     positions, confidence = np.ones((20, 3)), np.ones(20)
     positions[7], confidence[11] = np.nan, 0.1

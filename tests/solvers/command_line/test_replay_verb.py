@@ -11,8 +11,8 @@ from solvers.command_line.replay_verb import pace_packets
 from solvers.motion import Tracks
 from solvers.motion.humanoid.posture_joints import postures_from_motion
 from solvers.recordings import write_bvh, write_joints, write_trc
-from solvers.recordings.live.frames import decode_frame
 from solvers.recordings.streams import StreamProtocol, encode_recording
+from solvers.recordings.streams.frames.joint_frames import decode_frame
 from solvers.samples import (
     GaitSettings,
     PerformanceSettings,

@@ -10,7 +10,7 @@ from solvers.gestures.recognition import recognize_gestures
 from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import posture_positions
 from solvers.recordings import read_joints
-from solvers.recordings.live.frames import frames_from_recording
+from solvers.recordings.streams import frames_from_recording
 from solvers.workflows.live.live_session import pose_from_frame
 
 CLAP, WAVE = "a10", "a02"

@@ -11,8 +11,12 @@ from solvers.gestures.recognition import Mode
 from solvers.gestures.settings import GestureSettings
 from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
-from solvers.recordings.live import StreamReader
-from solvers.recordings.live.frames import LiveFrame, encode_frame, frames_from_recording
+from solvers.recordings.streams import StreamReader
+from solvers.recordings.streams.frames.joint_frames import (
+    LiveFrame,
+    encode_frame,
+    frames_from_recording,
+)
 from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.workflows.live.live_session import NO_END, TOO_SHORT, LiveSession, pose_from_frame
 

@@ -9,7 +9,7 @@ import pytest
 from solvers import motion, samples
 from solvers.motion import forward_kinematics
 from solvers.motion.humanoid import posture_joints
-from solvers.recordings.live import frames_from_recording
+from solvers.recordings.streams import frames_from_recording
 from solvers.workflows import LiveTake, LiveTakeSettings
 from solvers.workflows.live.first_frames import MAX_FIRST_FRAMES
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Skeleton
-from solvers.recordings.live import PoseFrame, joints_from_pose
+from solvers.recordings.streams import PoseFrame, joints_from_pose
 from solvers.samples import GaitSettings, walking_gait
 from solvers.workflows import LiveTakeSettings, PoseTake
 from solvers.workflows.live.time_slots import TimeSlots

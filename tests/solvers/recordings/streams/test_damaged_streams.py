@@ -5,17 +5,16 @@ import struct
 import numpy as np
 import pytest
 
-from solvers.recordings.live import StreamReader
 from solvers.recordings.streams import (
     StreamDecoder,
     StreamProtocol,
+    StreamReader,
     encode_recording,
-    mediapipe,
-    rokoko,
 )
-from solvers.recordings.streams.lz4 import MAGIC
-from solvers.recordings.streams.osc import write_bundle, write_message
-from solvers.recordings.streams.vmc import VmcDecoder
+from solvers.recordings.streams.protocols import mediapipe, rokoko
+from solvers.recordings.streams.protocols.lz4 import MAGIC
+from solvers.recordings.streams.protocols.osc import write_bundle, write_message
+from solvers.recordings.streams.protocols.vmc import VmcDecoder
 from solvers.samples import GaitSettings, walking_gait
 
 PROTOCOLS = [each for each in StreamProtocol if each is not StreamProtocol.AUTO]

@@ -9,13 +9,18 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError, MocapAssistError
 from solvers.motion import forward_kinematics
-from solvers.recordings.live import StreamReader, motion_from_poses
-from solvers.recordings.streams import StreamDecoder, StreamProtocol, encode_recording
-from solvers.recordings.streams.lz4 import MAGIC, decompress
-from solvers.recordings.streams.mediapipe import MediaPipeDecoder
-from solvers.recordings.streams.mocopi import MocopiDecoder
-from solvers.recordings.streams.rokoko import BONES, T_POSE, RokokoDecoder
-from solvers.recordings.streams.xsens import HEADER, N_SEGMENTS, SEGMENT, XsensDecoder
+from solvers.recordings.streams import (
+    StreamDecoder,
+    StreamProtocol,
+    StreamReader,
+    encode_recording,
+    motion_from_poses,
+)
+from solvers.recordings.streams.protocols.lz4 import MAGIC, decompress
+from solvers.recordings.streams.protocols.mediapipe import MediaPipeDecoder
+from solvers.recordings.streams.protocols.mocopi import MocopiDecoder
+from solvers.recordings.streams.protocols.rokoko import BONES, T_POSE, RokokoDecoder
+from solvers.recordings.streams.protocols.xsens import HEADER, N_SEGMENTS, SEGMENT, XsensDecoder
 from solvers.samples import GaitSettings, walking_gait
 
 HALF = 0.5**0.5

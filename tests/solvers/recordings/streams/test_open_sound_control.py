@@ -3,7 +3,7 @@
 import pytest
 
 from solvers.errors import InvalidMotionError
-from solvers.recordings.streams.osc import (
+from solvers.recordings.streams.protocols.osc import (
     BUNDLE,
     IMMEDIATELY,
     MAX_DEPTH,

@@ -16,8 +16,13 @@ from solvers.motion import (
     forward_kinematics,
 )
 from solvers.motion.humanoid import posture_joint_indices, postures_from_motion
-from solvers.recordings.live import joints_from_pose, motion_from_poses
-from solvers.recordings.streams import StreamListener, StreamProtocol, encode_recording
+from solvers.recordings.streams import (
+    StreamListener,
+    StreamProtocol,
+    encode_recording,
+    joints_from_pose,
+    motion_from_poses,
+)
 from solvers.rotations import angle_between, quaternion_from_rotation_vector, rotate
 from solvers.samples import GaitSettings, walking_gait
 

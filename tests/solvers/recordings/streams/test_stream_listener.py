@@ -7,8 +7,15 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidSettingError
-from solvers.recordings.live import LiveFrame, Receiver, allowed_networks, encode_frame
-from solvers.recordings.streams import StreamListener, StreamProtocol, encode_recording
+from solvers.recordings.streams import (
+    LiveFrame,
+    Receiver,
+    StreamListener,
+    StreamProtocol,
+    allowed_networks,
+    encode_frame,
+    encode_recording,
+)
 from solvers.samples import GaitSettings, walking_gait
 
 
@@ -146,7 +153,7 @@ def test_unknown_packets_are_reported_in_one_sentence(listener, sender):
 def test_only_listed_addresses_may_send(monkeypatch):
     """127.0.0.2 stands for another machine: it is refused unless it is listed."""
     monkeypatch.setattr(
-        "solvers.recordings.live.receiver.ip_address",
+        "solvers.recordings.streams.receiver.ip_address",
         lambda host: __import__("ipaddress").ip_address(host.replace("127.0.0.2", "10.1.1.2")),
     )
     for listed, expected in (("10.1.1.0/24", [b"near", b"far"]), ("10.1.2.7", [b"near"])):

@@ -6,9 +6,9 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import forward_kinematics
-from solvers.recordings.live import StreamReader, motion_from_poses
-from solvers.recordings.streams.osc import write_bundle, write_message
-from solvers.recordings.streams.vmc import MAX_MISSED_FRAMES, VmcDecoder
+from solvers.recordings.streams import StreamReader, motion_from_poses
+from solvers.recordings.streams.protocols.osc import write_bundle, write_message
+from solvers.recordings.streams.protocols.vmc import MAX_MISSED_FRAMES, VmcDecoder
 from solvers.samples import GaitSettings, walking_gait
 
 HALF = 0.5**0.5

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
-from ...errors import InvalidMotionError
-from ...settings import Choice
-from ..live import FORMAT, FrameDecoder, JointLines, StreamFrame
+from ....errors import InvalidMotionError
+from ....settings import Choice
+from ..frames import FORMAT, FrameDecoder, JointLines, StreamFrame
 from .mediapipe import MediaPipeDecoder, is_mediapipe
 from .mocopi import MocopiDecoder, is_mocopi
 from .rokoko import RokokoDecoder, is_rokoko

@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import InvalidMotionError
-from ...motion import Skeleton
-from ...rotations import multiply, normalize, rotate
-from ..conventions import MAX_TIME_S
-from ..live import PoseFrame
+from ....arrays import Array
+from ....errors import InvalidMotionError
+from ....motion import Skeleton
+from ....rotations import multiply, normalize, rotate
+from ...conventions import MAX_TIME_S
+from ..frames import PoseFrame
 from .axes import (
     MAX_POSITION_M,
     is_rotation,

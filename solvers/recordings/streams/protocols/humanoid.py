@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from ...arrays import Array
-from ...motion import Skeleton
+from ....arrays import Array
+from ....motion import Skeleton
 
 SIDES = ("left", "right")
 FINGERS = {

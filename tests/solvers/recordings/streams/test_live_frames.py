@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import JointRecording, Sensor, Tracks
-from solvers.recordings.live.frames import (
+from solvers.recordings.streams.frames.joint_frames import (
     MAX_LINE_BYTES,
     LiveFrame,
     decode_frame,

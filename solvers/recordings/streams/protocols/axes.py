@@ -5,9 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import InvalidMotionError
-from ...rotations import normalize
+from ....arrays import Array
+from ....errors import InvalidMotionError
+from ....rotations import normalize
 
 MAX_POSITION_M = 100.0
 """Maximum distance from the origin on each axis, meters. It guards against damaged packets."""

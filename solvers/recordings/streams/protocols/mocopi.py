@@ -10,17 +10,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import InvalidMotionError
-from ...motion import Skeleton
-from ..conventions import (
+from ....arrays import Array
+from ....errors import InvalidMotionError
+from ....motion import Skeleton
+from ...conventions import (
     MAX_TIME_S,
     rotations_y_up_from_z_up,
     rotations_z_up_from_y_up,
     y_up_from_z_up,
     z_up_from_y_up,
 )
-from ..live import PoseFrame
+from ..frames import PoseFrame
 from .axes import checked_positions, checked_rotations
 from .humanoid import standing
 

@@ -1,6 +1,6 @@
-"""Receive a live stream of joints or bones over the local network."""
+"""Frames of a stream, of joints or of bones, and the order that they come in."""
 
-from .frames import (
+from .joint_frames import (
     FORMAT,
     MAX_JOINTS,
     PORT,
@@ -9,8 +9,7 @@ from .frames import (
     frames_from_recording,
 )
 from .pose_frames import PoseFrame, joints_from_pose, measured_rate, motion_from_poses
-from .receiver import LOOPBACK, Receiver, allowed_networks
-from .stream import (
+from .stream_reader import (
     FrameDecoder,
     JointLines,
     StreamCounts,
@@ -21,18 +20,15 @@ from .stream import (
 
 __all__ = [
     "FORMAT",
-    "LOOPBACK",
     "MAX_JOINTS",
     "PORT",
     "FrameDecoder",
     "JointLines",
     "LiveFrame",
     "PoseFrame",
-    "Receiver",
     "StreamCounts",
     "StreamFrame",
     "StreamReader",
-    "allowed_networks",
     "encode_frame",
     "frames_from_recording",
     "joints_from_pose",

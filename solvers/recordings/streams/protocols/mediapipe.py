@@ -9,20 +9,20 @@ from typing import NoReturn
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import InvalidFileError, InvalidMotionError
-from ...json_text import parse_json
-from ...motion import Sensor
-from ..conventions import MAX_TIME_S, from_azure_space
-from ..joint_files import frame_landmarks, frame_time
-from ..live import LiveFrame
-from ..point_bodies import (
+from ....arrays import Array
+from ....errors import InvalidFileError, InvalidMotionError
+from ....json_text import parse_json
+from ....motion import Sensor
+from ...conventions import MAX_TIME_S, from_azure_space
+from ...joint_files import frame_landmarks, frame_time
+from ...point_bodies import (
     HIPS,
     LANDMARK_JOINTS,
     MILLISECOND,
     is_world,
     with_computed_joints,
 )
+from ..frames import LiveFrame
 from .axes import checked_positions
 
 MAX_LINE_BYTES = 32_768

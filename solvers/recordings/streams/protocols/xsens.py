@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
-from ...errors import InvalidMotionError
-from ..conventions import CENTIMETER, guess_unit
-from ..live import PoseFrame
+from ....arrays import Array
+from ....errors import InvalidMotionError
+from ...conventions import CENTIMETER, guess_unit
+from ..frames import PoseFrame
 from .axes import checked_positions, checked_rotations
 from .segments import SegmentPoses
 

@@ -10,7 +10,7 @@ import struct
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ...errors import InvalidMotionError
+from ....errors import InvalidMotionError
 
 Argument = int | float | str | bytes | bool | None
 

@@ -7,11 +7,11 @@ from typing import Protocol
 
 import numpy as np
 
-from ...errors import InvalidFileError, MocapAssistError
-from ...motion import JointRecording
-from ...progress import unwatched
-from ..conventions import joint_recording
-from .frames import LiveFrame, decode_frame
+from ....errors import InvalidFileError, MocapAssistError
+from ....motion import JointRecording
+from ....progress import unwatched
+from ...conventions import joint_recording
+from .joint_frames import LiveFrame, decode_frame
 from .pose_frames import PoseFrame
 
 NEW_STREAM_S = 2.0

@@ -10,9 +10,13 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError, InvalidSettingError
 from solvers.motion import Sensor
-from solvers.recordings.live.frames import LiveFrame, decode_frame, encode_frame
-from solvers.recordings.live.receiver import MAX_DATAGRAMS, Receiver
-from solvers.recordings.live.stream import MAX_LINES, StreamReader, recording_from_frames
+from solvers.recordings.streams.frames.joint_frames import LiveFrame, decode_frame, encode_frame
+from solvers.recordings.streams.frames.stream_reader import (
+    MAX_LINES,
+    StreamReader,
+    recording_from_frames,
+)
+from solvers.recordings.streams.receiver import MAX_DATAGRAMS, Receiver
 from solvers.samples import perform_gestures
 
 
@@ -174,7 +178,7 @@ def test_burst_of_junk_is_parsed_up_to_a_bound_and_counted(junk, monkeypatch):
         decoded.append(len(line))
         return decode_frame(line)
 
-    monkeypatch.setattr("solvers.recordings.live.stream.decode_frame", decode)
+    monkeypatch.setattr("solvers.recordings.streams.frames.stream_reader.decode_frame", decode)
     reader = StreamReader()
 
     came = [each.time for each in reader.read(encode_frame(frame(0.0)), *junk)]
@@ -190,7 +194,7 @@ def test_burst_of_junk_is_parsed_up_to_a_bound_and_counted(junk, monkeypatch):
 
 
 def test_the_receiver_takes_no_more_bytes_at_once_than_it_may(send_to, monkeypatch):
-    monkeypatch.setattr("solvers.recordings.live.receiver.MAX_POLL_BYTES", 1000)
+    monkeypatch.setattr("solvers.recordings.streams.receiver.MAX_POLL_BYTES", 1000)
     with Receiver(0) as receiver:
         send_to(receiver.address[1], *[b"x" * 100] * 25)
 

@@ -5,7 +5,7 @@ References
 .. [1] Collet, LZ4 frame format 1.6 and LZ4 block format.
 """
 
-from ...errors import InvalidMotionError
+from ....errors import InvalidMotionError
 
 MAGIC = b"\x04\x22\x4d\x18"
 MAX_OUTPUT_BYTES = 1 << 18

@@ -8,10 +8,10 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import InvalidMotionError
-from ...json_text import parse_json
-from ...motion import JointRecording, Sensor
-from ..conventions import MAX_TIME_S
+from ....errors import InvalidMotionError
+from ....json_text import parse_json
+from ....motion import JointRecording, Sensor
+from ...conventions import MAX_TIME_S
 
 FORMAT = "mocap-assist-live"
 VERSION = 1

@@ -10,12 +10,12 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import InvalidMotionError
-from ...json_text import parse_json
-from ...rotations import inverse, multiply
-from ..conventions import MAX_TIME_S
-from ..live import PoseFrame
+from ....arrays import Array
+from ....errors import InvalidMotionError
+from ....json_text import parse_json
+from ....rotations import inverse, multiply
+from ...conventions import MAX_TIME_S
+from ..frames import PoseFrame
 from .axes import (
     checked_positions,
     checked_rotations,

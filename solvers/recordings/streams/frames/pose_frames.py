@@ -6,10 +6,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...arrays import Array
-from ...motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
-from ..conventions import ConstantRate
-from .frames import LiveFrame
+from ....arrays import Array
+from ....motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
+from ...conventions import ConstantRate
+from .joint_frames import LiveFrame
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,17 +5,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import InvalidMotionError
-from ...motion import (
+from ....arrays import Array
+from ....errors import InvalidMotionError
+from ....motion import (
     Motion,
     Skeleton,
     find_humanoid_map,
     forward_kinematics,
     t_pose_alignment,
 )
-from ...motion.humanoid import ESSENTIAL_ROLES
-from ...rotations import inverse, multiply, rotate
+from ....motion.humanoid import ESSENTIAL_ROLES
+from ....rotations import inverse, multiply, rotate
 from . import mocopi, xsens
 from .humanoid import PARENTS, parent_indices, standing
 

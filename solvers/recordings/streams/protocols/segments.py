@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import Array
-from ...motion import Skeleton
-from ...rotations import inverse, multiply, rotate
-from ..live import PoseFrame
+from ....arrays import Array
+from ....motion import Skeleton
+from ....rotations import inverse, multiply, rotate
+from ..frames import PoseFrame
 from .humanoid import standing
 
 MAX_CHANGE_M = 0.02
