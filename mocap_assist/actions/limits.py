@@ -1,13 +1,15 @@
 """Limit Rotation constraints of a rig, as joint limits."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from math import inf
 
 import bpy
 import numpy as np
 
+from ...solvers.arrays import Array
 from ...solvers.motion import JointLimits
 from ...solvers.rotations import multiply
+from ..scene.controls import TargetRig
 from .take import ArmatureTake
 
 
@@ -26,15 +28,43 @@ def read_limits(
     """
     world = multiply(take.rest.rotations[0], take.rig.rest_rotations)
     roots = {part.bones[0] for part in take.parts}
+    return _limits_of(
+        armature,
+        [
+            (name, name, world[index])
+            for index, name in enumerate(take.rig.bones)
+            if index not in roots and name in bones
+        ],
+    )
+
+
+def target_limits(armature: bpy.types.Object, target: TargetRig) -> JointLimits | None:
+    """Read the constraints of controls that rotate a joint relative to the one above it.
+
+    The limits hold for the joints of the target. Controls that something else carries, such as
+    those of IK, have none.
+    """
+    skeleton, limited = target.skeleton, []
+    for control in target.controls:
+        if not control.rotates or control.joint < 0 or control.carrier < 0:
+            continue
+        if target.controls[control.carrier].joint == skeleton.parents[control.joint]:
+            limited.append((control.bone, skeleton.names[control.joint], control.axes))
+    return _limits_of(armature, limited)
+
+
+def _limits_of(
+    armature: bpy.types.Object, bones: Iterable[tuple[str, str, Array]]
+) -> JointLimits | None:
+    """Return the limits of bones, which have a name, that of their joint, and rest axes."""
     names, axes, orders, lower, upper = [], [], [], [], []
-    for index, name in enumerate(take.rig.bones):
-        bone = armature.pose.bones[name]
-        skipped = index in roots or name not in bones
-        for constraint in () if skipped else _limiting(bone):
+    for bone_name, joint_name, rest in bones:
+        bone = armature.pose.bones[bone_name]
+        for constraint in _limiting(bone):
             order = _order(constraint, bone)
             bounds = [_bounds(constraint, axis) for axis in order]
-            names.append(name)
-            axes.append(world[index])
+            names.append(joint_name)
+            axes.append(rest)
             orders.append(order)
             lower.append([low for low, _ in bounds])
             upper.append([high for _, high in bounds])

@@ -14,6 +14,8 @@ from ...solvers.version import version
 from ...solvers.workflows import LiveTakeSettings
 from ..actions.action_write import write_action
 from ..actions.armature_write import check_writable
+from ..actions.contact_keys import write_contacts
+from ..actions.limits import target_limits
 from ..actions.reliability_curves import write_reliability
 from ..blender import compat
 from ..blender.block_references import BlockReference
@@ -26,7 +28,8 @@ from ..runtime.selection import selected_armature
 from ..scene import history
 from ..scene.controls import BoneKeys
 from ..scene.scene_rate import scene_rate
-from .solve_live_take import LiveBones, LiveProblem, RecordedTake, record_live, recorded_take
+from .solve_live_rig import LiveBones, LiveRigChoices
+from .solve_live_take import LiveProblem, RecordedTake, record_live, recorded_take
 from .stream_preferences import allowed_addresses, live_port
 
 NO_DURATION = "Set the duration of the recording: scripts and repeated presses have no Esc."
@@ -53,6 +56,14 @@ class LiveChoices(Settings):
         Limbs.FK,
         "Controls of arms and legs to key, where the rig has FK and IK",
         label="Arms and Legs",
+    )
+    hold_feet: bool = setting(
+        True, "Keep feet from sliding while they touch the ground, and key their contacts"
+    )
+    keep_limits: bool = setting(
+        True,
+        "Keep rotations softly within the Limit Rotation constraints of their bones",
+        label="Joint Limits",
     )
 
 
@@ -85,6 +96,9 @@ def read_live(
         settings.taking,
         choices.duration,
         scene.frame_current_final,
+        LiveRigChoices(
+            choices.hold_feet, target_limits(armature, rig) if choices.keep_limits else None
+        ),
     )
     return PreviewSolve(record_live, problem)
 
@@ -121,6 +135,8 @@ def write_live(
     name = f"{armature.name}.live"
     action, slot = write_action(armature, name, frames, take.keys, switches)
     write_reliability(armature, action, slot, frames, take.confidence)
+    if take.contacts is not None:
+        write_contacts(armature, action, slot, frames, take.contacts, detected=True)
     store_json(action, RECORDED_LIVE, {
         "version": version(),
         "operation": "record_live",

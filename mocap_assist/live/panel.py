@@ -14,6 +14,9 @@ from .stream_state import issue_text, sender_text
 
 LISTEN = "mocap_assist.listen"
 RECORD = "mocap_assist.record_live"
+SETTINGS = (
+    "duration", "live_limbs", "hold_feet", "keep_limits", "calibration_s", "smoothing",
+)  # fmt: skip
 
 
 class PerformPanel(PanelMixin):
@@ -38,7 +41,7 @@ class PerformPanel(PanelMixin):
             if exists(RECORD) and selected_armature(context) is not None:
                 column = settings_column(layout, context, "live")
                 live = context.scene.mocap_assist.live
-                for name in ("duration", "live_limbs", "calibration_s", "smoothing"):
+                for name in SETTINGS:
                     column.prop(live, name)
                 layout.operator(RECORD, icon="REC")
             return

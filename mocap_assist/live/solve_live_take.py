@@ -7,9 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...solvers.arrays import Array, Single
+from ...solvers.arrays import Array, Flags
 from ...solvers.errors import InvalidMotionError, MocapAssistError
-from ...solvers.motion import HumanoidMap, Motion, find_humanoid_map, forward_kinematics
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings.streams import (
     ListenerState,
@@ -19,11 +18,10 @@ from ...solvers.recordings.streams import (
     StreamProtocol,
     allowed_networks,
 )
-from ...solvers.retargeting import LiveRetargeting, RetargetSettings
-from ...solvers.rotations import IDENTITY
-from ...solvers.workflows import LiveMotion, LiveTake, LiveTakeSettings, PoseTake
-from ..scene.controls import BoneKeys, Carried, TargetRig, keys_of
+from ...solvers.workflows import LiveTake, LiveTakeSettings, PoseTake
+from ..scene.controls import BoneKeys, TargetRig
 from ..track.pose_previews import Show, no_preview
+from .solve_live_rig import LiveRig, LiveRigChoices, channels_of
 from .stream_state import state_text
 
 POLL_INTERVAL_S = 0.002
@@ -47,35 +45,7 @@ class LiveProblem:
     """After calibration; 0: until Esc."""
     first_frame: float
     """Frame of the scene at which the recording starts."""
-
-
-class LiveBones(NamedTuple):
-    """First preview: what the frames hold."""
-
-    frame_rate: float
-    first_frame: float
-    rotating: tuple[str, ...]
-    moving: tuple[str, ...]
-    judged: tuple[str, ...]
-    """Bones with a confidence."""
-
-
-class LiveFrameKeys(NamedTuple):
-    """One frame of the rig: a preview, and a part of the recording."""
-
-    frame: int
-    n_skipped: int
-    rotations: Single
-    """Shape (n_rotating, 4)."""
-    locations: Single
-    """Shape (n_moving, 3)."""
-    confidence: Single
-    """Shape (n_judged,)."""
-
-    def keys(self, bones: LiveBones) -> dict[str, BoneKeys]:
-        """Return the channels of each bone, of one frame."""
-        rotations, locations = self.rotations[None], self.locations[None]
-        return channels_of(bones, rotations.astype(np.float64), locations.astype(np.float64))
+    rig: LiveRigChoices = LiveRigChoices()
 
 
 class RecordedTake(NamedTuple):
@@ -87,15 +57,9 @@ class RecordedTake(NamedTuple):
     """Numbers of the frames, shape (n_frames,), from 0; some may be left out."""
     keys: Mapping[str, BoneKeys]
     confidence: Mapping[str, Array]
+    contacts: Flags | None = None
+    """When the left and the right foot were held, shape (n_frames, 2), if feet are held."""
     remark: str = ""
-
-
-def channels_of(bones: LiveBones, rotations: Array, locations: Array) -> dict[str, BoneKeys]:
-    """Return the channels of each bone from those of all, (n_frames, n_bones, 4 or 3)."""
-    turned = dict(zip(bones.rotating, rotations.swapaxes(0, 1), strict=True))
-    moved = dict(zip(bones.moving, locations.swapaxes(0, 1), strict=True))
-    names = dict.fromkeys((*bones.rotating, *bones.moving))
-    return {name: BoneKeys(turned.get(name), moved.get(name)) for name in names}
 
 
 def record_live(
@@ -147,7 +111,7 @@ class _Recorder:
     def __init__(self, problem: LiveProblem, keep: Show) -> None:
         self.take: LiveTake | PoseTake | None = None
         self._problem, self._keep = problem, keep
-        self._rig: _LiveRig | None = None
+        self._rig: LiveRig | None = None
         self._first: int | None = None
         self._n_frames = 0
 
@@ -168,7 +132,14 @@ class _Recorder:
         if self.take.calibration is None:
             return self.take.calibrated_fraction > 0.0
         if self._rig is None:
-            self._rig = _LiveRig(self._problem, self.take.calibration, self.take.names)
+            problem = self._problem
+            self._rig = LiveRig(
+                problem.target,
+                problem.rig,
+                self.take.calibration,
+                self.take.names,
+                problem.first_frame,
+            )
             self._keep(self._rig.bones)
             return True
         for pose in poses:
@@ -206,70 +177,9 @@ def recorded_take(previews: Iterable[Any]) -> RecordedTake:
         numbers - numbers[0],
         channels_of(bones, rotations, locations),
         dict(zip(bones.judged, confidence.T, strict=True)),
+        np.array([each.contacts for each in frames]) if bones.has_contacts else None,
         f"{n_skipped} frames were skipped, as the solver was busy." if n_skipped else "",
     )
-
-
-class _LiveRig:
-    """A target that follows an actor, who starts in its origin."""
-
-    def __init__(
-        self, problem: LiveProblem, calibration: Motion, names: tuple[str, ...]
-    ) -> None:
-        target = problem.target
-        self._target, self.frame_rate = target, calibration.frame_rate
-        self._start = calibration.root_positions[-1] * (1.0, 1.0, 0.0)
-        roles = find_humanoid_map(calibration.skeleton)
-        self._retargeting = LiveRetargeting(
-            _moved(calibration, -self._start),
-            roles,
-            target.skeleton,
-            target.humanoid,
-            RetargetSettings(to_ground=True),
-        )
-        self._sources = _sources(target, roles, names)
-        self._still = Carried(IDENTITY[None], np.zeros(3), np.zeros((1, 3)))
-        self.bones = LiveBones(
-            self.frame_rate,
-            problem.first_frame,
-            tuple(control.bone for control in target.controls if control.rotates),
-            tuple(control.bone for control in target.controls if control.moves),
-            tuple(self._sources),
-        )
-
-    def keys(self, live: LiveMotion, n_skipped: int) -> LiveFrameKeys:
-        posed = self._retargeting.update(_moved(live.motion, -self._start))
-        keys = keys_of(self._target, forward_kinematics(posed), self._still)
-        rotations = [keys[bone].rotations for bone in self.bones.rotating]
-        locations = [keys[bone].locations for bone in self.bones.moving]
-        return LiveFrameKeys(
-            live.frame,
-            n_skipped,
-            np.array(rotations, dtype=np.float32).reshape(-1, 4),
-            np.array(locations, dtype=np.float32).reshape(-1, 3),
-            self._confidence(live),
-        )
-
-    def _confidence(self, live: LiveMotion) -> Single:
-        if live.joints is None:
-            return np.zeros(0, dtype=np.float32)
-        return live.joints.confidence[list(self._sources.values())].astype(np.float32)
-
-
-def _sources(target: TargetRig, roles: HumanoidMap, names: tuple[str, ...]) -> dict[str, int]:
-    """Return for each keyed bone the tracked joint of its role."""
-    role_of = {joint: role for role, joint in target.humanoid.joints.items()}
-    found = {}
-    for control in target.controls:
-        role = role_of.get(target.skeleton.names[control.joint]) if control.joint >= 0 else None
-        source = roles.joints.get(role) if role else None
-        if source in names:
-            found[control.bone] = names.index(source)
-    return found
-
-
-def _moved(motion: Motion, offset: Array) -> Motion:
-    return motion.with_poses(motion.rotations, motion.root_positions + offset)
 
 
 def _state(take: LiveTake | PoseTake | None, state: ListenerState) -> tuple[float, str]:

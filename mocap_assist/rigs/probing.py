@@ -91,6 +91,9 @@ def _copied(
         scene.collection.objects.link(copy)
         for bone in copy.pose.bones:
             bone.matrix_basis = Matrix()
+            for constraint in bone.constraints:
+                if constraint.type == "LIMIT_ROTATION":  # it would cut the probes short
+                    constraint.mute = True
         for (bone, name), value in switches.items():
             if bone in copy.pose.bones and name in copy.pose.bones[bone]:
                 present = copy.pose.bones[bone][name]

@@ -1,6 +1,7 @@
 """Foot-skate cleanup: hold planted feet in place."""
 
 from .legs import SIDES, LegJoints, find_foot_joints, find_legs
+from .live_planting import LivePlanting, PlantedPose
 from .plant_feet import Planted, plant_feet
 from .plant_settings import PlantSettings
 from .sole import HEEL_FRACTION, sole_points
@@ -9,8 +10,10 @@ __all__ = [
     "HEEL_FRACTION",
     "SIDES",
     "LegJoints",
+    "LivePlanting",
     "PlantSettings",
     "Planted",
+    "PlantedPose",
     "find_foot_joints",
     "find_legs",
     "plant_feet",

@@ -85,12 +85,20 @@ def estimate_loads(points: Array, standing: Array, frame_rate: float, size: floa
         Of the body, 1 for a leg of 0.9 m.
     """
     heights = gaussian_filter1d(points[..., 2] - standing, SMOOTHING_S * frame_rate, axis=0)
-    heights[:, 2:] += MIN_RISE_M * size
-    log_load = -heights / (LOAD_FALLOFF_M * size)
-    if len(points) > 1:
-        log_load -= _speeds(points, frame_rate) / (SPEED_FALLOFF * size)
-    fractions = np.exp(log_load - log_load.max(axis=1, keepdims=True))
-    return np.asarray(fractions / fractions.sum(axis=1, keepdims=True))
+    speeds = _speeds(points, frame_rate) if len(points) > 1 else np.zeros_like(heights)
+    return instant_loads(heights, speeds, size)
+
+
+def instant_loads(heights: Array, speeds: Array, size: float) -> Array:
+    """Return the loads of `estimate_loads` from heights above those at rest, and speeds.
+
+    Both have the shape (..., n_points), meters and meters per second, and so has the result.
+    """
+    is_beyond_ball = np.arange(heights.shape[-1]) >= 2
+    log_load = -(heights + MIN_RISE_M * size * is_beyond_ball) / (LOAD_FALLOFF_M * size)
+    log_load -= speeds / (SPEED_FALLOFF * size)
+    fractions = np.exp(log_load - log_load.max(axis=-1, keepdims=True))
+    return np.asarray(fractions / fractions.sum(axis=-1, keepdims=True))
 
 
 def _speeds(points: Array, frame_rate: float) -> Array:

@@ -14,13 +14,14 @@ from .noise import (
 from .second_differences import second_difference_bands
 from .smoothstep import smoothstep
 from .spikes import find_runs, fit_lowess
-from .two_states import two_state_probabilities
+from .two_states import TwoStateFilter, two_state_probabilities
 
 __all__ = [
     "DIFFERENCE_GAIN",
     "DIFFERENCE_ORDER",
     "MAD_TO_SIGMA",
     "CausalSmoother",
+    "TwoStateFilter",
     "estimate_noise",
     "fill_channel_gaps",
     "fill_gaps",

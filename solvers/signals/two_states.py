@@ -33,16 +33,13 @@ def two_state_probabilities(
     .. [1] Rabiner (1989). A tutorial on hidden Markov models and selected applications in
        speech recognition. Proceedings of the IEEE 77(2). doi:10.1109/5.18626
     """
-    total = begin_rate + end_rate
-    changed = -np.expm1(-total / frame_rate)
-    begin, end = changed * begin_rate / total, changed * end_rate / total
-    ratios = np.exp(np.clip(evidence, -MAX_LOG_ODDS, MAX_LOG_ODDS))
+    begin, end = _changes(1.0 / frame_rate, begin_rate, end_rate)
+    ratios = _likelihood_ratios(evidence)
     limit = np.exp(MAX_LOG_ODDS)
     past = np.empty_like(ratios)
-    odds = np.full(ratios.shape[1:], begin_rate / end_rate)
-    for frame, ratio in enumerate(ratios):
-        past[frame] = odds = np.clip(odds * ratio, 1.0 / limit, limit)
-        odds = (begin + (1.0 - end) * odds) / (1.0 - begin + end * odds)
+    filtered = TwoStateFilter(begin_rate, end_rate)
+    for frame, each in enumerate(evidence):
+        past[frame] = filtered.odds(each, 1.0 / frame_rate)
     result = np.empty_like(ratios)
     future = np.ones(ratios.shape[1:])
     for frame in range(len(ratios) - 1, -1, -1):
@@ -50,3 +47,50 @@ def two_state_probabilities(
         later = np.clip(ratios[frame] * future, 1.0 / limit, limit)
         future = (end + (1.0 - end) * later) / (1.0 - begin + begin * later)
     return result
+
+
+class TwoStateFilter:
+    """`two_state_probabilities` without later frames, one frame after another.
+
+    Parameters
+    ----------
+    begin_rate, end_rate : float, 1/s
+    """
+
+    def __init__(self, begin_rate: float, end_rate: float) -> None:
+        self._rates = begin_rate, end_rate
+        self._odds: Array | float | None = None
+
+    def update(self, evidence: Array, elapsed_s: float) -> Array:
+        """Return the probability of the second state, given the frames up to this one.
+
+        Parameters
+        ----------
+        evidence : of any shape, always the same
+        elapsed_s : float, seconds since the last frame
+        """
+        odds = self.odds(evidence, elapsed_s)
+        return np.asarray(odds / (1.0 + odds))
+
+    def odds(self, evidence: Array, elapsed_s: float) -> Array:
+        """Return the odds instead of the probability; see `update`."""
+        if self._odds is None:
+            odds: Array | float = self._rates[0] / self._rates[1]
+        else:
+            begin, end = _changes(elapsed_s, *self._rates)
+            odds = (begin + (1.0 - end) * self._odds) / (1.0 - begin + end * self._odds)
+        limit = np.exp(MAX_LOG_ODDS)
+        found = np.clip(odds * _likelihood_ratios(evidence), 1.0 / limit, limit)
+        self._odds = found
+        return np.asarray(found)
+
+
+def _changes(elapsed_s: float, begin_rate: float, end_rate: float) -> tuple[float, float]:
+    """Return the probabilities that the second state began, or ended, in a time."""
+    total = begin_rate + end_rate
+    changed = -float(np.expm1(-total * elapsed_s))
+    return changed * begin_rate / total, changed * end_rate / total
+
+
+def _likelihood_ratios(evidence: Array) -> Array:
+    return np.asarray(np.exp(np.clip(evidence, -MAX_LOG_ODDS, MAX_LOG_ODDS)))

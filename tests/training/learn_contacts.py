@@ -17,7 +17,7 @@ from scipy.optimize import minimize
 from solvers.arrays import Array
 from solvers.feet.body_supports import LEARNED as LEARNED_SUPPORTS
 from solvers.motion.humanoid.foot_contacts import (
-    LEARNED,
+    CONTACT_MODEL,
     ContactModel,
     FeetInMotion,
     measure_feet,
@@ -59,7 +59,7 @@ Weighted = tuple[FeetInMotion, Array, Array]
 def main() -> None:
     """Learn and print."""
     print("foot_contacts.py")
-    _learn(_takes(np.random.default_rng(0)), LEARNED)
+    _learn(_takes(np.random.default_rng(0)), CONTACT_MODEL)
     print("body_supports.py")
     _learn(_supports(np.random.default_rng(0)), LEARNED_SUPPORTS)
 

@@ -54,7 +54,7 @@ class ContactModel:
     """Per second on the ground."""
 
 
-LEARNED = ContactModel(
+CONTACT_MODEL = ContactModel(
     bias=34.2,
     speed_weight=12.3,
     speed=0.157,
@@ -127,7 +127,7 @@ def contacts_of_points(positions: Array, frame_rate: float, size: float = 1.0) -
 
 
 def probabilities_of_points(
-    positions: Array, frame_rate: float, size: float = 1.0, model: ContactModel = LEARNED
+    positions: Array, frame_rate: float, size: float = 1.0, model: ContactModel = CONTACT_MODEL
 ) -> Array:
     """Return the probability of foot contact from positions alone; see `contact_probabilities`.
 
@@ -242,7 +242,7 @@ def measure_feet(
     """
     dt = 1.0 / frame_rate
     observed = np.isfinite(positions).all(axis=-1)
-    noise = _noise(positions)
+    noise = foot_noise(positions)
     width = float(np.cbrt(noise**2 * dt / (4.0 * np.sqrt(np.pi)) / SPEED_NOISE**2))
     path = fill_channel_gaps(positions.reshape(len(positions), -1))
     path = smooth_gaussian(path, width * frame_rate).reshape(positions.shape)
@@ -265,8 +265,11 @@ def measure_feet(
     )
 
 
-def _noise(positions: Array) -> float:
-    """Return the standard deviation of white noise along each axis, whatever the heading is."""
+def foot_noise(positions: Array) -> float:
+    """Return the standard deviation of white noise along each axis, whatever the heading is.
+
+    Positions have the shape (n_frames, 2, 2, 3); the result has their unit.
+    """
     differences = np.linalg.norm(np.diff(positions, DIFFERENCE_ORDER, axis=0), axis=-1)
     known = differences[np.isfinite(differences)]
     return float(np.median(known)) / DIFFERENCE_GAIN / MEDIAN_LENGTH if known.size else 0.0

@@ -39,6 +39,8 @@ def reach(
     limb: tuple[int, int, int],
     targets: Array,
     settings: ReachSettings = ReachSettings(),
+    *,
+    world: WorldPoses | None = None,
 ) -> Motion:
     """Rotate the upper and lower joint of a limb so that its end reaches the targets.
 
@@ -58,6 +60,8 @@ def reach(
     targets : shape (n_frames, 3), meters, world space
         NaN: the pose is unchanged.
     settings : ReachSettings
+    world : WorldPoses, optional
+        Those of the motion, as far as this limb and what carries it are concerned.
 
     Returns
     -------
@@ -71,7 +75,7 @@ def reach(
         The three joints are not one chain, or the targets have another shape.
     """
     _check(motion, limb, targets)
-    world = forward_kinematics(motion)
+    world = forward_kinematics(motion) if world is None else world
     upper, lower, end = limb
     start, hinge, tip = (world.positions[:, joint] for joint in limb)
     axis = rotate(world.rotations[:, upper], bending_axis(motion, limb, world))

@@ -27,6 +27,7 @@ from solvers.workflows import LiveTake
 from ..shared.report import DOCS, Report
 from ..shared.tables import table
 from .delay import measure_delay
+from .held_feet import HEADER, HeldFeet, drifting, hold_feet
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "kinect"
 TAKES = {
@@ -45,6 +46,7 @@ class LiveFigures(NamedTuple):
     calibration_s: float
     offline_cm: float
     """Mean distance from the causal reconstruction of the complete take."""
+    feet: HeldFeet
 
 
 def main() -> None:
@@ -53,13 +55,17 @@ def main() -> None:
     parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks/live.md")
     arguments = parser.parse_args()
     started = perf_counter()
-    rows = {name: _row(measure(path)) for name, path in TAKES.items() if path.exists()}
+    measured = {name: measure(path) for name, path in TAKES.items() if path.exists()}
+    rows = {name: _row(figures) for name, figures in measured.items()}
     header = [
         "take", "joints and rotations, ms", "95th percentile", "rig, ms", "95th percentile",
         "measuring the actor, s", "distance from offline, cm",
     ]  # fmt: skip
     report = Report(arguments.docs, DOCS / "benchmarks" / "live.md")
     report.part("live", [table(header, rows) + "\n"], perf_counter() - started)
+    feet = {name: figures.feet for name, figures in measured.items()} | walks()
+    rows = {name: each.cells() for name, each in feet.items()}
+    report.part("feet", [table(HEADER, rows) + "\n"], perf_counter() - started)
     started = perf_counter()
     rows = {
         name: measure_delay(*stream, walker_skeleton()).cells() for name, stream in streams()
@@ -80,11 +86,21 @@ def streams() -> Iterator[tuple[str, tuple[Motion | JointRecording, StreamProtoc
             yield f"made walk, {protocol.label}", (walk, protocol)
 
 
+def walks() -> dict[str, HeldFeet]:
+    """Return made walks on a drifting path, at two rates, with their feet held."""
+    found = {}
+    for rate in (30, 60):
+        walk = drifting(walking_gait(GaitSettings(duration=13.0, frame_rate=rate)))
+        frames = [walk.slice(frame, frame + 1) for frame in range(3 * rate, walk.n_frames)]
+        found[f"made walk with drift, {rate} Hz"] = hold_feet(walk.slice(0, 3 * rate), frames)
+    return found
+
+
 def measure(path: Path) -> LiveFigures:
     """Send a take frame by frame, and compare it with the offline result."""
     recording = read_recording(path)
     recording = recording.slice(0, min(N_FRAMES, recording.n_frames))
-    take, rig, poses, times, rig_times = LiveTake(), None, [], [], []
+    take, rig, poses, times, rig_times, followed = LiveTake(), None, [], [], [], []
     calibration_s = 0.0
     for frame in frames_from_recording(recording):
         began = thread_time()
@@ -98,14 +114,17 @@ def measure(path: Path) -> LiveFigures:
         times.append(1e3 * elapsed)
         poses += arrived
         began = thread_time()
-        rig.update(arrived[-1].motion)
+        followed.append(rig.update(arrived[-1].motion))
         rig_times.append(1e3 * (thread_time() - began))
     offline = reconstruct(recording, settings=ReconstructSettings(causal=True))
     last = offline.tracks.positions[-len(poses) :]
     distance = np.linalg.norm(
         np.stack([each.joints.positions for each in poses]) - last, axis=-1
     )
-    return LiveFigures(times, rig_times, calibration_s, 100.0 * float(np.nanmean(distance)))
+    assert rig is not None and take.calibration is not None
+    feet = hold_feet(rig.update(take.calibration), followed)
+    offline_cm = 100.0 * float(np.nanmean(distance))
+    return LiveFigures(times, rig_times, calibration_s, offline_cm, feet)
 
 
 def _rig_for(take: LiveTake) -> LiveRetargeting:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solvers.feet import LivePlanting
 from solvers.motion import JointRecording, Motion, Skeleton, find_humanoid_map
 from solvers.motion import forward_kinematics as world_poses_of
 from solvers.recordings.streams import (
@@ -91,6 +92,7 @@ class _Rig:
         roles = find_humanoid_map(skeleton)
         source = find_humanoid_map(calibration.skeleton)
         self._retargeting = LiveRetargeting(calibration, source, skeleton, roles)
+        self._planting = LivePlanting(self._retargeting.update(calibration), roles)
         controls = tuple(
             Control(name, joint, joint, parent, IDENTITY, IDENTITY, position, True, not joint)
             for joint, (name, parent, position) in enumerate(
@@ -103,6 +105,7 @@ class _Rig:
 
     def keys(self, pose: Motion) -> list[np.ndarray]:
         """Return the channels of all controls."""
-        poses = world_poses_of(self._retargeting.update(pose))
+        posed = self._planting.update(self._retargeting.update(pose), pose.dt).motion
+        poses = world_poses_of(posed)
         keys = self._keys_of(self._target, poses, self._still)
         return [each.rotations.astype(np.float32) for each in keys.values()]

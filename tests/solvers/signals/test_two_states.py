@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 from numpy.testing import assert_allclose
 
-from solvers.signals import two_state_probabilities
+from solvers.signals import TwoStateFilter, two_state_probabilities
 
 BEGIN, END = 2.0, 3.0
 
@@ -45,3 +45,16 @@ def test_certain_evidence_overflows_nothing():
     found = two_state_probabilities(evidence, 60.0, BEGIN, END)[:, 0]
 
     assert found[:2000].min() > 0.999 and found[2000:].max() < 0.001
+
+
+def test_filter_knows_only_the_frames_so_far(rng):
+    evidence = rng.normal(scale=2.0, size=(7, 2))
+
+    filtered = TwoStateFilter(BEGIN, END)
+    found = [filtered.update(each, 1.0 / 5.0) for each in evidence]
+
+    expected = [
+        [probability_by_enumeration(one[: frame + 1], 5.0)[-1] for one in evidence.T]
+        for frame in range(len(evidence))
+    ]
+    assert_allclose(found, expected)

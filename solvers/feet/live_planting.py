@@ -1,0 +1,159 @@
+"""Hold planted feet in place while an actor moves."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import Array, Flags
+from ..motion import Motion, WorldPoses, forward_kinematics, reach
+from ..motion.humanoid import (
+    HUMAN_LEG_LENGTH_M,
+    HumanoidMap,
+    detect_contacts,
+    foot_noise,
+    foot_points,
+    leg_length,
+)
+from ..motion_fitting.goals import BonePoint
+from .legs import SIDES, LegJoints, find_legs
+from .live_contacts import MAX_GAP_S, LiveContacts, RunningLine
+from .sole import SPEED_FALLOFF, instant_loads, measure_standing_heights, sole_points
+
+RELEASE_RATE = 16.0
+"""Per second: rate of the critically damped return of a foot to its captured path. By
+definition: 5 % are left after the 0.3 s of Blend (`PlantSettings`)."""
+MAX_HOLD_M = 0.15
+"""Meters, for a leg of 0.9 m: a foot held farther from its captured path is released. It guards
+against contacts that are none, and bounds what a drifting sensor adds up."""
+MAX_SLIDE_SPEED = 0.5
+"""Meters per second, for a leg of 0.9 m: a foot whose loaded part is faster is lifted, before
+the filter is certain of it. It guards swings, which would be late and short."""
+RESUME_FRACTION = 0.5
+"""Fraction of both limits below which such a foot may be held again. It guards against a foot
+that is held and released in every second frame."""
+
+
+class PlantedPose(NamedTuple):
+    """One frame."""
+
+    motion: Motion
+    contacts: Flags
+    """Whether the left and the right foot are held, shape (2,)."""
+
+
+class LivePlanting:
+    """Holds each foot in contact where it is, one frame after another.
+
+    In contact a foot is shifted against the displacement of the loaded part of its sole, which
+    so stays where it came down: the sole may roll from heel to ball. Then the shift returns to
+    zero like a critically damped spring, from the speed that it had, so that neither position
+    nor speed jumps. Only the legs rotate: hips and feet keep their rotation, and the root its
+    path. Nothing that later frames show is used. After a gap feet begin where they are.
+
+    Parameters
+    ----------
+    calibration : Motion
+        Without gaps; the seconds before the first frame.
+    humanoid_map : HumanoidMap
+        Of its skeleton.
+    """
+
+    def __init__(self, calibration: Motion, humanoid_map: HumanoidMap) -> None:
+        motion, roles = calibration, humanoid_map
+        legs = find_legs(motion.skeleton, roles)
+        self._feet: list[_LiveFoot] = []
+        if len(legs) < len(SIDES):
+            return
+        poses, rate = forward_kinematics(motion), motion.frame_rate
+        self._contact_points = foot_points(motion.skeleton, roles)
+        path = poses.positions[:, self._contact_points]
+        size, noise = leg_length(motion.skeleton, roles) / HUMAN_LEG_LENGTH_M, foot_noise(path)
+        self._contacts = LiveContacts(rate, size, noise)
+        for points in path:
+            self._contacts.update(points, motion.dt)
+        for leg, contact in zip(legs, detect_contacts(motion, roles).T, strict=True):
+            self._feet.append(_LiveFoot(motion, poses, leg, contact, noise))
+
+    @property
+    def has_legs(self) -> bool:
+        """Whether the skeleton has both legs; otherwise nothing is held."""
+        return bool(self._feet)
+
+    def update(self, pose: Motion, elapsed_s: float) -> PlantedPose:
+        """Return a pose with the feet held, and which of them are.
+
+        Parameters
+        ----------
+        pose : Motion
+            One frame, without gaps.
+        elapsed_s : float, seconds since the last frame
+        """
+        if not self._feet:
+            return PlantedPose(pose, np.zeros(len(SIDES), dtype=np.bool_))
+        poses = forward_kinematics(pose)
+        points = poses.positions[0, self._contact_points]
+        contacts = self._contacts.update(points, elapsed_s) > 0.5
+        for foot, is_in_contact in zip(self._feet, contacts, strict=True):
+            shift = foot.update(poses, bool(is_in_contact), elapsed_s)
+            if shift.any():
+                target = poses.positions[:, foot.leg.ankle] + shift
+                pose = reach(pose, foot.leg.chain, target, world=poses)
+        return PlantedPose(pose, np.array([foot.is_held for foot in self._feet]))
+
+
+class _LiveFoot:
+    """One foot, and how far it is shifted from its captured path."""
+
+    def __init__(
+        self, motion: Motion, poses: WorldPoses, leg: LegJoints, contact: Flags, noise: float
+    ) -> None:
+        self.leg = leg
+        self._points = (*sole_points(motion.skeleton, leg), BonePoint(leg.ankle, np.zeros(3)))
+        self._size = leg.length(motion.skeleton) / HUMAN_LEG_LENGTH_M
+        path = np.stack([point.position(poses) for point in self._points], axis=1)
+        self._standing = measure_standing_heights(path, contact, motion.frame_rate)
+        self._line = RunningLine(motion.frame_rate, noise, SPEED_FALLOFF * self._size)
+        for positions in path:
+            self._load = self._loads(positions, motion.dt)
+        self._last = path[-1]
+        self._shift, self._speed = np.zeros(3), np.zeros(3)
+        self._is_slipping = self.is_held = False
+
+    def update(self, poses: WorldPoses, is_in_contact: bool, elapsed_s: float) -> Array:
+        """Return the shift of the foot in meters, shape (3,)."""
+        positions = np.concatenate([point.position(poses) for point in self._points])
+        if elapsed_s > MAX_GAP_S:
+            self._last, self._shift, self._speed = positions, np.zeros(3), np.zeros(3)
+        last, load_before = self._last, self._load
+        self._last, self._load = positions, self._loads(positions, elapsed_s)
+        step = 0.5 * (self._load + load_before) @ (positions - last)
+        held = self._shift - step
+        excess = max(
+            float(np.linalg.norm(held)) / (MAX_HOLD_M * self._size),
+            float(np.linalg.norm(self._velocity)) / (MAX_SLIDE_SPEED * self._size),
+        )
+        if excess > 1.0:
+            self._is_slipping = True
+        elif excess < RESUME_FRACTION:
+            self._is_slipping = False
+        self.is_held = is_in_contact and not self._is_slipping
+        if self.is_held:
+            self._shift, self._speed = held, -step / elapsed_s
+        else:
+            self._ease_out(elapsed_s)
+        return self._shift
+
+    def _ease_out(self, elapsed_s: float) -> None:
+        """Let the shift return to zero, as the exact solution of the spring for a time."""
+        decay = np.exp(-RELEASE_RATE * elapsed_s)
+        start = self._speed + RELEASE_RATE * self._shift
+        self._shift = (self._shift + start * elapsed_s) * decay
+        self._speed = (self._speed - RELEASE_RATE * start * elapsed_s) * decay
+
+    def _loads(self, positions: Array, elapsed_s: float) -> Array:
+        """Return the fraction of the load on each point, (n_points,); note their velocity."""
+        mean, velocities = self._line.update(positions, elapsed_s)
+        heights = mean[:, 2] - self._standing
+        load = instant_loads(heights, np.linalg.norm(velocities, axis=-1), self._size)
+        self._velocity = load @ velocities
+        return load
