@@ -12,7 +12,7 @@ import bpy
 from ...solvers.gestures import Gesture, GestureEvent
 from ...solvers.motion import JointRecording
 from ..drawing.view_control import rotate_views, zoom_views
-from ..search.performing import page, search_with, show_library
+from ..search.performing import choose, page, search_with, show_all, show_library
 
 STARTED = "Perform what you search for, then clap."
 
@@ -28,9 +28,12 @@ class Library:
     """By 1 (the next page) or -1."""
     search: Callable[[bpy.types.Context, JointRecording], str]
     """For a performance."""
+    show_all: Callable[[bpy.types.Context], str]
+    choose: Callable[[bpy.types.Context], str]
+    """Search with the clip that is shown."""
 
 
-LIBRARY = Library(show_library, page, search_with)
+LIBRARY = Library(show_library, page, search_with, show_all, choose)
 """The one that gestures reach."""
 
 
@@ -44,6 +47,10 @@ def obey(context: bpy.types.Context, event: GestureEvent) -> str:
     gesture = event.gesture
     if gesture is Gesture.HAND_UP:
         return LIBRARY.show(context)
+    if gesture is Gesture.HAND_UP_AGAIN:
+        return LIBRARY.show_all(context)
+    if gesture is Gesture.LEFT_HAND_UP:
+        return LIBRARY.choose(context)
     if gesture in {Gesture.PAGE_NEXT, Gesture.PAGE_BACK}:
         return LIBRARY.page(context, 1 if gesture is Gesture.PAGE_NEXT else -1)
     if gesture is Gesture.ZOOM:

@@ -28,7 +28,7 @@ TIMER_INTERVAL_S = 1.0 / 30.0
 WAITING = "No data yet. Start your tracker."
 MODES = {
     Mode.IDLE: "Clap to perform, raise the right hand for the library",
-    Mode.BROWSING: "Wave to page, clap to perform",
+    Mode.BROWSING: "Wave to page, left hand up to search with this clip, clap to perform",
     Mode.CAPTURING: "Performing; clap to end",
 }
 

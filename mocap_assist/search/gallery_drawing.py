@@ -120,7 +120,8 @@ class Gallery:
         match = self.search.finding.found[index].match
         color = TEXT_COLOR if match.score >= GOOD_SCORE else WEAK_COLOR
         left, width = cell.x + 0.5 * GAP_PX * scale, cell.width - GAP_PX * scale
-        for text, height in ((f"{match.score:.0%}", 0.58), (match.clip, 0.18)):
+        score = f"{match.score:.0%}" if self.search.is_ranked else ""
+        for text, height in ((score, 0.58), (match.clip, 0.18)):
             write(text, (left, cell.y + height * LABEL_PX * scale), width, color)
 
 

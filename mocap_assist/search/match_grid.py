@@ -58,7 +58,7 @@ def draw_match_grid(
         row, cell = listed.rows[index], grid.column(align=True)
         cell.template_icon(icon_of(search, index), scale=PICTURE)
         is_shown = index == listed.active
-        text = f"{row.score:.0%} {row.name}"
+        text = f"{row.score:.0%} {row.name}" if search.is_ranked else row.name
         cell.operator(CHOOSE, text=text, translate=False, depress=is_shown).index = index
     return n_good
 

@@ -53,7 +53,8 @@ class MOCAP_UL_matches(bpy.types.UIList):
         texts.label(text=item.name, translate=False)
         if is_wide(context):
             texts = texts.split(factor=0.4)
-        texts.label(text=f"{item.score:.0%}", translate=False)
+        is_ranked = search is None or search.is_ranked
+        texts.label(text=f"{item.score:.0%}" if is_ranked else "", translate=False)
         if is_wide(context):
             texts.label(text=frames_text(item.start, item.stop), translate=False)
 
@@ -130,7 +131,8 @@ def _draw_matches(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
     if search is None:
         draw_sentence(column, context, "Outdated. Press Find Similar again.", icon="INFO")
         return
-    draw_sentence(column, context, f'Similar to "{listed.query}"')
+    title = f'Similar to "{listed.query}"' if search.is_ranked else "Clips of the library"
+    draw_sentence(column, context, title)
     column.operator(BROWSE, icon="PLAY")
     n_good = draw_match_grid(column, context, search)
     header, body = column.panel("mocap_assist_all_matches", default_closed=True)

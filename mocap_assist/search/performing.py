@@ -1,15 +1,20 @@
-"""The library for an actor in front of a camera: show, page, and search by performing.
+"""The library for an actor in front of a camera: show, page, choose, search by performing.
 
 Each function returns a sentence to show.
 """
 
+from collections.abc import Callable
 from functools import partial
+from pathlib import Path
+from typing import NamedTuple, Self
 
 import bpy
+import numpy as np
 from bpy.app import timers
 
-from ...solvers.errors import MocapAssistError
-from ...solvers.motion import JointRecording
+from ...solvers.errors import InvalidMotionError, MocapAssistError
+from ...solvers.motion import JointRecording, Tracks
+from ...solvers.motion.humanoid import POSTURE_JOINTS
 from ..drawing.view_drawing import redraw
 from ..jobs.job import Job, run
 from ..library.sources import library_path
@@ -17,48 +22,86 @@ from ..runtime.solver_operator import in_background
 from ..scene.units import unit_of
 from . import searches
 from .finding import fill_list
-from .solve_finding import Finding, FindProblem, find_clips
+from .solve_finding import (
+    BROWSED_HZ,
+    MAX_MATCHES,
+    Finding,
+    FindProblem,
+    find_clips,
+    list_clips,
+)
 
 POLL_INTERVAL_S = 0.2  # seconds
 PERFORMED = "your performance"
+THE_LIBRARY = "the library"
+NO_LIBRARY = "There is no library yet. Add folders, then press Build Library."
 
 
 def show_library(context: bpy.types.Context) -> str:
-    """Open the sidebar of every 3D View of the window on the library, with the ghost."""
+    """Open the sidebar of every 3D View of the window on the library, with the ghost.
+
+    What was searched for last is listed, or else the clips of the library.
+    """
     for area in context.window.screen.areas if context.window else ():
         if area.type == "VIEW_3D":
             area.spaces.active.show_region_ui = True
     bpy.context.window_manager.mocap_assist_ghost = True
     redraw(bpy.context)
-    return chosen_sentence()
+    if bpy.context.window_manager.mocap_assist_matches.rows:
+        return chosen_sentence()
+    return show_all(context)
+
+
+def show_all(context: bpy.types.Context, first: int = 0, is_last_chosen: bool = False) -> str:
+    """List clips of the library from a place in it on, and choose the first or last of them."""
+    library = _library()
+    if library is None:
+        return NO_LIBRARY
+    solve = partial(list_clips, str(library), first)
+    listing = _Listing.of(THE_LIBRARY, BROWSED_HZ, is_last_chosen)
+    return _list_later(solve, listing, "Reading the library...")
 
 
 def page(context: bpy.types.Context, step: int) -> str:
-    """Choose the next match, or the one before; from the last one on to the first."""
-    listed = bpy.context.window_manager.mocap_assist_matches
-    if listed.rows:
-        listed.active = (listed.active + step) % len(listed.rows)
-        redraw(bpy.context)
+    """Choose the next match, or the one before; from the last one on to the first.
+
+    In a library with more clips than are listed, the next ones follow.
+    """
+    listed, search = bpy.context.window_manager.mocap_assist_matches, searches.listed(context)
+    if not listed.rows:
+        return chosen_sentence()
+    index = listed.active + step
+    if search is not None and not search.is_ranked and not 0 <= index < len(listed.rows):
+        finding = search.finding
+        if finding.n_clips > len(listed.rows):
+            return show_all(context, _next_first(finding, step), step < 0)
+    listed.active = index % len(listed.rows)
+    redraw(bpy.context)
     return chosen_sentence()
 
 
-def search_with(context: bpy.types.Context, query: JointRecording) -> str:
+def choose(context: bpy.types.Context) -> str:
+    """Search with the clip that is shown."""
+    try:
+        _, found = searches.chosen(bpy.context)
+    except InvalidMotionError as error:
+        return str(error)
+    postures = found.postures.astype(np.float64)
+    return search_with(context, Tracks(POSTURE_JOINTS, postures, found.rate), found.entry.name)
+
+
+def search_with(
+    context: bpy.types.Context, query: JointRecording | Tracks, name: str = PERFORMED
+) -> str:
     """Search with a recording in the background, and fill the list at the end."""
-    scene = bpy.context.scene
-    library = library_path(scene.mocap_assist.library.settings().choices)
-    if not library.is_file():
-        return "There is no library yet. Add folders, then press Build Library."
-    settings = scene.mocap_assist.find.settings().finding
+    library = _library()
+    if library is None:
+        return NO_LIBRARY
+    settings = bpy.context.scene.mocap_assist.find.settings().finding
     solve = partial(find_clips, FindProblem(query, str(library), settings))
-    start, meters = float(scene.frame_current), unit_of(scene)
-    step = scene.render.fps / scene.render.fps_base / query.frame_rate
-    if in_background():
-        return _list_matches(run(solve), (start, step), meters)
-    job: Job[Finding] = Job(solve)
-    timers.register(
-        partial(_poll_search, job, (start, step), meters), first_interval=POLL_INTERVAL_S
-    )
-    return f"Searching with {query.n_frames} frames..."
+    n_frames = len(query.positions) if isinstance(query, Tracks) else query.n_frames
+    listing = _Listing.of(name, query.frame_rate)
+    return _list_later(solve, listing, f"Searching with {n_frames} frames...")
 
 
 def chosen_sentence() -> str:
@@ -67,22 +110,65 @@ def chosen_sentence() -> str:
     if not listed.rows:
         return "No search yet."
     index = min(listed.active, len(listed.rows) - 1)
-    row = listed.rows[index]
+    row, search = listed.rows[index], searches.listed(bpy.context)
+    if search is not None and search.finding.first is not None:
+        return f"{search.finding.first + index + 1} of {search.finding.n_clips}: {row.name}."
     return f"{index + 1} of {len(listed.rows)}: {row.name} ({row.score:.0%})."
 
 
-def _poll_search(job: Job[Finding], grid: tuple[float, float], meters: float) -> float | None:
+def _library() -> Path | None:
+    """Return the library of the scene; None if it was not built."""
+    library = library_path(bpy.context.scene.mocap_assist.library.settings().choices)
+    return library if library.is_file() else None
+
+
+def _next_first(finding: Finding, step: int) -> int:
+    """Return the place of the first clip to list after, or before, those that are listed."""
+    assert finding.first is not None
+    last_page = (finding.n_clips - 1) // MAX_MATCHES
+    page_number = finding.first // MAX_MATCHES + step
+    return page_number % (last_page + 1) * MAX_MATCHES
+
+
+def _list_later(solve: Callable[..., Finding], listing: "_Listing", waiting: str) -> str:
+    """List what a solve finds, once it has ended; return a sentence for the meantime."""
+    if in_background():
+        return listing.fill(run(solve))
+    job: Job[Finding] = Job(solve)
+    timers.register(partial(_poll_search, job, listing), first_interval=POLL_INTERVAL_S)
+    return waiting
+
+
+class _Listing(NamedTuple):
+    """What a list of clips belongs to."""
+
+    query: str
+    grid: tuple[float, float]
+    meters: float
+    is_last_chosen: bool
+
+    @classmethod
+    def of(cls, query: str, frame_rate: float, is_last_chosen: bool = False) -> Self:
+        """Return the list for a query that begins at the current frame."""
+        scene = bpy.context.scene
+        step = scene.render.fps / scene.render.fps_base / frame_rate
+        return cls(query, (float(scene.frame_current), step), unit_of(scene), is_last_chosen)
+
+    def fill(self, finding: Finding) -> str:
+        """List the clips; say which is chosen."""
+        fill_list(bpy.context, searches.keep(self.query, self.grid, self.meters, finding))
+        if self.is_last_chosen:
+            bpy.context.window_manager.mocap_assist_matches.active = len(finding.found) - 1
+        return chosen_sentence()
+
+
+def _poll_search(job: Job[Finding], listing: _Listing) -> float | None:
     """Fill the list once the job has ended; otherwise return the seconds to the next call."""
     if not job.done():
         return POLL_INTERVAL_S
     try:
-        _list_matches(job.result(), grid, meters)
+        listing.fill(job.result())
     except MocapAssistError as error:
         bpy.context.window_manager.mocap_assist_indexing.report = str(error)
     redraw(bpy.context)
     return None
-
-
-def _list_matches(finding: Finding, grid: tuple[float, float], meters: float) -> str:
-    fill_list(bpy.context, searches.keep(PERFORMED, grid, meters, finding))
-    return chosen_sentence()

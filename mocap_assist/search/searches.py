@@ -24,6 +24,11 @@ class Search(NamedTuple):
     """Length of one of the scene's units."""
     finding: Finding
 
+    @property
+    def is_ranked(self) -> bool:
+        """Whether its clips were searched for; otherwise they are those of the library."""
+        return self.finding.first is None
+
     def scene_frame(self, query_frame: float) -> float:
         """Return the scene frame of a frame of the query."""
         return self.start + self.step * query_frame

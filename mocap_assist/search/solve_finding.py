@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ...solvers.arrays import Array
 from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.motion.humanoid import (
+    ADULT_BONE_LENGTHS_M,
     estimate_bone_lengths,
     normalize_postures,
     posture_positions,
@@ -30,6 +31,9 @@ Recording = Motion | Tracks | JointRecording
 
 MAX_MATCHES = 48
 """Maximum number of listed matches."""
+BROWSED_HZ = 30.0
+"""Frames per second of the query that stands for none while the library is browsed. By
+definition."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +86,8 @@ class Finding:
     stage: QueryPath
     n_clips: int
     """In the library."""
+    first: int | None = None
+    """Place in the library of the first of its clips that are listed; None for a search."""
 
 
 def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Finding:
@@ -116,6 +122,32 @@ def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Findi
             progress(0.7 + 0.3 * index / len(matches), "Drawing")
             found.append(_shown(match, numbers[match.clip], library))
     return Finding(tuple(found), stage, len(entries))
+
+
+def list_clips(library: str, first: int, *, progress: Progress = unwatched) -> Finding:
+    """Show some clips of a library, unranked, from a place in it on.
+
+    Raises
+    ------
+    InvalidFileError
+        The library is missing or cannot be read.
+    """
+    with load_clip_library(Path(library)) as clips:
+        entries = clips.numbered()
+        numbers = list(entries)[first : first + MAX_MATCHES]
+        found = []
+        for index, number in enumerate(numbers):
+            progress(index / len(numbers), "Drawing")
+            found.append(_shown(_whole(entries[number]), number, clips))
+    stage = QueryPath(np.zeros((1, 3)), np.zeros(1), ADULT_BONE_LENGTHS_M, BROWSED_HZ)
+    return Finding(tuple(found), stage, len(entries), first)
+
+
+def _whole(entry: ClipEntry) -> Match:
+    """Return a complete clip as its own match."""
+    last = np.array([(entry.n_frames - 1) / entry.frame_rate * BROWSED_HZ, entry.n_frames - 1])
+    alignment = np.stack([np.zeros(2), last]).round().astype(np.intp)
+    return Match(entry.name, range(entry.n_frames), 1.0, alignment)
 
 
 def _shown(match: Match, number: int, library: ClipLibrary) -> Found:

@@ -8,6 +8,8 @@ class Gesture(Enum):
     """Command of the actor."""
 
     HAND_UP = "hand up"
+    HAND_UP_AGAIN = "hand up again"
+    LEFT_HAND_UP = "left hand up"
     PAGE_NEXT = "page next"
     PAGE_BACK = "page back"
     CAPTURE_START = "capture start"

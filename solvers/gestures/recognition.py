@@ -32,7 +32,8 @@ class GestureRecognizer:
     """Recognize the gestures of one actor.
 
     The raised right hand shows the library. While it is shown, waves of that hand to the right
-    and left turn its pages. A clap starts a performance and the next one ends it; all other
+    and left turn its pages, the hand raised again asks for all clips, and the raised left hand
+    chooses one. A clap starts a performance and the next one ends it; all other
     gestures are ignored in between. Both hands, held still in front of the chest, grab the view
     and zoom by their distance; the straight right arm grabs and turns it. All thresholds are in
     arm lengths, in the actor's own right, forward and up directions, from past frames only.
@@ -51,6 +52,7 @@ class GestureRecognizer:
         self._reader = HandEstimator(settings)
         self._clap, self._wave = Clap(settings), Wave(settings)
         self._hand_up = HandUp(settings)
+        self._left_up = HandUp(settings, Gesture.LEFT_HAND_UP)
         self._zoom, self._turn = Zoom(settings), Turn(settings)
         self._mode = Mode.IDLE
         self._mode_since = self._time = self._hands_time = float("-inf")
@@ -113,11 +115,17 @@ class GestureRecognizer:
             return ()
         browsing = self._mode is Mode.BROWSING or not self._settings.waves_need_hand_up
         up, wave = self._hand_up.update(hands), self._wave.update(hands)
+        chosen = self._left_up.update(hands)
         if not browsing or self._turn.is_active:
             wave = None
-        if up is not None or wave is not None:
+        if self._mode is not Mode.BROWSING:
+            chosen = None
+        elif up is not None:
+            up = replace(up, gesture=Gesture.HAND_UP_AGAIN)
+        found = tuple(event for event in (up, wave, chosen) if event is not None)
+        if found:
             self._enter(Mode.BROWSING, hands.time)
-        return tuple(event for event in (up, wave, zoom, turn) if event is not None)
+        return (*found, *(event for event in (zoom, turn) if event is not None))
 
     def _handle_clap(self, clap: GestureEvent) -> tuple[GestureEvent, ...]:
         since, self._last_clap_time = clap.time - self._last_clap_time, clap.time
@@ -132,7 +140,9 @@ class GestureRecognizer:
         self._mode, self._mode_since = mode, time
 
     def _reset(self) -> None:
-        for detector in (self._clap, self._wave, self._hand_up, self._zoom, self._turn):
+        for detector in (
+            self._clap, self._wave, self._hand_up, self._left_up, self._zoom, self._turn,
+        ):  # fmt: skip
             detector.reset()
 
 

@@ -11,7 +11,7 @@ from .settings import GestureSettings
 from .stroke_gestures import MAX_HANGING_HEIGHT
 
 LOWERED_HEIGHT = 0.0
-"""Height of the right wrist above its shoulder below which the hand counts as lowered."""
+"""Height of the wrist above its shoulder below which the hand counts as lowered."""
 MIN_FORWARD = 0.3
 """Minimum distance of zooming hands in front of the shoulders, in arm lengths. Chosen by hand:
 without it the exercises of UI-PRMD zoom 43 times."""
@@ -68,10 +68,10 @@ class StillnessTimer:
 
 
 class HandUp:
-    """Detect the raised right hand, once until it is lowered, with the left arm hanging."""
+    """Detect the raised right or left hand, once until it is lowered, the other arm hanging."""
 
-    def __init__(self, settings: GestureSettings) -> None:
-        self._settings = settings
+    def __init__(self, settings: GestureSettings, gesture: Gesture = Gesture.HAND_UP) -> None:
+        self._settings, self._gesture = settings, gesture
         self.reset()
 
     def reset(self) -> None:
@@ -81,13 +81,16 @@ class HandUp:
 
     def update(self, hands: Hands) -> GestureEvent | None:
         """Return an event once the hand has been up for long enough."""
-        self._reported = self._reported and hands.right[2] > LOWERED_HEIGHT
-        up = hands.right[2] >= self._settings.raised and hands.left[2] < MAX_HANGING_HEIGHT
-        duration = self._hold.update(hands.time, hands.right if up else None)
+        hand, other = hands.right, hands.left
+        if self._gesture is Gesture.LEFT_HAND_UP:
+            hand, other = other, hand
+        self._reported = self._reported and hand[2] > LOWERED_HEIGHT
+        up = hand[2] >= self._settings.raised and other[2] < MAX_HANGING_HEIGHT
+        duration = self._hold.update(hands.time, hand if up else None)
         if self._reported or duration < self._settings.raised_for:
             return None
         self._reported = True
-        return GestureEvent(Gesture.HAND_UP, hands.time, self._hold.since)
+        return GestureEvent(self._gesture, hands.time, self._hold.since)
 
 
 class DragGesture:

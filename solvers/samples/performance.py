@@ -49,6 +49,7 @@ AHEAD: Position = (0.0, 0.96, 0.0)
 GESTURES: dict[str, tuple[tuple[float, Position, Position] | None, ...]] = {
     "rest": ((1.0, REST, REST),),
     "hand up": ((0.7, HIGH, REST), None, (1.2, HIGH, REST)),
+    "left hand up": ((0.7, REST, HIGH), None, (1.2, REST, HIGH)),
     "wave right": (
         (0.5, WAVING, REST), (0.3, (0.05, 0.5, 0.4), REST), (0.35, (0.8, 0.35, 0.4), REST),
         None, (0.5, WAVING, REST),

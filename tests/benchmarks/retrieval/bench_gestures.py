@@ -42,10 +42,11 @@ from .gesture_streams import (
 )
 
 WAVES = {Gesture.PAGE_NEXT, Gesture.PAGE_BACK}
+HANDS_UP = {Gesture.HAND_UP, Gesture.HAND_UP_AGAIN, Gesture.LEFT_HAND_UP}
 MEANT = {
     "a10 hand clap": {Gesture.CAPTURE_START},
     "a02 horizontal arm wave": WAVES,
-    "a01 high arm wave": {*WAVES, Gesture.HAND_UP},
+    "a01 high arm wave": {*WAVES, *HANDS_UP},
 }
 MEANT_UTD = {
     "a4 two hand front clap": {Gesture.CAPTURE_START},
@@ -55,7 +56,7 @@ MEANT_UTD = {
 }
 CLAPPING = ("a10_s0", "a4_")
 OTHERS, OTHERS_UTD = "claps in the other 19 actions", "claps in the other 26 actions, UTD-MHAD"
-KINDS = ({Gesture.HAND_UP}, WAVES, {Gesture.CAPTURE_START}, {Gesture.ZOOM}, {Gesture.TURN})
+KINDS = (HANDS_UP, WAVES, {Gesture.CAPTURE_START}, {Gesture.ZOOM}, {Gesture.TURN})
 NAMES = ("hand up", "waves", "claps", "zoom", "turn")
 METHODS = {"ours": ours, "simple thresholds": thresholds}
 Method = Callable[[Stream, GestureSettings], tuple[GestureEvent, ...]]

@@ -32,11 +32,42 @@ def test_performance_fills_the_list_and_waves_page_it(
     assert performing.page(blank.context, 1) == message
 
 
+def test_library_is_browsed_and_a_clip_searched_with(
+    find, newcomer, performing, blank, load, monkeypatch
+):
+    newcomer("walk")
+    find()
+    listed = blank.context.window_manager.mocap_assist_matches
+
+    shown = performing.show_all(blank.context)
+
+    assert shown.startswith("1 of 6: ") and "%" not in shown and len(listed.rows) == 6
+    search = load("mocap_assist.search.searches").listed(blank.context)
+    ghost, found = load("mocap_assist.search.ghost"), search.finding.found[0]
+    last = (found.entry.n_frames - 1) / found.entry.frame_rate * 30.0
+    assert ghost.clip_frame(found, last) == pytest.approx(found.entry.n_frames - 1, abs=1.0)
+    assert len(ghost.ghost_lines(search.finding.stage, found, 3.0)) == 19
+
+    assert performing.page(blank.context, 1).startswith("2 of 6: ")
+    name = listed.rows[1].name
+    assert f"1 of 6: {name} (" in performing.choose(blank.context)
+    assert listed.query == name
+
+    monkeypatch.setattr(load("mocap_assist.search.solve_finding"), "MAX_MATCHES", 4)
+    monkeypatch.setattr(performing, "MAX_MATCHES", 4)
+    monkeypatch.setattr(performing, "run", lambda solve: solve())
+    performing.show_all(blank.context)
+    assert len(listed.rows) == 4
+    back = [performing.page(blank.context, -1)[:6] for _ in range(3)]
+    assert back == ["6 of 6", "5 of 6", "4 of 6"]
+    assert performing.page(blank.context, 1).startswith("5 of 6: ")
+
+
 def test_show_library_turns_on_the_ghost(performing, blank):
     blank.context.window_manager.mocap_assist_matches.rows.clear()
     blank.context.window_manager.mocap_assist_ghost = False
 
-    assert performing.show_library(blank.context) == "No search yet."
+    assert "There is no library yet" in performing.show_library(blank.context)
     assert blank.context.window_manager.mocap_assist_ghost
     assert performing.page(blank.context, 1) == "No search yet."
 

@@ -17,6 +17,8 @@ def library(load, monkeypatch):
         show=lambda context: calls.append("show") or "The library.",
         page=lambda context, step: calls.append(step) or "A page.",
         search=lambda context, query: calls.append(query) or "Searched.",
+        show_all=lambda context: calls.append("all") or "All clips.",
+        choose=lambda context: calls.append("choose") or "Chosen.",
     )
     monkeypatch.setattr(commands, "LIBRARY", library)
     return calls

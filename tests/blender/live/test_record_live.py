@@ -77,7 +77,7 @@ BONES = {
 def test_a_rig_follows_the_stream_and_gets_an_action(
     request, rig, blank, load, stream, on_port
 ):
-    found = blank.ops.mocap_assist.record_live(duration=1.0, calibration_s=1.0)
+    found = blank.ops.mocap_assist.record_live(duration=1.5, calibration_s=1.0)
     assert found == {"FINISHED"}
     action = rig.animation_data.action
     assert action.name.startswith(f"{rig.name}.live")
