@@ -40,6 +40,7 @@ class ListenButton(OperatorMixin):
                     live_port(),
                     StreamProtocol[context.scene.mocap_assist.live.live_protocol],
                     allowed_addresses(),
+                    context.scene.mocap_assist.live.live_person,
                     tuple(preferred("clean_color")),
                     preferred("line_width"),
                 )

@@ -50,10 +50,11 @@ class Listening:
         port: int,
         protocol: StreamProtocol,
         allowed: str,
+        person: int,
         color: Color,
         width: float,
     ) -> None:
-        self.listener = StreamListener(port, protocol, allowed_networks(allowed))
+        self.listener = StreamListener(port, protocol, allowed_networks(allowed), person=person)
         self.session = LiveSession()
         self.message = ""
         self._shown_texts: list[str] = []

@@ -8,7 +8,7 @@ import bpy
 from mathutils import Matrix, Quaternion
 
 from ...solvers.errors import InvalidMotionError
-from ...solvers.recordings.streams import StreamProtocol
+from ...solvers.recordings.streams import MAX_PEOPLE, StreamProtocol
 from ...solvers.settings import Settings, setting
 from ...solvers.version import version
 from ...solvers.workflows import LiveTakeSettings
@@ -51,6 +51,13 @@ class LiveChoices(Settings):
     )  # fmt: skip
     live_protocol: StreamProtocol = setting(
         StreamProtocol.AUTO, "Protocol of the tracker that streams", label="Protocol"
+    )
+    live_person: int = setting(
+        0,
+        "Person to follow, numbered as they appear; 0 follows the first one",
+        minimum=0,
+        maximum=MAX_PEOPLE,
+        label="Person",
     )
     live_limbs: Limbs = setting(
         Limbs.FK,
@@ -99,6 +106,7 @@ def read_live(
         LiveRigChoices(
             choices.hold_feet, target_limits(armature, rig) if choices.keep_limits else None
         ),
+        choices.live_person,
     )
     return PreviewSolve(record_live, problem)
 

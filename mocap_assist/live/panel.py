@@ -38,6 +38,7 @@ class PerformPanel(PanelMixin):
             if preferences() is not None:
                 layout.prop(preferences(), "live_port")
             layout.prop(context.scene.mocap_assist.live, "live_protocol")
+            layout.prop(context.scene.mocap_assist.live, "live_person")
             if exists(RECORD) and selected_armature(context) is not None:
                 column = settings_column(layout, context, "live")
                 live = context.scene.mocap_assist.live

@@ -46,6 +46,8 @@ class LiveProblem:
     first_frame: float
     """Frame of the scene at which the recording starts."""
     rig: LiveRigChoices = LiveRigChoices()
+    person: int = 0
+    """Number of the person to follow; 0: the first one."""
 
 
 class RecordedTake(NamedTuple):
@@ -92,7 +94,9 @@ def record_live(
 def _record(problem: LiveProblem, progress: Progress, keep: Show) -> None:
     last_pose = monotonic()
     networks = allowed_networks(problem.allowed)
-    with StreamListener(problem.port, problem.protocol, networks) as listener:
+    with StreamListener(
+        problem.port, problem.protocol, networks, person=problem.person
+    ) as listener:
         recorder = _Recorder(problem, keep)
         while not recorder.is_done:
             frames = listener.poll()

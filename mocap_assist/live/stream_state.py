@@ -16,13 +16,18 @@ def sender_text(state: ListenerState) -> str:
     if state.protocol is None or not state.counts.frames:
         return ""
     protocol, sender, rate = state.protocol.label, state.sender, round(state.rate)
-    return f"{protocol} from {sender}, {rate} Hz, {state.counts.dropped} dropped."
+    text = f"{protocol} from {sender}, {rate} Hz, {state.counts.dropped} dropped."
+    if state.n_people < 2:
+        return text
+    return f"{text} {state.n_people} people; person {state.person} is followed."
 
 
 def issue_text(state: ListenerState) -> str:
     """Return the most important issue of a stream; empty without one."""
     if state.is_silent:
         return "The stream has stopped."
+    if state.person > state.n_people > 0:
+        return f"Person {state.person} is not in the stream."
     if state.other:
         return f"{state.other} sends too, and is ignored."
     if state.counts.frames:

@@ -9,6 +9,7 @@ True
 """
 
 from .frames import (
+    MAX_PEOPLE,
     PORT,
     LiveFrame,
     PoseFrame,
@@ -28,6 +29,7 @@ from .receiver import Receiver, allowed_networks
 from .senders import Packets, encode_recording, joints_of
 
 __all__ = [
+    "MAX_PEOPLE",
     "PORT",
     "ListenerState",
     "LiveFrame",

@@ -32,6 +32,10 @@ class ListenerState(NamedTuple):
     """Number of datagrams from addresses that are not allowed."""
     is_silent: bool
     """Whether frames came, but none in the last second."""
+    n_people: int = 0
+    """Number of people in the last second of the stream."""
+    person: int = 0
+    """Number of the one who is followed, from 1 in the order in which they appear."""
 
 
 class StreamListener:
@@ -43,6 +47,8 @@ class StreamListener:
     protocol : StreamProtocol
     networks : sequence of IPv4Network
         Networks that may send, next to this machine.
+    person : int
+        Number of the person to follow, from 1; 0: the first one, until missing for a second.
     now : callable
         Returns seconds.
 
@@ -58,12 +64,13 @@ class StreamListener:
         protocol: StreamProtocol = StreamProtocol.AUTO,
         networks: Sequence[IPv4Network] = (),
         *,
+        person: int = 0,
         now: Callable[[], float] = monotonic,
     ) -> None:
         self.receiver = Receiver(port, networks, now=now)
         self._now = now
         self._decoder = StreamDecoder(protocol)
-        self._reader = StreamReader(self._decoder)
+        self._reader = StreamReader(self._decoder, person)
         self._n_followed = 0
         self._useful_at = now()
         self._has_frames = False
@@ -85,6 +92,8 @@ class StreamListener:
             _text(receiver.other),
             receiver.n_refused,
             self._has_frames and self._now() - self._useful_at > SILENCE_S,
+            self._reader.n_people,
+            self._reader.followed,
         )
 
     def poll(self) -> list[StreamFrame]:
@@ -97,9 +106,12 @@ class StreamListener:
             self._n_followed, self._useful_at = self.receiver.n_followed, now
             self._decoder.restart()
             self._reader.restart()
+        n_others = self.counts.others
         frames = list(self._reader.read(*datagrams, arrived=now))
         if frames:
             self._useful_at, self._has_frames = now, True
+        elif self.counts.others > n_others:
+            self._useful_at = now
         elif now - self._useful_at > MAX_USELESS_S:
             self.receiver.release()
         return frames

@@ -8,6 +8,7 @@ from .joint_frames import (
     encode_frame,
     frames_from_recording,
 )
+from .people import MAX_PEOPLE
 from .pose_frames import PoseFrame, joints_from_pose, measured_rate, motion_from_poses
 from .stream_reader import (
     FrameDecoder,
@@ -21,6 +22,7 @@ from .stream_reader import (
 __all__ = [
     "FORMAT",
     "MAX_JOINTS",
+    "MAX_PEOPLE",
     "PORT",
     "FrameDecoder",
     "JointLines",

@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -12,16 +12,13 @@ from ....motion import JointRecording
 from ....progress import unwatched
 from ...conventions import joint_recording
 from .joint_frames import LiveFrame, decode_frame
+from .people import BODY_TIMEOUT_S, NEW_STREAM_S, People, Person
 from .pose_frames import PoseFrame
 
-NEW_STREAM_S = 2.0
-"""Minimum backward jump in time that starts a new stream, seconds."""
 N_RESTART_FRAMES = 5
 """Number of consecutive late frames in ascending order that also start a new stream."""
 MAX_LINES = 128
 """Maximum number of lines to read at a time: two seconds of two bodies, about 35 ms."""
-BODY_TIMEOUT_S = 1.0
-"""Duration in seconds without the followed body after which another one is followed."""
 N_RATE_STEPS = 30
 """Number of steps between frames from which the rate is measured: a second at 30 Hz."""
 PERFORMANCE = "The performance"
@@ -70,7 +67,7 @@ class StreamCounts:
     late: int = 0
     """Not later than a previous frame."""
     others: int = 0
-    """From bodies that are not followed."""
+    """Of people who are not followed."""
     skipped: int = 0
     """Lines that were not read because too many arrived at once."""
     why: str = field(default="")
@@ -85,13 +82,23 @@ class StreamCounts:
 class StreamReader:
     """Decode datagrams to the frames of one body, in order; invalid input never raises.
 
-    The first body is followed until it is missing for a second. Frames that are at least two
-    seconds too old come from a restarted sender, and so do consecutive late frames in
-    ascending order.
+    The first person is followed until missing for a second, or the one with a chosen number.
+    Frames have the body that the sender first called this person, also where the sender
+    exchanges identities. Frames that are at least two seconds too old come from a restarted
+    sender, and so do consecutive late frames in ascending order.
+
+    Parameters
+    ----------
+    decoder : FrameDecoder, optional
+        By default `JointLines`.
+    chosen : int
+        Number of the person to follow, from 1 in the order in which people appear; 0: the
+        first one.
     """
 
-    def __init__(self, decoder: FrameDecoder | None = None) -> None:
+    def __init__(self, decoder: FrameDecoder | None = None, chosen: int = 0) -> None:
         self.counts = StreamCounts()
+        self._people, self._chosen = People(), chosen
         self._decoder = decoder or JointLines()
         self._steps = deque[float](maxlen=N_RATE_STEPS)
         self._late: list[float] = []
@@ -99,10 +106,21 @@ class StreamReader:
 
     def restart(self) -> None:
         """Forget body and time: another sender comes."""
-        self._body: int | None = None
+        self._people.forget()
+        self._followed: Person | None = None
         self._time = float("-inf")
         self._late.clear()
         self._steps.clear()
+
+    @property
+    def n_people(self) -> int:
+        """Number of people in the last second of the stream."""
+        return self._people.n_present
+
+    @property
+    def followed(self) -> int:
+        """Number of the person who is followed; 0 before the first frame."""
+        return self._chosen or (self._followed.number if self._followed else 0)
 
     @property
     def rate(self) -> float:
@@ -135,13 +153,18 @@ class StreamReader:
                 self.counts.why = str(error)
                 continue
             for frame in frames:
-                if self._accepts(frame):
-                    yield frame
+                person = self._people.add(frame)
+                if self._accepts(frame, person):
+                    body = frame.body if person is None else person.body
+                    yield frame if body == frame.body else replace(frame, body=body)
 
-    def _accepts(self, frame: StreamFrame) -> bool:
+    def _accepts(self, frame: StreamFrame, person: Person | None) -> bool:
         elapsed = frame.time - self._time
         starts_stream = elapsed > BODY_TIMEOUT_S or elapsed <= -NEW_STREAM_S
-        if frame.body != self._body and not starts_stream:
+        if self._chosen and (person is None or person.number != self._chosen):
+            self.counts.others += 1
+            return False
+        if person is not self._followed and not starts_stream:
             self.counts.others += 1
             return False
         if not (starts_stream or elapsed > 0.0 or self._restarts(frame.time)):
@@ -149,7 +172,7 @@ class StreamReader:
             return False
         if 0.0 < elapsed <= BODY_TIMEOUT_S:
             self._steps.append(elapsed)
-        self._body, self._time = frame.body, frame.time
+        self._followed, self._time = person, frame.time
         self._late.clear()
         self.counts.frames += 1
         return True

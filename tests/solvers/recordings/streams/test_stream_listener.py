@@ -135,6 +135,20 @@ def test_a_sender_of_nothing_useful_does_not_block_the_tracker(listener, sender,
     assert listener.state.sender == name_of(tracker)
 
 
+def test_a_sender_without_the_chosen_person_is_not_given_up(clock):
+    with (
+        StreamListener(0, person=2, now=clock) as listener,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as tracker,
+    ):
+        tracker.connect(listener.receiver.address)
+        for number in range(50):
+            tracker.send(line(0.1 * number))
+            assert listener.poll() == []
+            clock.time += 0.1
+            assert listener.state.sender == name_of(tracker)
+        assert (listener.state.n_people, listener.state.person) == (1, 2)
+
+
 def test_a_program_that_sends_each_datagram_from_a_new_port_is_one_sender(listener, sender):
     for number in range(5):
         sender().send(line(0.1 * number))

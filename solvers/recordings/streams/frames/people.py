@@ -1,0 +1,136 @@
+"""Tell the people of a stream apart, whatever their sender calls them."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .joint_frames import LiveFrame
+from .pose_frames import PoseFrame
+
+MAX_PEOPLE = 16
+"""Number of people that are told apart. It bounds time and memory."""
+BODY_TIMEOUT_S = 1.0
+"""Duration in seconds without a person after which another one may have the number."""
+NEW_STREAM_S = 2.0
+"""Minimum backward jump in time that starts a new stream, seconds."""
+MIN_EXCHANGE_M = 0.25
+"""Meters: a person who jumps as far to where another one was has the other's identity. It
+guards people whose places differ by less than sensors err."""
+EXCHANGE_RATIO = 0.5
+"""Distance to the other's place over that to the own one, below which identities were
+exchanged. It guards people who pass each other."""
+MAX_RETURN_M = 0.5
+"""Meters from the last place within which a new identity is that of someone who was just lost.
+It guards people who come in where another one went."""
+MIN_ABSENCE_S = 0.1
+"""Seconds after which someone counts as lost. It guards against frames that come in another
+order; three frames at 30 Hz."""
+
+Place = tuple[float, float, float]
+
+
+@dataclass
+class Person:
+    """Someone in the stream.
+
+    Attributes
+    ----------
+    number : int
+        From 1, in the order in which people appear.
+    body : int
+        What the sender first called them.
+    place : float, float, float; meters
+    time : float, seconds
+    """
+
+    number: int
+    body: int
+    place: Place
+    time: float
+
+
+class People:
+    """Follows people by their places, so that exchanged and new identities change nothing.
+
+    A tracker that confuses two people continues the path of each under the identity of the
+    other: both jump at once. A person who is lost and found again has a new identity at the
+    same place.
+    """
+
+    def __init__(self) -> None:
+        self._by_identity: dict[int, Person] = {}
+
+    def forget(self) -> None:
+        """Forget everyone: another stream comes."""
+        self._by_identity.clear()
+
+    @property
+    def n_present(self) -> int:
+        """Number of people in the last second of the stream."""
+        return len(self._by_identity)
+
+    def add(self, frame: LiveFrame | PoseFrame) -> Person | None:
+        """Return who a frame shows; None beyond the maximum number of people."""
+        self._forget_absent(frame.time)
+        person = self._by_identity.get(frame.body)
+        place = _place_of(frame)
+        if person is None:
+            person = self._returned(frame, place) or self._new(frame, place)
+        elif place is not None:
+            person = self._unexchanged(frame.body, person, place)
+        if person is not None and frame.time >= person.time:
+            person.time = frame.time
+            person.place = place or person.place
+        return person
+
+    def _forget_absent(self, time: float) -> None:
+        for identity, person in list(self._by_identity.items()):
+            if not -NEW_STREAM_S < time - person.time <= BODY_TIMEOUT_S:
+                del self._by_identity[identity]
+
+    def _unexchanged(self, identity: int, person: Person, place: Place) -> Person:
+        """Return whose path a place continues, and exchange both identities if needed."""
+        jump = math.dist(place, person.place)
+        if jump < MIN_EXCHANGE_M:
+            return person
+        for other_identity, other in self._by_identity.items():
+            if other is not person and math.dist(place, other.place) < EXCHANGE_RATIO * jump:
+                self._by_identity[identity] = other
+                self._by_identity[other_identity] = person
+                return other
+        return person
+
+    def _returned(self, frame: LiveFrame | PoseFrame, place: Place | None) -> Person | None:
+        """Return who was lost at this place and has a new identity, if anyone."""
+        if place is None:
+            return None
+        for identity, person in self._by_identity.items():
+            is_lost = frame.time - person.time > MIN_ABSENCE_S
+            if is_lost and math.dist(place, person.place) < MAX_RETURN_M:
+                del self._by_identity[identity]
+                self._by_identity[frame.body] = person
+                return person
+        return None
+
+    def _new(self, frame: LiveFrame | PoseFrame, place: Place | None) -> Person | None:
+        """Give someone new the lowest free number."""
+        if place is None or self.n_present >= MAX_PEOPLE:
+            return None
+        taken = {person.number for person in self._by_identity.values()}
+        number = min(set(range(1, MAX_PEOPLE + 1)) - taken)
+        person = Person(number, frame.body, place, frame.time)
+        self._by_identity[frame.body] = person
+        return person
+
+
+def _place_of(frame: LiveFrame | PoseFrame) -> Place | None:
+    """Return where a body is; None if no joint is observed."""
+    if isinstance(frame, PoseFrame):
+        x, y, z = frame.root_position.tolist()
+        return x, y, z
+    observed = frame.positions[np.isfinite(frame.positions).all(axis=-1)]
+    if not len(observed):
+        return None
+    x, y, z = observed.mean(axis=0).tolist()
+    return x, y, z
