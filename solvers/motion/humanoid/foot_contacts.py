@@ -266,10 +266,7 @@ def measure_feet(
 
 
 def foot_noise(positions: Array) -> float:
-    """Return the standard deviation of white noise along each axis, whatever the heading is.
-
-    Positions have the shape (n_frames, 2, 2, 3); the result has their unit.
-    """
+    """Return the standard deviation of white noise along each axis, whatever the heading is."""
     differences = np.linalg.norm(np.diff(positions, DIFFERENCE_ORDER, axis=0), axis=-1)
     known = differences[np.isfinite(differences)]
     return float(np.median(known)) / DIFFERENCE_GAIN / MEDIAN_LENGTH if known.size else 0.0

@@ -5,7 +5,9 @@ import pytest
 
 @pytest.mark.usefixtures("all_panels")
 def test_panel_shows_button_and_port_before_listening(draw):
-    assert draw("MOCAP_PT_perform") == ["mocap_assist.listen", "live_port", "live_protocol"]
+    assert draw("MOCAP_PT_perform") == [
+        "mocap_assist.listen", "live_port", "live_protocol", "live_person",
+    ]  # fmt: skip
 
 
 def test_panel_shows_received_frames_while_listening(draw, listen, act):
@@ -15,8 +17,8 @@ def test_panel_shows_received_frames_while_listening(draw, listen, act):
     act(button, "hand up")
 
     shown = " ".join(draw("MOCAP_PT_perform"))
-    assert "Wave to page, clap to perform" in shown
-    assert "No search yet." in shown
+    assert "Wave to page, left hand up to search with this clip" in shown
+    assert "There is no library yet" in shown
     assert "JSON from 127.0.0.1:" in shown and "0 dropped." in shown
 
 

@@ -237,15 +237,6 @@ def test_single_moving_hand_does_not_clap(monkeypatch, fraction, expected):
     assert recognized(perform_gestures(["clap"])) == expected
 
 
-def test_library_is_asked_for_and_a_clip_chosen_while_it_is_shown():
-    gestures = ["hand up", "rest", "hand up", "rest", "left hand up", "rest"]
-
-    assert recognized(perform_gestures(gestures)) == [
-        Gesture.HAND_UP, Gesture.HAND_UP_AGAIN, Gesture.LEFT_HAND_UP,
-    ]  # fmt: skip
-    assert recognized(perform_gestures(["left hand up", "rest"])) == []
-
-
 def test_both_hands_up_give_no_gesture(monkeypatch):
     both = tuple(step and (step[0], step[1], step[1]) for step in GESTURES["hand up"])
     monkeypatch.setitem(GESTURES, "hand up", both)

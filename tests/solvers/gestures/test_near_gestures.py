@@ -8,8 +8,8 @@ from solvers.samples import perform_gestures
 from solvers.samples.performance import CLAP_READY, CLAPPED, FAR, GESTURES, REST
 
 
-def recognized(name: str) -> list[Gesture]:
-    made = perform_gestures([name])
+def recognized(*names: str) -> list[Gesture]:
+    made = perform_gestures([*names])
     events = recognize_gestures(made.times, made.positions, made.confidence)
     return [event.gesture for event in events]
 
@@ -66,3 +66,12 @@ def test_hand_that_is_up_before_and_after_a_break_is_not_held():
         recognizer.update(time, raised, np.ones(20))
 
     assert recognizer.update(3.0, raised, np.ones(20)) == ()
+
+
+def test_library_is_asked_for_and_a_clip_chosen_while_it_is_shown():
+    gestures = ["hand up", "rest", "hand up", "rest", "left hand up", "rest"]
+
+    assert recognized(*gestures) == [
+        Gesture.HAND_UP, Gesture.HAND_UP_AGAIN, Gesture.LEFT_HAND_UP,
+    ]  # fmt: skip
+    assert recognized("left hand up", "rest") == []

@@ -1,4 +1,4 @@
-"""Tell the people of a stream apart, whatever their sender calls them."""
+"""Recognize the people of a stream by their places, whatever their sender calls them."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from .joint_frames import LiveFrame
 from .pose_frames import PoseFrame
 
 MAX_PEOPLE = 16
-"""Number of people that are told apart. It bounds time and memory."""
+"""Number of people that are followed. It bounds time and memory."""
 BODY_TIMEOUT_S = 1.0
 """Duration in seconds without a person after which another one may have the number."""
 NEW_STREAM_S = 2.0
@@ -50,7 +50,7 @@ class Person:
     time: float
 
 
-class People:
+class StreamPeople:
     """Follows people by their places, so that exchanged and new identities change nothing.
 
     A tracker that confuses two people continues the path of each under the identity of the

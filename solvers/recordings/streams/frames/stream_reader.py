@@ -12,7 +12,7 @@ from ....motion import JointRecording
 from ....progress import unwatched
 from ...conventions import joint_recording
 from .joint_frames import LiveFrame, decode_frame
-from .people import BODY_TIMEOUT_S, NEW_STREAM_S, People, Person
+from .people import BODY_TIMEOUT_S, NEW_STREAM_S, Person, StreamPeople
 from .pose_frames import PoseFrame
 
 N_RESTART_FRAMES = 5
@@ -98,7 +98,7 @@ class StreamReader:
 
     def __init__(self, decoder: FrameDecoder | None = None, chosen: int = 0) -> None:
         self.counts = StreamCounts()
-        self._people, self._chosen = People(), chosen
+        self._people, self._chosen = StreamPeople(), chosen
         self._decoder = decoder or JointLines()
         self._steps = deque[float](maxlen=N_RATE_STEPS)
         self._late: list[float] = []

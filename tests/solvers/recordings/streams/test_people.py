@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solvers.recordings.streams import LiveFrame, StreamReader, encode_frame
-from solvers.recordings.streams.frames.people import MAX_PEOPLE, People
+from solvers.recordings.streams.frames.people import MAX_PEOPLE, StreamPeople
 
 NAMES, RATE = ("Head", "HipCenter"), 30.0
 
@@ -77,7 +77,7 @@ def test_who_was_lost_for_a_moment_is_found_again():
 
 
 def test_a_number_is_free_after_a_second():
-    people = People()
+    people = StreamPeople()
     assert people.add(body(7, 0.0, 0.0)).number == 1
     assert people.add(body(9, 0.0, 3.0)).number == 2
     assert people.add(body(9, 1.5, 3.0)).number == 1
@@ -90,7 +90,7 @@ def test_without_the_chosen_person_nothing_comes():
 
 
 def test_memory_of_a_flood_of_identities_is_bounded():
-    people = People()
+    people = StreamPeople()
     for identity in range(200):
         people.add(body(identity, 0.0, float(identity)))
     assert people.n_present == MAX_PEOPLE
