@@ -96,8 +96,15 @@ class Case:
         return moved.with_poses(root_positions=values[:, -3:] * METERS_PER_DEGREE)
 
     def values(self, motion: Motion) -> Array:
-        """Return the channels of a motion, root included."""
-        return with_root(self.channels.values(motion), motion)
+        """Return the channels of a motion, root included; its heading near the true one.
+
+        Where the first frame looks backward, noise decides whether a heading starts at half a
+        turn or at minus half a turn.
+        """
+        values = with_root(self.channels.values(motion), motion)
+        if self.channels.kept[0]:
+            values[:, 0] -= 360.0 * np.round((values[:, 0] - self.clean[:, 0]).mean() / 360.0)
+        return values
 
     def error(self, estimate: Array) -> float:
         """Mean absolute error of the angle channels, degrees."""
