@@ -95,14 +95,7 @@ class BodyRelation:
             Shape (3 * 3 * (n_missing + n_observed), 3 * n_missing): of the missing parts'
             features, then of the observed parts', to deviations.
         """
-        shape = (2, N_FEATURES, len(self.keys), 3)
-        number = np.arange(len(self.moments)).reshape(shape)
-        indices = np.concatenate([
-            self._numbers(number[kind, feature], keys)
-            for kind, keys in enumerate((missing, observed))
-            for feature in range(N_FEATURES)
-        ])
-        targets = self._numbers(number[1, 0], missing)
+        indices, targets = self._features_and_targets(missing, observed)
         result = np.zeros((len(indices), len(targets)))
         rows, columns = np.flatnonzero(indices >= 0), np.flatnonzero(targets >= 0)
         known, wanted = indices[rows], targets[columns]
@@ -111,6 +104,52 @@ class BodyRelation:
             block, self.moments[np.ix_(known, wanted)]
         )
         return result
+
+    def error_variance(
+        self, missing: Sequence[str], observed: Sequence[str], regression: Array
+    ) -> Array:
+        """Return the mean squared error of predictions in the gaps that were learned from.
+
+        Parameters
+        ----------
+        missing, observed : sequence of str
+            Keys. Unknown missing ones deviate as all known ones do on average.
+        regression : Array
+            As `regress` returns.
+
+        Returns
+        -------
+        Array
+            Shape (3 * n_missing,), square degrees.
+        """
+        indices, targets = self._features_and_targets(missing, observed)
+        power, all_targets = np.diag(self.moments), self._number[1, 0].ravel()
+        result = np.full(len(targets), power[all_targets].mean())
+        rows, columns = np.flatnonzero(indices >= 0), np.flatnonzero(targets >= 0)
+        known, wanted = indices[rows], targets[columns]
+        used = regression[np.ix_(rows, columns)]
+        explained = self.moments[np.ix_(known, known)] @ used
+        explained -= 2.0 * self.moments[np.ix_(known, wanted)]
+        result[columns] = power[wanted] + (used * explained).sum(axis=0)
+        return np.asarray(np.maximum(result, 0.0))
+
+    @property
+    def _number(self) -> NDArray[np.intp]:
+        """The number of each feature among the moments, shape (2, 3, n_parts, 3)."""
+        shape = (2, N_FEATURES, len(self.keys), 3)
+        return np.arange(len(self.moments)).reshape(shape)
+
+    def _features_and_targets(
+        self, missing: Sequence[str], observed: Sequence[str]
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Return the numbers of the features and of the deviations, -1 where unknown."""
+        number = self._number
+        features = [
+            self._numbers(number[kind, feature], keys)
+            for kind, keys in enumerate((missing, observed))
+            for feature in range(N_FEATURES)
+        ]
+        return np.concatenate(features), self._numbers(number[1, 0], missing)
 
     def _numbers(self, number: NDArray[np.intp], keys: Sequence[str]) -> NDArray[np.intp]:
         """Return the numbers (n_parts, 3) of some parts' features, -1 where unknown, flat."""

@@ -19,7 +19,7 @@ from .adapt_relation import (
     describe_gap,
     try_gaps,
 )
-from .body_relation import BodyRelation
+from .body_relation import GAP_S, BodyRelation
 from .bridges import Bridge
 
 GENERAL_WEIGHT = 0.5
@@ -29,9 +29,9 @@ more takes worse than interpolation."""
 OWN_PATTERNS_WEIGHT = 0.2
 """Weight of the estimate by the take's own patterns in the mean with the prediction. Chosen by
 hand on the development takes of the first press: x0.5 gains 0.4 %, x2 costs 3 %."""
-BOW_VARIANCE = 1.5
+BOW_VARIANCE = 15.0 / 8.0
 """Ratio of the variance in the middle of a gap to the mean over the gap. By definition of a
-parabola."""
+squared parabola."""
 
 
 class JointGap(NamedTuple):
@@ -95,11 +95,12 @@ def predict_limbs(
         body_values = canonical[:, body].reshape(len(values), -1)
         known = ~missing[:, parts].any(axis=1)
         length = int(np.median([gap.stop - gap.start for gap in group]))
-        general = GENERAL_WEIGHT * relation.regress(
-            [channels.keys[part] for part in parts], [channels.keys[part] for part in body]
-        )
+        keys = [[channels.keys[part] for part in each] for each in (parts, body)]
+        general = GENERAL_WEIGHT * relation.regress(*keys)
         adapted = adapt_relation(
-            try_gaps(limb_values, body_values, known, length, frame_rate), general
+            try_gaps(limb_values, body_values, known, length, frame_rate),
+            general,
+            relation.error_variance(*keys, general) / (GAP_S * frame_rate),
         )
         for gap in group:
             bridge = Bridge(gap.start, gap.stop, frame_rate)
@@ -108,9 +109,8 @@ def predict_limbs(
             axes = matrix_from_quaternion(alignments[list(parts)])
             predicted = np.einsum("pac,fpc->fpa", axes, predicted)
             values[block] += (1.0 - OWN_PATTERNS_WEIGHT) * (predicted - values[block])
-            if adapted.variance is not None:
-                variance = _variance(bridge, adapted.variance)
-                deviation[block] = np.sqrt(np.einsum("pac,fpc->fpa", axes**2, variance))
+            variance = _variance(bridge, adapted.variance)
+            deviation[block] = np.sqrt(np.einsum("pac,fpc->fpa", axes**2, variance))
     n_joints = len({part for gap in gaps for part in gap.parts})
     flat = estimate.values.shape
     return (
@@ -160,8 +160,9 @@ def _predict(bridge: Bridge, limb: Array, body: Array, adapted: AdaptedRelation)
 def _variance(bridge: Bridge, variance: Array) -> Array:
     """Return the variance of the error (n_missing_frames, n_parts, 3), least near both ends.
 
-    As of a Brownian bridge, it rises with the length of the gap.
+    The error is a parabola across the gap. Its mean square rises with the length of the gap, as
+    that of a random walk.
     """
     length = bridge.stop - bridge.start
-    result = BOW_VARIANCE * length * bridge.bow[:, None] * variance
+    result = BOW_VARIANCE * length * bridge.bow[:, None] ** 2 * variance
     return np.asarray(result.reshape(len(result), -1, 3))

@@ -36,6 +36,15 @@ def test_regression_is_the_conditional_mean_of_the_moments(rng):
     assert_allclose(found[18:, :3], expected[9:], atol=1e-9)
     assert not by_kind[:, 1].any()
     assert not found[:, 3:].any()
+    left = features[:, 1, 0, 1] - x[:n_rows] @ np.concatenate([
+        by_kind[:, 0, :, :3].reshape(9, 3),
+        found[18:, :3],
+    ])
+    mean = (features[:, 1, 0] ** 2).mean()
+    assert_allclose(
+        relation.error_variance(["b", "new"], ["c", "a"], found),
+        [*(left**2).mean(axis=0), mean, mean, mean],
+    )
 
 
 def test_learned_relation_comes_back_from_its_file(tmp_path):

@@ -38,7 +38,7 @@ def test_adapted_relation_is_the_posterior_of_a_bayesian_regression(rng):
     trials = try_gaps(limb, body, np.ones(200, dtype=bool), 20, RATE)
     general = rng.normal(size=(27, 3))
 
-    adapted = adapt_relation(trials, general)
+    adapted = adapt_relation(trials, general, np.zeros(3))
 
     for channel in range(3):
         noise = (trials.deviations[:, channel] ** 2).mean()
@@ -54,15 +54,13 @@ def test_adapted_relation_is_the_posterior_of_a_bayesian_regression(rng):
 def test_useless_relation_gets_no_weight_and_a_true_one_all(rng):
     body = np.cumsum(rng.normal(size=(600, 6)), axis=0)
     follows, alone = body[:, :3] - body[:, 3:], np.cumsum(rng.normal(size=(600, 3)), axis=0)
-    known, general = np.ones(600, dtype=bool), np.zeros((27, 3))
+    known, general = np.ones(600, dtype=bool), (np.zeros((27, 3)), np.zeros(3))
 
-    true = adapt_relation(try_gaps(follows, body, known, 30, RATE), general)
-    useless = adapt_relation(try_gaps(alone, body, known, 30, RATE), general)
+    true = adapt_relation(try_gaps(follows, body, known, 30, RATE), *general)
+    useless = adapt_relation(try_gaps(alone, body, known, 30, RATE), *general)
 
     assert true.weight > 0.95
     assert useless.weight < 0.5
-    assert true.variance is not None
-    assert useless.variance is not None
     assert (true.variance < 0.2 * useless.variance).all()
     # Nothing but the line is left: the mean variance of a Brownian bridge, per frame.
     assert_allclose(useless.variance, 1.0 / 6.0, rtol=0.2)
@@ -161,7 +159,22 @@ def test_gap_without_room_for_a_trial_uses_the_general_relation(rng):
 
     assert n_joints == 3
     assert np.isfinite(predicted.values).all()
-    assert_array_equal(predicted.deviation, estimate.deviation)
+    missing = np.isnan(channels.flat)
+    assert predicted.deviation[missing].max() > 5.0  # as uncertain as of other people
+    assert_array_equal(predicted.deviation[~missing], estimate.deviation[~missing])
+
+
+def test_still_limb_is_less_certain_in_a_short_take(rng):
+    """Few trials say little of how far it may move."""
+    still = 0.01 * rng.normal(size=(600, 3))
+    general = np.zeros((18, 3)), np.full(3, 10.0)
+
+    short, long = (
+        adapt_relation(try_gaps(still[:n], still[:n], np.ones(n, bool), 30, RATE), *general)
+        for n in (60, 600)
+    )
+
+    assert_allclose(short.variance / long.variance, 20.1 / 2.1, rtol=0.05)
 
 
 def test_all_joints_but_the_hips_missing(rng):
