@@ -30,8 +30,8 @@ PRIOR_TRIALS = 1.0
 guards takes too short to test it."""
 VARIANCE_PRIOR_TRIALS = 0.1
 """Number of gaps of evidence that the error varies as that of other people. Chosen by hand on
-the development takes of the first press, by the calibration of confidence: x0.5 and x2 raise its
-expected error from 4.9 to 6.2 and 6.0 %, 0 to 8.0 %."""
+the development takes of the first press, by the calibration of confidence: x0.5 raises its
+expected error from 4.9 to 6.2 %, x2 to 6.0 %, 0 to 8.0 %."""
 
 
 class Trials(NamedTuple):
