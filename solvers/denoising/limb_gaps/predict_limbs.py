@@ -95,12 +95,14 @@ def predict_limbs(
         body_values = canonical[:, body].reshape(len(values), -1)
         known = ~missing[:, parts].any(axis=1)
         length = int(np.median([gap.stop - gap.start for gap in group]))
-        keys = [[channels.keys[part] for part in each] for each in (parts, body)]
-        general = GENERAL_WEIGHT * relation.regress(*keys)
+        missing_keys, body_keys = (
+            [channels.keys[part] for part in each] for each in (parts, body)
+        )
+        general = GENERAL_WEIGHT * relation.regress(missing_keys, body_keys)
         adapted = adapt_relation(
             try_gaps(limb_values, body_values, known, length, frame_rate),
             general,
-            relation.error_variance(*keys, general) / (GAP_S * frame_rate),
+            relation.error_variance(missing_keys, body_keys, general) / (GAP_S * frame_rate),
         )
         for gap in group:
             bridge = Bridge(gap.start, gap.stop, frame_rate)
