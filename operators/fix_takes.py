@@ -4,7 +4,7 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.fix.button_settings import FixBundle
-from ..mocap_assist.fix.fixing import read_fixing, write_fixed
+from ..mocap_assist.fix.fixing import read_fixing, watch_fixing, write_fixed
 from ..mocap_assist.fix.queue_operator import QueueOperator, always
 
 
@@ -14,7 +14,8 @@ class MOCAP_OT_fix_takes(QueueOperator, bpy.types.Operator):
     bl_label = "Fix Selected Takes"
     bl_description = "Fix each selected take in turn; each result is an undo step of its own"
     settings_group = "fix"
-    why_not, read_scene, write_scene = always, read_fixing, write_fixed
+    read_scene, write_scene, open_view = read_fixing, write_fixed, watch_fixing
+    why_not = always
 
     def draw(self, context: bpy.types.Context) -> None:
         """Offer nothing in the redo panel: every change there would solve again."""

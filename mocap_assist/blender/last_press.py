@@ -105,5 +105,5 @@ def changed_values(owner: Any) -> dict[str, Any]:
 
 
 def _has_fixed_choices(item: Any) -> bool:
-    """Return whether a choice is one of a list that stands in the code; others have no default."""
+    """Return whether the choices stand in the code; those of a callback have no default."""
     return item.type != "ENUM" or (bool(item.enum_items_static) and not item.is_enum_flag)

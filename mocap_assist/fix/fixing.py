@@ -30,6 +30,7 @@ from ..clean.button_settings import CleanBundle, CleanChoices
 from ..clean.cleaning import read_cleaning, write_cleaned
 from ..clean.solve_cleaning import Cleaned
 from ..depth.depth_preview import Shown, recording_of, shows_depth
+from ..jobs.protocol import PreviewSolve
 from ..markers.solving import SolveBundle, read_solving, write_solved
 from ..panels.fix_card import keep_card
 from ..reconstruct.button_settings import ReconstructBundle, ReconstructChoices
@@ -45,6 +46,7 @@ from ..runtime.selection import (
 from ..runtime.subject import Subject
 from ..scene import history
 from ..scene.origin import was_tracked
+from ..track.live_body import LiveBody, stage_of_preview
 from ..track.tracking import (
     FixedMotion,
     TrackBundle,
@@ -94,7 +96,7 @@ def read_fixing(
     if settings.choices.rig:
         target_called(scene, settings.choices.rig, subject)  # before any work
     if shows_depth(subject):
-        return partial(fix, recording_of(subject.data), settings.fixing)
+        return PreviewSolve(fix, recording_of(subject.data), settings.fixing)
     if subject.type != "ARMATURE":
         solve = yield from read_solving.steps(scene, subject, SOLVE)
         tracks: Tracks = solve.args[0]
@@ -110,6 +112,14 @@ def read_fixing(
     problem, finish = cleaning.args[:2]
     limits = yield from _limits_of(here)
     return partial(fix, problem, settings.fixing, contacts=finish.contacts, limits=limits)
+
+
+def watch_fixing(
+    scene: bpy.types.Scene, subject: bpy.types.Object, settings: FixBundle
+) -> LiveBody | None:
+    """Return the view of the body in depth images, if *Live Preview* of Track is on."""
+    is_shown = shows_depth(subject) and scene.mocap_assist.track.watch
+    return LiveBody(scene, stage_of_preview) if is_shown else None
 
 
 @Sliced

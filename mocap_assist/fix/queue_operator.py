@@ -10,7 +10,7 @@ from ...solvers.errors import MocapAssistError, SolveCancelled
 from ..blender.path_properties import FOLDER, HIDDEN, absolute, path_property
 from ..jobs.job import POLL_INTERVAL_S
 from ..languages import translated
-from ..runtime.solver_operator import SolverOperator
+from ..runtime.watched_operator import WatchedOperator
 from .fixing import push_undo
 from .queue import QueuedTake, Status, show_status, show_takes, shown_queue, takes_of
 
@@ -23,8 +23,8 @@ def always(context: bpy.types.Context) -> str:
     return ""
 
 
-class QueueOperator(SolverOperator):
-    """Mix in like SolverOperator: its button works on each take of a queue.
+class QueueOperator(WatchedOperator):
+    """Mix in like WatchedOperator: its button works on each take of a queue.
 
     Each fixed take is an undo step of its own, so that one can be undone without the others.
     """

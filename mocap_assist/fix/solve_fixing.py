@@ -18,6 +18,7 @@ from ...solvers.workflows import (
 )
 from ..clean.solve_cleaning import Cleaned, Problem, Solution, names_of
 from ..reconstruct.solve_reconstructing import RebuildProblem, Rebuilt, read_source
+from ..track.pose_previews import PosePreviewSender, Show, no_preview
 from ..track.solve_tracking import Tracked, build_tracked
 
 TREE_FRACTION = 0.9
@@ -54,14 +55,19 @@ def fix(
     *,
     contacts: Flags | None = None,
     limits: JointLimits | None = None,
+    show: Show = no_preview,
     progress: Progress = unwatched,
 ) -> Fixed:
-    """Fix a take: that of Clean, of Reconstruct, of Make Skeleton or of Track."""
+    """Fix a take: that of Clean, of Reconstruct, of Make Skeleton or of Track.
+
+    Of depth images, the tracked poses are sent as previews to a `PosePreviewReceiver`.
+    """
     fixed = fix_take(
         _take_of(problem),
         settings=settings,
         contacts=contacts,
         limits=limits,
+        on_pose=PosePreviewSender(show),
         progress=within(progress, 0.0, TREE_FRACTION),
     )
     match problem:

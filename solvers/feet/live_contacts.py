@@ -5,13 +5,8 @@ from collections import deque
 import numpy as np
 
 from ..arrays import Array
-from ..motion.humanoid import (
-    CONTACT_MODEL,
-    GROUND_WINDOW_S,
-    MAX_CLIMB_M,
-    SPEED_NOISE,
-    FeetInMotion,
-)
+from ..motion.humanoid import CONTACT_MODEL, SPEED_NOISE, FeetInMotion
+from ..motion.skeletons import GROUND_WINDOW_S, MAX_CLIMB_M
 from ..signals import TwoStateFilter
 
 MAX_LINE_S = 0.15

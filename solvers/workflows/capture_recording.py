@@ -51,6 +51,7 @@ def capture_recording(
     settings: CaptureSettings = CAPTURE_SETTINGS,
     foreground: ForegroundSettings = FOREGROUND_SETTINGS,
     planting: PlantSettings | None = PLANT_SETTINGS,
+    on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
 ) -> CapturedMotion:
     """Separate the actor from the room, capture the motion and plant the feet.
@@ -68,6 +69,8 @@ def capture_recording(
     foreground : ForegroundSettings
     planting : PlantSettings or None
         None skips planting; so does a depth image that ends above the feet.
+    on_pose : OnPose
+        Called with each pose as soon as it is tracked.
     progress : Progress
 
     Raises
@@ -82,7 +85,7 @@ def capture_recording(
     )
     return capture_actor(
         actor, body, motion_prior=motion_prior, settings=settings, planting=planting,
-        progress=within(progress, FOREGROUND_FRACTION, 1.0),
+        on_pose=on_pose, progress=within(progress, FOREGROUND_FRACTION, 1.0),
     )  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from ..denoising import PlantSettings
 from ..depth_scene import DepthRecording
+from ..depth_tracking.tracking import PoseCallback
 from ..progress import Progress, within
 from .capture_recording import CapturedMotion, capture_recording
 from .fix_chains import ChainResult, clean_motion
@@ -12,11 +13,14 @@ the progress bar."""
 
 
 def track_depth(
-    recording: DepthRecording, planting: PlantSettings | None, progress: Progress
+    recording: DepthRecording,
+    planting: PlantSettings | None,
+    on_pose: PoseCallback,
+    progress: Progress,
 ) -> ChainResult:
     """Fit a body to the depth images, track it, clean its motion and plant visible feet."""
     captured = capture_recording(
-        recording, planting=None, progress=within(progress, 0.0, TRACKED)
+        recording, planting=None, on_pose=on_pose, progress=within(progress, 0.0, TRACKED)
     )
     planting = planting if captured.actor.feet_visible else None
     cleaned = clean_motion(captured.motion, planting, None, within(progress, TRACKED, 1.0))

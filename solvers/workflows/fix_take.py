@@ -8,6 +8,7 @@ import numpy as np
 from ..arrays import Flags
 from ..denoising import PlantSettings
 from ..depth_scene import DepthRecording
+from ..depth_tracking.tracking import PoseCallback, ignore_pose
 from ..errors import InvalidMotionError
 from ..feet import SIDES
 from ..motion import JointLimits, JointRecording, Motion, Tracks
@@ -126,6 +127,7 @@ def fix_take(
     settings: FixSettings = FixSettings(),
     contacts: Flags | None = None,
     limits: JointLimits | None = None,
+    on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
 ) -> FixedTake:
     """Fix a take with the steps that suit its origin, all with their default settings.
@@ -146,6 +148,8 @@ def fix_take(
         Contacts of the feet as keyed by an animator, for motions; detected by default.
     limits : JointLimits
         Joints beyond them count as issues; nothing is clamped.
+    on_pose : OnPose
+        Called with each pose as soon as it is tracked in depth images.
     progress : Progress
 
     Returns
@@ -163,7 +167,8 @@ def fix_take(
     planting = PlantSettings() if settings.plant_feet else None
     recording, never_observed = drop_missing_points(recording)
     n_steps = 2 if settings.physics else 1
-    chain = _fix(recording, planting, contacts, within(progress, 0.0, FIXED / n_steps))
+    step = within(progress, 0.0, FIXED / n_steps)
+    chain = _fix(recording, planting, contacts, on_pose, step)
     if settings.physics:
         chain = _simulate(chain, within(progress, FIXED / n_steps, FIXED))
     start = take_before(recording, chain, within(progress, FIXED, COMPARED))
@@ -204,7 +209,11 @@ def _size(start: Motion | Tracks) -> str:
 
 
 def _fix(
-    recording: Take, planting: PlantSettings | None, contacts: Flags | None, progress: Progress
+    recording: Take,
+    planting: PlantSettings | None,
+    contacts: Flags | None,
+    on_pose: PoseCallback,
+    progress: Progress,
 ) -> ChainResult:
     match recording:
         case Motion():
@@ -214,7 +223,7 @@ def _fix(
         case JointRecording():
             return reconstruct_joints(recording, planting, progress)
         case DepthRecording():
-            return track_depth(recording, planting, progress)
+            return track_depth(recording, planting, on_pose, progress)
         case Tracks() if find_origin(recording) is TakeOrigin.MARKERS:
             return solve_markers(recording, planting, progress)
         case Tracks():

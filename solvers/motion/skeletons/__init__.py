@@ -4,7 +4,7 @@ from .body_trackers import NUITRACK, ZED_BODIES
 from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
 from .file_conventions import AxisName, FileConventions, unit_name
 from .frame_rate import MAX_FRAME_RATE_HZ, check_frame_rate
-from .ground import ground_level
+from .ground import GROUND_WINDOW_S, MAX_CLIMB_M, ground_level
 from .joint_limits import ROTATION_VECTOR, JointLimits
 from .joint_recording import INFERRED, TRACKED, JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
@@ -28,9 +28,11 @@ from .warping import Alignment, warp
 __all__ = [
     "BODY_POINTS",
     "COMPUTED_JOINTS",
+    "GROUND_WINDOW_S",
     "HAND_POINTS",
     "INFERRED",
     "LAYOUTS",
+    "MAX_CLIMB_M",
     "MAX_FRAME_RATE_HZ",
     "MIN_BONE_M",
     "MIN_SHOT_S",

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from modal_events import event, nothing_is_left, wait
 
 
 @pytest.fixture
@@ -28,6 +29,27 @@ def test_depth_images_become_a_clean_armature(points, blank, draw):
 
     assert armature.animation_data.action.name == "walk tracked"
     assert "mocap_assist_captured" in armature.animation_data.action
+
+
+def test_body_is_shown_during_tracking(points, press_button, load, window, blank):
+    blank.context.scene.frame_set(9)
+    settings = load("mocap_assist.fix.button_settings").FixBundle
+    button = press_button("fix_take", settings(load("solvers.workflows").FixSettings()))
+    wait(button, window, until=lambda: button._view and button._view.drawn is not None)
+    drawing = button._view._drawing
+    assert drawing.is_on and 1 <= blank.context.scene.frame_current <= 3
+
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+
+    assert not drawing.is_on and blank.context.scene.frame_current == 9
+    assert not blank.data.armatures and nothing_is_left(window)
+
+
+def test_no_body_is_shown_without_live_preview(points, load, blank):
+    fixing = load("mocap_assist.fix.fixing")
+    blank.context.scene.mocap_assist.track.watch = False
+
+    assert fixing.watch_fixing(blank.context.scene, points, None) is None
 
 
 def test_command_finds_points(points, load):
