@@ -1,5 +1,7 @@
 """Read an armature's action as a take."""
 
+from functools import partial
+
 import bpy
 import numpy as np
 
@@ -9,7 +11,7 @@ from ...solvers.motion import Tracks
 from ...solvers.rotations import multiply, rotate
 from ..blender.block_references import BlockReference, SourceReference
 from ..blender.compat import Source
-from ..blender.time_slices import Sliced, Steps, should_yield
+from ..blender.time_slices import Sliced, Steps, in_thread, should_yield
 from ..scene.body import body_root
 from ..scene.history import playing_strips, was_thinned
 from ..scene.origin import origin_of
@@ -69,11 +71,12 @@ def read_take(
     if grid is None:
         own = keyed.curves_of_bones(rig)
         grid = key_grid(own, range_bounds(choice, keyed.scene, own), recorded=recorded)
-    channels = []
+    channels, travels = [], []
     for number, bone in enumerate(rig.bones):
         step = grid.step if recorded else None
         pose_bone = keyed.pose_bone(bone)
         channels.append(read_bone(pose_bone, keyed.curves, grid.frames, step, gaps=not thinned))
+        travels.append(channels[-1].travels)
         if should_yield():
             yield 0.2 + 0.5 * number / len(rig.bones)
             keyed.find_again()
@@ -82,7 +85,6 @@ def read_take(
             f"All keys of {armature.name} are NaN: nothing was captured. Import the take again."
         )
     space = read_space(keyed.armature, keyed.curves, grid.frames)
-    travels = [each.travels for each in channels]
     top = rig.bones.index(root) if root in rig.bones else body_root(rig, travels)
     space = space.in_unit(meters_per_unit(keyed.scene, rig, top, space.scale))
     rate = keyed.scene.render.fps / keyed.scene.render.fps_base / grid.step
@@ -191,7 +193,8 @@ def _assembled(
             part = yield from part_of.steps(rig, tree, channels, rest, rest, rate)
             parts.append(part)
     roots = {part.bones[0] for part in parts} | set(above)
-    offsets = _read_offsets(rig, channels, rest, rate, roots)
+    read_offsets = partial(_read_offsets, rig, channels, rest, rate, roots)
+    offsets = yield from in_thread.steps(read_offsets)
     return ArmatureTake(rig, grid, tuple(parts), offsets, channels, rest)
 
 

@@ -1,8 +1,8 @@
 """Write a cleaned take into a copy of its action; the source is never touched."""
 
 import re
-from collections.abc import Collection, Mapping
-from contextlib import suppress
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from typing import NamedTuple
 
 import bpy
@@ -97,7 +97,7 @@ def write_take(
     made = SourceReference.of((action, same_slot(action, original[1])))
     indices = [index for index, name in enumerate(take.rig.bones) if name in bones]
     armature, curves = here.find(), animated_curves(*made.find())
-    try:
+    with removed_on_failure(action):
         for number, bone in enumerate(indices):
             _BoneWriter.of(armature, curves, take, bone, key_types).write(poses, unchanged)
             if should_yield():
@@ -107,11 +107,19 @@ def write_take(
                     raise changed_during_solve(here.name)
                 if unchanged:
                     unchanged.find_again()
-    except BaseException:  # cancelled, or something was changed between two time slices
-        with suppress(InvalidMotionError):
-            bpy.data.actions.remove(made.action.find())
-        raise
     return made.find()
+
+
+@contextmanager
+def removed_on_failure(action: bpy.types.Action) -> Iterator[None]:
+    """Remove a new action if its completion fails, or is cancelled between two time slices."""
+    made = BlockReference.of(action)
+    try:
+        yield
+    except BaseException:
+        with suppress(InvalidMotionError):
+            bpy.data.actions.remove(made.find())
+        raise
 
 
 def _playing(armature: bpy.types.Object) -> tuple[int, int] | None:

@@ -1,6 +1,7 @@
 """Convert the markers of a take to tracks, and back."""
 
 from collections.abc import Collection, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -11,13 +12,13 @@ from numpy.typing import NDArray
 from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion, Tracks
-from ..blender.block_references import BlockReference
+from ..blender.block_references import BlockReference, SourceReference
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene import history
 from ..scene.rig import Placement, check_finite, placement_of
 from ..scene.units import unit_of
-from .armature_write import copy_of, same_slot
+from .armature_write import copy_of, removed_on_failure, same_slot
 from .bone_channels import Curves, animated_curves, curves_of, gaps_of, sampled
 from .curves import write_values
 from .frames import FrameRange, Grid, key_grid, range_bounds
@@ -136,9 +137,10 @@ class _Markers(NamedTuple):
         return found
 
 
+@Sliced
 def write_markers(
     take: MarkerTake, chosen: Collection[str], key_types: Mapping[str, NDArray[np.uint8]]
-) -> tuple[tuple[bpy.types.Object, Source, Source], ...]:
+) -> Steps[tuple[tuple[bpy.types.Object, Source, Source], ...]]:
     """Copy the actions and replace the location keys of the chosen markers.
 
     Parameters
@@ -154,22 +156,41 @@ def write_markers(
     -------
     tuple of (marker, what was copied, what it should play now)
     """
-    copies: dict[bpy.types.Action, bpy.types.Action] = {}
+    markers = [BlockReference.of(marker) for marker in take.markers]
+    sources = [SourceReference.of(source) for source in take.sources]
+    copies: dict[BlockReference, BlockReference] = {}
     written = []
-    for point, (marker, source) in enumerate(zip(take.markers, take.sources, strict=True)):
-        action, slot = source
-        if action not in copies:
-            copies[action] = copy_of(action)
-        made = copies[action], same_slot(copies[action], slot)
-        name = take.tracks.names[point]
-        if name in chosen:
-            positions = take.spaces[point].points_back(take.tracks.positions[:, point])
-            for index, channel in curves_of(animated_curves(*made), PATH, 3).items():
-                write_values(
-                    channel.curve, take.frames, positions[:, index], key_types.get(name)
-                )
-        written.append((marker, source, made))
-    return tuple(written)
+    with ExitStack() as cleanup:
+        for point, (marker, source) in enumerate(zip(markers, sources, strict=True)):
+            action, slot = source.find()
+            if source.action not in copies:
+                copy = copy_of(action)
+                cleanup.enter_context(removed_on_failure(copy))
+                copies[source.action] = BlockReference.of(copy)
+            copy = copies[source.action].find()
+            made = copy, same_slot(copy, slot)
+            _write_marker(take, point, made, chosen, key_types)
+            written.append((marker, source, SourceReference.of(made)))
+            if should_yield():
+                yield point / len(markers)
+        return tuple(
+            (marker.find(), source.find(), made.find()) for marker, source, made in written
+        )
+
+
+def _write_marker(
+    take: MarkerTake,
+    point: int,
+    made: Source,
+    chosen: Collection[str],
+    key_types: Mapping[str, NDArray[np.uint8]],
+) -> None:
+    name = take.tracks.names[point]
+    if name not in chosen:
+        return
+    positions = take.spaces[point].points_back(take.tracks.positions[:, point])
+    for index, channel in curves_of(animated_curves(*made), PATH, 3).items():
+        write_values(channel.curve, take.frames, positions[:, index], key_types.get(name))
 
 
 def _source(marker: bpy.types.Object, recorded: bool) -> Source:

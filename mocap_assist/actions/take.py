@@ -1,7 +1,7 @@
 """A take: an armature's action as motions for solvers, and back."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from ...solvers.arrays import Array
 from ...solvers.motion import Motion, Skeleton, Tracks
 from ...solvers.rotations import inverse, multiply, rotate
-from ..blender.time_slices import Sliced, Steps, should_yield
+from ..blender.time_slices import Sliced, Steps, in_thread, should_yield
 from ..scene.rig import Placement, Rig
 from .frames import Grid
 
@@ -142,8 +142,23 @@ def part_of(
         rotations.append(rotation)
         if should_yield():
             yield 0.7 + 0.3 * number / len(bones)
+    build = partial(_built, rig, bones, channels, carrier, rest, frame_rate, world, rotations)
+    return (yield from in_thread.steps(build))
+
+
+def _built(
+    rig: Rig,
+    bones: list[int],
+    channels: tuple[BoneChannels, ...],
+    carrier: Placement,
+    rest: Placement,
+    frame_rate: float,
+    world: Array,
+    rotations: list[Array],
+) -> TakePart:
+    """Return the part whose bones have these rotations; the root's is carried to the world."""
     carried = multiply(carrier.rotations, inverse(rest.rotations[0]))
-    rotations[0] = multiply(carried, rotations[0])
+    rotations = [multiply(carried, rotations[0]), *rotations[1:]]
     root = bones[0]
     moved = rotate(rig.rest_rotations[root], channels[root].locations)
     positions = carrier.points(rig.heads[root] + moved)

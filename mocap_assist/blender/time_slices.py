@@ -15,12 +15,18 @@ Steps = Generator[float, None, Result]
 Blender runs between two slices. Pointers to its data are then stale: look them up again.
 """
 
-_deadline = [inf]
+_deadline, _asked_at = [inf], [inf]
 
 
 def should_yield() -> bool:
-    """Return whether the work should yield now; never while a script waits for it."""
-    return monotonic() >= _deadline[0]
+    """Return whether the work should yield now; never while a script waits for it.
+
+    It should before another part as long as the last one, since the question before, would end
+    after the time slice.
+    """
+    now = monotonic()
+    last_part, _asked_at[0] = now - _asked_at[0], now
+    return now + last_part > _deadline[0]
 
 
 def runs_in_slices() -> bool:
@@ -81,7 +87,8 @@ class Work(Generic[Result]):
 
     def run_slice(self, seconds: float) -> bool:
         """Work for about this many seconds; return whether `result` is complete."""
-        _deadline[0] = monotonic() + seconds
+        _asked_at[0] = monotonic()
+        _deadline[0] = _asked_at[0] + seconds
         try:
             self.fraction = next(self._steps)
         except StopIteration as end:

@@ -68,7 +68,8 @@ class MarkerReading(NamedTuple):
         played = yield from read_markers.steps(holder, scene, grid=self.raw.grid)
         take = played.with_recordings(cleaned.recordings)
         names = set()
-        for marker, source, source_new in write_markers(take, cleaned.moved, types):
+        written = yield from write_markers.steps(take, cleaned.moved, types)
+        for marker, source, source_new in written:
             if source_new[0].name not in names:
                 history.record(source_new[0], source, entry)
             names.add(source_new[0].name)

@@ -68,7 +68,8 @@ def write_solved(
     here = Subject.of(scene, holder)
     take = yield from read_markers.steps(holder, scene)
     scene, holder = here.find()
-    check_unchanged(holder, solved_digest, take.tracks)
+    yield from check_unchanged.steps(holder, solved_digest, take.tracks)
+    scene, holder = here.find()
     context, meters_per_unit = bpy.context, unit_of(scene)
     with undo_on_error(context):
         name = f"{holder.name} skeleton"

@@ -27,6 +27,7 @@ from ..clean.report import figures
 from ..jobs.job import ShortSolve
 from ..library.library_prior import library_prior
 from ..runtime import redo
+from ..runtime.played import Played
 from ..runtime.selection import played_source, selected_armature, why_not_clean
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
@@ -97,19 +98,21 @@ def write_reconstructed(
 
     Raises InvalidMotionError if the armature plays another motion than the one that was solved.
     """
-    here = Subject.of(scene, armature)
-    reading, problem = yield from _read(here, settings)
-    scene, armature = here.find()
-    check_unchanged(armature, solved_digest, problem)
-    redo.remember(problem, rebuilt.solution)
+    read = Played.of(scene, armature)
+    reading, problem = yield from _read(read.here, settings)
+    yield from check_unchanged.steps(read.find()[1], solved_digest, problem)
+    yield from redo.remember.steps(problem, rebuilt.solution)
+    _, armature, played = read.find()
+    recorded = history.raw_of(played[0]) or played
     names = problem.body.skeleton.names
     bones = frozenset(names) & frozenset(reading.take.rig.bones)
     other_trees = reading.take.recordings[1:]
     take = reading.take.with_recordings((rebuilt.motion, *other_trees))
-    n_modified = count_modified(reading.recorded, bones)
-    action, slot = write_take(
-        armature, reading.recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
+    n_modified = count_modified(recorded, bones)
+    action, slot = yield from write_take.steps(
+        armature, recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
     )
+    _, armature, played = read.find()
     if problem.resize:
         lengths = length_locations(reading.take, rebuilt.motion.skeleton)
         key_lengths(action, slot, lengths, reading.take.frames[0])
@@ -118,10 +121,11 @@ def write_reconstructed(
         reliability = dict(zip(names, values.T, strict=True))
         write_reliability(armature, action, slot, take.frames, reliability, term)
     if rebuilt.planted is not None:
-        detected = animators_contacts(reading.played, take.frames) is None
+        detected = animators_contacts(played, take.frames) is None
         contacts = rebuilt.planted.all_contacts
         write_contacts(armature, action, slot, take.frames, contacts, detected=detected)
-    history.record(action, reading.recorded, _entry(settings, rebuilt))
+    recorded = history.raw_of(played[0]) or played
+    history.record(action, recorded, _entry(settings, rebuilt))
     put_to_use(armature, action, slot, settings.choices.result_as)
     return _message_of(action.name, rebuilt, n_modified)
 

@@ -48,6 +48,13 @@ class RetargetScene(NamedTuple):
     maps: BoneMaps
     problem: RetargetProblem
 
+    def found_again(
+        self, scene: bpy.types.Scene, source: bpy.types.Object, choices: RetargetChoices
+    ) -> "RetargetScene":
+        """Look up target and actions: pointers are stale after a time slice."""
+        target = target_called(scene, choices.target, source)
+        return self._replace(target=target, sources=chosen_sources(source, choices))
+
 
 @Sliced
 def read_retarget(
@@ -77,7 +84,9 @@ def write_retargeted(
     here = Subject.of(scene, source)
     found = yield from _read(here, settings)
     scene, source = here.find()
-    check_unchanged(source, solved_digest, found.problem)
+    yield from check_unchanged.steps(source, solved_digest, found.problem)
+    scene, source = here.find()
+    found = found.found_again(scene, source, settings.choices)
     low = _low_confidence(source, found)
     for made_from, take, keys in zip(found.sources, found.takes, results.clips, strict=True):
         name = f"{made_from[0].name}.{found.target.name}"

@@ -3,14 +3,17 @@
 import re
 from collections.abc import Mapping
 
-import bpy
 import numpy as np
 
 from ...solvers.retargeting import KeyCurve
+from ..actions.armature_write import removed_on_failure, same_slot
 from ..actions.bone_channels import Curves, animated_curves, location_curves, rotation_curves
 from ..actions.curves import Channel
 from ..actions.frames import Grid
+from ..blender.block_references import SourceReference
 from ..blender.compat import Source
+from ..blender.time_slices import Sliced, Steps, should_yield
+from ..runtime.played import Played
 from .solve_unbaking import SparseKeys
 
 SUFFIX = ".sparse"
@@ -18,33 +21,36 @@ NUMBERED = re.compile(r"\.sparse(\.\d{3,})?$")
 BEZIER, ALIGNED = 2, 3  # Blender's numbers
 
 
-def write_sparse(
-    armature: bpy.types.Object, source: Source, grid: Grid, keys: Mapping[str, SparseKeys]
-) -> Source:
+@Sliced
+def write_sparse(read: Played, grid: Grid, keys: Mapping[str, SparseKeys]) -> Steps[Source]:
     """Copy an action and replace all keys of some bones' rotations and locations.
 
     Parameters
     ----------
-    armature : the armature that the action was read from
-    source : action and slot; may be linked
+    read : the armature, and the action that was read from it
     grid : Grid
         The frames that were read.
     keys : by bone
         All else is copied bit for bit.
     """
-    original, slot = source
+    _, armature, (original, slot) = read.find()
     action = original.copy()
     action.name = NUMBERED.sub("", original.name) + SUFFIX
     action.use_fake_user = True
-    slot = next(each for each in action.slots if each.handle == slot.handle)
-    curves = animated_curves(action, slot)
-    for name, sparse in keys.items():
-        bone = armature.pose.bones[name]
-        if sparse.rotations is not None:
-            _write(rotation_curves(bone, curves), grid, sparse.rotations)
-        if sparse.locations is not None:
-            _write(location_curves(bone, curves), grid, sparse.locations)
-    return action, slot
+    made = SourceReference.of((action, same_slot(action, slot)))
+    curves = animated_curves(*made.find())
+    with removed_on_failure(action):
+        for number, (name, sparse) in enumerate(keys.items()):
+            bone = armature.pose.bones[name]
+            if sparse.rotations is not None:
+                _write(rotation_curves(bone, curves), grid, sparse.rotations)
+            if sparse.locations is not None:
+                _write(location_curves(bone, curves), grid, sparse.locations)
+            if should_yield():
+                yield number / len(keys)
+                _, armature, _ = read.find()
+                curves = animated_curves(*made.find())
+    return made.find()
 
 
 def count_keys(curves: Curves) -> int:

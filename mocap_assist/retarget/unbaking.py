@@ -11,9 +11,10 @@ from ..actions.armature_read import read_take
 from ..actions.armature_write import Output, check_writable, put_to_use
 from ..actions.bone_channels import animated_curves
 from ..actions.take import ArmatureTake, TakePart
-from ..blender.time_slices import Sliced, Steps
+from ..blender.time_slices import Sliced, Steps, in_thread
+from ..runtime.played import Played
 from ..runtime.selection import played_source
-from ..runtime.subject import Subject, check_unchanged
+from ..runtime.subject import check_unchanged
 from ..scene import history
 from .button_settings import UnbakeBundle
 from .solve_unbaking import BoneShape, KeyedMotion, Unbaked, UnbakeProblem, unbake
@@ -27,7 +28,8 @@ def read_unbaking(
     """Read what an armature plays; return the picklable solve."""
     check_writable(armature)
     take = yield from read_take.steps(armature, scene, source=played_source(armature))
-    return partial(unbake, _problem(take, settings))
+    problem = yield from in_thread.steps(partial(_problem, take, settings))
+    return partial(unbake, problem)
 
 
 @Sliced
@@ -39,12 +41,12 @@ def write_unbaked(
     solved_digest: str | None = None,
 ) -> Steps[str]:
     """Write a copy of the action with few keys and put it to use; return a sentence."""
-    here = Subject.of(scene, armature)
+    read = Played.of(scene, armature)
     take = yield from read_take.steps(armature, scene, source=played_source(armature))
-    scene, armature = here.find()
-    played = played_source(armature)
-    check_unchanged(armature, solved_digest, _problem(take, settings))
-    action, slot = write_sparse(armature, played, take.grid, result.keys)
+    problem = yield from in_thread.steps(partial(_problem, take, settings))
+    yield from check_unchanged.steps(read.find()[1], solved_digest, problem)
+    action, slot = yield from write_sparse.steps(read, take.grid, result.keys)
+    _, armature, played = read.find()
     before, after = (count_keys(animated_curves(*each)) for each in (played, (action, slot)))
     entry = {
         "operation": "reduce_keys",

@@ -74,7 +74,8 @@ def list_found(
     here = Subject.of(scene, subject)
     problem, query = yield from _problem(here, settings)
     scene, subject = here.find()
-    check_unchanged(subject, solved_digest, problem)
+    yield from check_unchanged.steps(subject, solved_digest, problem)
+    scene, subject = here.find()
     grid = (float(query.grid.frames[0]), query.grid.step)
     name = played_source(subject)[0].name
     fill_list(bpy.context, searches.keep(name, grid, unit_of(scene), finding))

@@ -14,6 +14,7 @@ from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps
 from ..depth.depth_preview import open_recording
 from ..jobs.protocol import PreviewSolve
+from ..runtime.played import Played
 from ..runtime.selection import played_source, selected_armature
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
@@ -118,19 +119,19 @@ def write_retracked(
 
     Raises InvalidMotionError if the armature plays another motion than the one that was solved.
     """
-    here = Subject.of(scene, armature)
-    take, played = yield from _played(armature)
-    scene, armature = here.find()
-    source = played_source(armature)
-    check_unchanged(armature, solved_digest, played)
+    read = Played.of(scene, armature)
+    take, problem = yield from _played(armature)
+    yield from check_unchanged.steps(read.find()[1], solved_digest, problem)
+    _, armature, source = read.find()
     rows = slice(result.first, result.last + 1)
     new = take.with_motion(result.motion, result.first, result.last)
     names = [take.bones[name] for name in SEGMENTS]
     types = np.full(len(new.frames), KEYFRAME, np.uint8)
     types[result.frame - result.first] = EXTREME
-    source_new = write_take(
+    source_new = yield from write_take.steps(
         armature, source, new, names, dict.fromkeys(names, types), suffix=SUFFIX
     )
+    scene, armature, source = read.find()
     write_residual(armature, source_new, new.frames, result.residual)
     confidence = update_reliability(
         armature, source_new, take.frames, rows, _confidence_by_bone(take, result)

@@ -50,8 +50,9 @@ def write_variants(
     here, made = Subject.of(scene, armature), list[int]()
     found = yield from read.steps(scene, armature, settings)
     scene, armature = here.find()
-    check_unchanged(armature, solved_digest, found.problem)
     writer = _Writer.of(found, settings, varied)
+    yield from check_unchanged.steps(armature, solved_digest, found.problem)
+    scene, armature = here.find()
     try:
         while len(made) < len(writer.names):
             made.append(writer.write(armature, len(made)))

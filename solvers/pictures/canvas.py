@@ -1,6 +1,7 @@
 """Draw smooth lines and readable text at pixel coordinates."""
 
 from collections.abc import Sequence
+from math import isfinite, nan
 from typing import Any
 
 import numpy as np
@@ -36,28 +37,31 @@ class Canvas:
 
     def line(self, points: ArrayLike, color: Color, width: float = 1.0) -> None:
         """Draw a line through points, shape (n, 2), with round ends; it breaks at NaN."""
-        points = np.asarray(points, dtype=np.float64)
-        is_finite = np.isfinite(points).all(axis=1)
-        starts = np.flatnonzero(is_finite & ~np.concatenate([[False], is_finite[:-1]]))
-        stops = np.flatnonzero(is_finite & ~np.concatenate([is_finite[1:], [False]]))
-        for start, stop in zip(starts, stops, strict=True):
-            segment = points[start : stop + 1]
-            flat = [tuple(point) for point in (segment * OVERSAMPLING).tolist()]
-            if len(flat) > 1:
-                stroke = max(1, round(width * OVERSAMPLING))
-                self._draw.line(flat, fill=color, width=stroke, joint="curve")
-            for end in (segment[0], segment[-1]):
-                self.dot(end, color, width / 2.0)
+        run: list[tuple[float, float]] = []
+        for x, y in [*np.asarray(points, dtype=np.float64).tolist(), (nan, nan)]:
+            if isfinite(x) and isfinite(y):
+                run.append((x, y))
+            elif run:
+                self._stroke(run, color, width)
+                run = []
+
+    def _stroke(self, points: list[tuple[float, float]], color: Color, width: float) -> None:
+        if len(points) > 1:
+            flat = [(x * OVERSAMPLING, y * OVERSAMPLING) for x, y in points]
+            stroke = max(1, round(width * OVERSAMPLING))
+            self._draw.line(flat, fill=color, width=stroke, joint="curve")
+        for end in (points[0], points[-1]):
+            self._disk(*end, color, width / 2.0)
 
     def dot(self, center: ArrayLike, color: Color, radius: float) -> None:
         """Fill a circle; nothing if the center is NaN."""
-        center, scaled_radius = (
-            np.asarray(center, dtype=np.float64) * OVERSAMPLING,
-            radius * OVERSAMPLING,
-        )
-        if np.isfinite(center).all():
-            box = [*(center - scaled_radius), *(center + scaled_radius)]
-            self._draw.ellipse(box, fill=color)
+        x, y = np.asarray(center, dtype=np.float64).tolist()
+        if isfinite(x) and isfinite(y):
+            self._disk(x, y, color, radius)
+
+    def _disk(self, x: float, y: float, color: Color, radius: float) -> None:
+        x, y, radius = x * OVERSAMPLING, y * OVERSAMPLING, radius * OVERSAMPLING
+        self._draw.ellipse([x - radius, y - radius, x + radius, y + radius], fill=color)
 
     def box(self, left: float, top: float, right: float, bottom: float, color: Color) -> None:
         """Fill a rectangle."""

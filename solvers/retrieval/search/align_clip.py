@@ -42,21 +42,19 @@ def align_frames(query: Array, clip: Array) -> Integers:
 
 
 def _backtrack_path(costs: Array, distances: Array, penalized: Array) -> Integers:
+    """Go back from the cheapest end; of equal steps, take that of both sequences."""
+    query_only = costs[:-1] + penalized[1:]
+    both, clip_only = np.full_like(query_only, np.inf), np.full_like(query_only, np.inf)
+    both[:, 1:] = costs[:-1, :-1] + distances[1:, 1:]
+    clip_only[:, 1:] = costs[1:, :-1] + penalized[1:, 1:]
+    backs_query = np.minimum(query_only, both) <= clip_only
+    backs_clip = ~backs_query | (both <= query_only)
+    query_steps, clip_steps = backs_query.tobytes(), backs_clip.tobytes()
+    n_columns = costs.shape[1]
     row, column = len(costs) - 1, int(costs[-1].argmin())
     path = [(row, column)]
     while row:
-        candidates = [(costs[row - 1, column] + penalized[row, column], row - 1, column)]
-        if column:
-            candidates.append((
-                costs[row - 1, column - 1] + distances[row, column],
-                row - 1,
-                column - 1,
-            ))
-            candidates.append((
-                costs[row, column - 1] + penalized[row, column],
-                row,
-                column - 1,
-            ))
-        _, row, column = min(candidates)
+        step = (row - 1) * n_columns + column
+        row, column = row - query_steps[step], column - clip_steps[step]
         path.append((row, column))
     return np.array(path[::-1], dtype=np.intp)
