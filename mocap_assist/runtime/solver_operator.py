@@ -182,21 +182,31 @@ class SolverOperator(SettingsMixin):
         return work.result
 
     def _solve(self, solve: "partial[Any]") -> Generator[tuple[float, str], None, Any]:
-        self._job = job = Job(solve)
-        self._is_solving = True
+        started: list[Job[Any]] = []
+
+        def start() -> None:
+            started.append(Job(solve))
+
         try:
+            # In a thread, since the request of a long take is a large file.
+            yield from self._in_slices("Starting", in_thread, start)
+            self._job = job = started[0]
+            self._is_solving = True
             while not job.done():
                 self.show_previews(job)
                 yield job.progress()
         except SolveCancelled:
-            job.cancel()
+            if not started:
+                raise
+            started[0].cancel()
         except BaseException:  # the file is closed, or the extension disabled
-            job.cancel()
-            job.tidy_up()
+            for job in started:
+                job.cancel()
+                job.tidy_up()
             raise
         finally:
             self._is_solving = False
-        return self.result_from_job(job)
+        return self.result_from_job(started[0])
 
     def _read_arguments(self) -> tuple[Any, ...]:
         return (*self._subject.find(), self.settings())

@@ -44,6 +44,7 @@ def main() -> None:
     rows = {}
     for name, idname in BUTTONS.items():
         let_solver_wait()
+        bpy.context.view_layer.update()  # as the window does between two presses
         steps = list(timed_steps(press(idname)))
         longest = sorted(steps, reverse=True)
         if arguments.steps:
