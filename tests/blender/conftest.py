@@ -81,6 +81,7 @@ IN_ONE_BLENDER = {
     "operators/test_each_on_many_machines.py": (4, 5),
     "operators/test_other_buttons.py": (4, 5),
     "operators/test_physics.py": (4, 5),
+    "operators/test_undo.py": (5, 2),
     "operators/test_waiting.py": (4, 5),
     "reconstruction/test_blend_examples.py": (4, 5),
     "reconstruction/test_bone_lengths.py": (4, 5),
