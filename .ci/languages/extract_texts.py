@@ -50,7 +50,7 @@ LABELED = {
     "mocap_assist/panels/figure_rows.py": {"FIGURES"},
     "mocap_assist/retarget/bone_list.py": {"PRESETS"},
     "mocap_assist/retarget/role_labels.py": {"PARTS", "FINGERS"},
-    "mocap_assist/runtime/watch.py": {"time_left"},
+    "mocap_assist/runtime/watch.py": {"CANCELS", "time_left"},
     "solvers/denoising/default_method.py": {"_joints"},
     "solvers/denoising/edge_poses.py": {"NAMES"},
     "solvers/denoising/quality/worst_issues.py": {"_spikes", "_gaps", "_jitter", "_slides",

@@ -1,8 +1,7 @@
 """Write a cleaned take into a copy of its action; the source is never touched."""
 
 import re
-from collections.abc import Collection, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 import bpy
@@ -17,6 +16,7 @@ from ..blender.block_references import (
     BlockReference,
     SourceReference,
     changed_during_solve,
+    removed_on_failure,
 )
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, in_thread, should_yield
@@ -108,18 +108,6 @@ def write_take(
                 if unchanged:
                     unchanged.find_again()
     return made.find()
-
-
-@contextmanager
-def removed_on_failure(action: bpy.types.Action) -> Iterator[None]:
-    """Remove a new action if its completion fails, or is cancelled between two time slices."""
-    made = BlockReference.of(action)
-    try:
-        yield
-    except BaseException:
-        with suppress(InvalidMotionError):
-            bpy.data.actions.remove(made.find())
-        raise
 
 
 def _playing(armature: bpy.types.Object) -> tuple[int, int] | None:

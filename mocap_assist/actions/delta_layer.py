@@ -8,7 +8,9 @@ import numpy as np
 from ...solvers.arrays import Array
 from ...solvers.rotations import inverse, multiply, unroll
 from ..blender import compat
+from ..blender.block_references import BlockReference, SourceReference, removed_on_failure
 from ..blender.compat import Source
+from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene import history
 from .armature_write import (
     NUMBERED,
@@ -39,7 +41,8 @@ TIMING = (
 """Properties of a strip that place its action in the scene, in the order to set them."""
 
 
-def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Source:
+@Sliced
+def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Steps[Source]:
     """Make an action that leads from the pose of `base` to that of `result` when combined.
 
     Blender's NLA combines by channel: it multiplies quaternions and adds all else. Channels
@@ -48,16 +51,24 @@ def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Sou
     action = bpy.data.actions.new(NUMBERED.sub("", base[0].name) + SUFFIX)
     action.use_fake_user = True
     slot = action.slots.new(armature.id_type, result[1].name_display)
-    bag = compat.ensure_channelbag(action, slot)
+    here, made = BlockReference.of(armature), SourceReference.of((action, slot))
+    sources = SourceReference.of(base), SourceReference.of(result)
+    names = armature.pose.bones.keys()
     before, after = animated_curves(*base), animated_curves(*result)
-    for bone in armature.pose.bones:
-        for path, frames, deltas in _deltas(bone, before, after):
-            for index, column in deltas.items():
-                curve = compat.new_curve(bag, path, index, bone.name)
-                write_first(curve, frames, np.nan_to_num(column))
-                deselect(curve)
-    history.mark_delta(action, base, result)
-    return action, slot
+    with removed_on_failure(action):
+        for number, name in enumerate(names):
+            bone, bag = here.find().pose.bones[name], compat.ensure_channelbag(*made.find())
+            for path, frames, deltas in _deltas(bone, before, after):
+                for index, column in deltas.items():
+                    curve = compat.new_curve(bag, path, index, name)
+                    write_first(curve, frames, np.nan_to_num(column))
+                    deselect(curve)
+            if should_yield():
+                yield number / len(names)
+                before, after = (animated_curves(*source.find()) for source in sources)
+        action, _ = made.find()
+        history.mark_delta(action, *(source.find() for source in sources))
+    return made.find()
 
 
 def _deltas(

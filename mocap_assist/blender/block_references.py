@@ -1,5 +1,7 @@
 """References to data-blocks that stay valid while Blender runs; pointers do not."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from typing import Any, NamedTuple
 
 import bpy
@@ -68,3 +70,15 @@ class SourceReference(NamedTuple):
                 f"A slot of {action.name} was deleted during the solve; nothing was written."
             )
         return action, slot
+
+
+@contextmanager
+def removed_on_failure(action: bpy.types.Action) -> Iterator[None]:
+    """Remove a new action if its completion fails, or is cancelled between two time slices."""
+    made = BlockReference.of(action)
+    try:
+        yield
+    except BaseException:
+        with suppress(InvalidMotionError):
+            bpy.data.actions.remove(made.find())
+        raise

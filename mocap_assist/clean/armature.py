@@ -21,7 +21,7 @@ from ..actions.delta_layer import lay_delta, write_delta
 from ..actions.limits import read_limits
 from ..actions.take import ArmatureTake
 from ..actions.unchanged_samples import RecordedChannels
-from ..blender.block_references import SourceReference
+from ..blender.block_references import SourceReference, removed_on_failure
 from ..blender.compat import Source
 from ..blender.time_slices import Steps, in_thread
 from ..runtime.played import Played
@@ -108,7 +108,10 @@ class ArmatureReading(NamedTuple):
             write_contacts(now.armature, action, slot, take.frames, contacts, detected=detected)
         history.record(action, now.played, entry)
         if choices.result_as is CleanOutput.DELTA_LAYER:
-            delta = write_delta(now.armature, now.recorded, (action, slot))
+            made = SourceReference.of((action, slot))
+            with removed_on_failure(action):
+                delta = yield from write_delta.steps(now.armature, now.recorded, (action, slot))
+                now, (action, slot) = self._found(self.references, self.raw), made.find()
             lay_delta(now.armature, now.recorded, delta)
         else:
             put_to_use(now.armature, action, slot, Output[choices.result_as.name])

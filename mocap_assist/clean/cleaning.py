@@ -86,7 +86,7 @@ def write_cleaned(
     types = yield from in_thread.steps(
         partial(key_types, cleaned.solution.recordings_of(problem), cleaned.solution.denoised)
     )
-    entry = entry_of("denoise", settings, cleaned)
+    entry = yield from in_thread.steps(partial(entry_of, "denoise", settings, cleaned))
     name, n_modified = yield from found.write(settings.choices, cleaned, types, entry)
     return clean_report(len(found.raw.frames), cleaned, name, n_modified)
 

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...solvers.retargeting import KeyCurve
-from ..actions.armature_write import removed_on_failure, same_slot
+from ..actions.armature_write import same_slot
 from ..actions.bone_channels import Curves, animated_curves, location_curves, rotation_curves
 from ..actions.curves import Channel
 from ..actions.frames import Grid
-from ..blender.block_references import SourceReference
+from ..blender.block_references import SourceReference, removed_on_failure
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
 from ..runtime.played import Played

@@ -12,6 +12,7 @@ from .file_change_handlers import ends_with_file
 TIMER_INTERVAL_S = 0.05
 """Seconds between two looks at a solve, and between two displays of its progress."""
 CANCEL = "mocap_assist.cancel_solve"
+CANCELS = "Esc cancels"
 MIN_FRACTION = 0.05
 """Fraction of a solve from which the time left is shown. It guards estimates from a few
 frames."""
@@ -52,7 +53,7 @@ class Watch:
         self._shown_at = float("-inf")
         self._display_s = TIMER_INTERVAL_S if interval_s < TIMER_INTERVAL_S else 0.0
         self.is_cancelled = False
-        self.ending = "Esc cancels"
+        self.ending = CANCELS
         manager = context.window_manager
         manager.mocap_assist_job.owner = owner
         self._timer = manager.event_timer_add(interval_s, window=context.window)

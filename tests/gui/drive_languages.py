@@ -8,12 +8,11 @@ eyes: they show cut and untranslated words.
 
 import bgui
 import bpy
-from driver_scene import PANELS, empty_scene, scroll, settle, until_done
+from driver_scene import PANELS, empty_scene, settle, until_done
 
 AWAY = (500, 500)
 LANGUAGES = ("ja_JP", "de_DE")
 """Wide characters, and long words."""
-WHEEL_DOWN = 5
 PARTS = ("row", "column", "split", "box", "grid_flow")
 
 
@@ -75,10 +74,18 @@ def steps():
         return
     view.language = "en_US"
     empty_scene()
-    kinds, shown = our_panels(), []
-    unfold(
-        kinds, lambda cls, context: {cls.__name__, getattr(cls, "bl_parent_id", "")} & {*shown}
-    )
+    kinds = our_panels()
+    tops = [
+        each
+        for each in kinds
+        if each.bl_space_type == "VIEW_3D" and not getattr(each, "bl_parent_id", "")
+    ]
+    shown = [tops[0].__name__]
+
+    def is_shown(cls, context):
+        return bool({cls.__name__, getattr(cls, "bl_parent_id", "")} & {*shown})
+
+    unfold(kinds, is_shown)
     yield from bgui.open_sidebar("Mocap")
     with bgui.override("WINDOW"):
         bpy.ops.mocap_assist.load_sample()
@@ -86,15 +93,11 @@ def steps():
     yield from until_done()
     for language in LANGUAGES:
         view.language = language
-        for kind in kinds:
-            if getattr(kind, "bl_parent_id", ""):
-                continue
+        for kind in tops:
             shown[:] = [kind.__name__]
             name = f"{language}-{kind.__name__.removeprefix(PANELS)}"
             yield from settle(2, pointer=AWAY)
             bgui.shot(f"{name}.png")
-            yield from scroll(WHEEL_DOWN)
-            bgui.shot(f"{name}-end.png")
     view.language = "en_US"
 
 
