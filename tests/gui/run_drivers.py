@@ -45,6 +45,7 @@ RECORDINGS = {
         "joints.txt": "kinect/irds/215_18_0_5_1_stand.txt",
         "markers.trc": "formats/trc/motion_capture_run.trc",
     },
+    "languages": {},
     "library": {
         f"clips/{name}.bvh": f"mocap/cmu_walk/{name}.bvh"
         for name in ("05_01", "07_01", "07_02", "10_04", "35_01", "35_02")
