@@ -37,7 +37,7 @@ def _draw_colors(column: bpy.types.UILayout) -> None:
     for color in ("raw_color", "clean_color"):
         colors.prop(preferences(), color, text="")
     names = column.row(align=True)
-    for text in ("Raw", "Clean"):
+    for text in ("Raw Color", "Clean Color"):
         name = names.row()
         name.alignment = "CENTER"
         name.label(text=text)

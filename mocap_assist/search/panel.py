@@ -91,10 +91,10 @@ def _draw_library(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         body.prop(library, "tags")
         body.prop(library, "rig_file", text="Rig")
         body.prop(library, "library_file", text="File")
-        row = body.row(align=True)
-        row.operator(INDEX, icon="FILE_REFRESH")
+        buttons = body.column(align=True)
+        buttons.operator(INDEX, icon="FILE_REFRESH")
         kept = choices_are_kept(library.settings().choices)
-        row.operator(KEEP, icon="RECOVER_LAST", depress=kept)
+        buttons.operator(KEEP, icon="RECOVER_LAST", depress=kept)
     if state.running:
         text = f"{translated(state.message)} {state.fraction:.0%}"
         layout.progress(factor=state.fraction, type="BAR", text=text, translate=False)

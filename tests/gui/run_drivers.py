@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import own_window
+from window import own_window
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared"
