@@ -32,8 +32,8 @@ from .published import filter_as_published
 from .window_priors import FilterBases
 
 MIN_REPORTED_SPIKE = 2.0
-"""Degrees or centimeters: a sample closer to the estimate is not reported as a spike. Chosen
-by hand: x0.5 costs nothing, x2 gains 1.3 %."""
+"""Degrees or centimeters: a sample closer to the estimate is not reported as a spike. Chosen by
+hand; `make sensitivity` varies it."""
 HALF_CONFIDENCE_DEVIATION = 5.0
 """Standard deviation, degrees or centimeters, at which confidence is one half. By definition of
 the confidence."""

@@ -30,7 +30,7 @@ SAMPLES_PER_SECOND, MAX_SAMPLES = 6.0, 12_000
 bound the run time and the memory of long recordings."""
 COARSE_WIDTH = 160
 """Columns of the image in which bodies are detected, pixels. It bounds the run time. Chosen by
-hand: x0.5 and x2 cost nothing."""
+hand; `make sensitivity` varies it."""
 MAJORITY = 0.5
 """By definition, the fraction of most images, and of most pixels: an image is actor-only if
 less of it has depth, and more of that belongs to a body."""

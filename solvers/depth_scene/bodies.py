@@ -13,8 +13,7 @@ Depth = NDArray[np.floating[Any]]
 
 MAX_STEP_M, MAX_STEP_PER_M2 = 0.05, 0.005
 """Maximum depth step between pixels of one surface: meters, and growth with squared depth.
-Chosen by hand: first, x0.5 costs 2.8 %, x2 gains 2.6 %; second, x0.5 costs 1.3 %, x2 gains
-2.1 %."""
+Chosen by hand; `make sensitivity` varies them."""
 MAX_COMPONENT_DISTANCE_M = 0.5
 """A small component, such as a hand held forward, belongs to a body within this distance. It
 guards bodies that an arm or a hole in the depth divides
@@ -25,7 +24,7 @@ area and this gap. They guard bodies that furniture in front of them divides
 (`test_two_people_next_to_each_other_are_two_bodies`,
 `test_find_actor_works_in_a_room_with_default_settings`)."""
 MIN_COMPONENT_M2 = 1e-3
-"""Smaller components count as noise. Chosen by hand: x0.5 gains 2.4 %, x2 costs 0.9 %."""
+"""Smaller components count as noise. Chosen by hand; `make sensitivity` varies it."""
 MAX_FULL_PIXELS, COARSE_WIDTH = 20_000, 200
 """Number of pixels above which the image is subsampled, and its width then, pixels. They bound
 the run time. Chosen by hand: second, x0.5 costs 0.4 %, x2 costs 2.4 %."""

@@ -13,15 +13,13 @@ LEVEL_UP = np.array([0.0, -1.0, 0.0])
 """Up direction in the frame of a level camera."""
 MAX_IMAGES, MAX_POINTS = 12, 6000
 """Number of images, evenly spaced, and of their points together that the plane is fitted to.
-They bound the run time. Chosen by hand: first, x0.5 costs 5.2 %, x2 costs 9.9 %; second, x0.5
-costs 13.7 %, x2 costs 4.9 %."""
+They bound the run time. Chosen by hand; `make sensitivity` varies them."""
 TOLERANCE_M, TOLERANCE_PER_M2 = 0.015, 0.003
 """Inlier distance from the plane: meters, and its growth with squared depth (sensor noise).
-Chosen by hand: first, x0.5 gains 15.1 %, x2 costs 21.3 %; second, x0.5 gains 25.7 %, x2 costs
-50.0 %."""
+Chosen by hand; `make sensitivity` varies them."""
 FIT_TOLERANCES = (1.0, 0.7, 0.5, 0.5)
 """Fraction of the tolerance for each refit; the last ones exclude the base of walls. Chosen by
-hand: x0.5 gains 34.4 %, x2 costs 50.0 %."""
+hand; `make sensitivity` varies it."""
 BELOW_TOLERANCES = 3.0
 """Points more than this many tolerances below a plane vote against it: a factor. It guards
 rooms with a table top larger than the visible floor (`test_find_floor_rejects_a_table`)."""

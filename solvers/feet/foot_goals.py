@@ -26,13 +26,13 @@ ROOT_M = 0.01
 """Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand: x0.5 costs 1.4 %, x2
 gains 0.5 % and lets the hips jerk more."""
 HIP_RAD = np.radians(4.0)
-"""Radians of a hip, and of toes. Chosen by hand: x0.5 costs 0.6 %, x2 costs 0.4 %."""
+"""Radians of a hip, and of toes. Chosen by hand; `make sensitivity` varies it."""
 KNEE_RAD, LOOSE_KNEE_RAD = np.radians(3.0), np.radians(8.0)
 """Radians of a knee, with and without Protect Knees. Chosen by hand: x0.5 costs nothing, x2
 costs 1.1 % and makes knees jerk more."""
 ANKLE_RAD = np.radians(15.0)
-"""Radians of an ankle, whose foot follows its own rotation in the world. Chosen by hand: x0.5
-costs 2.2 %, x2 costs 0.5 %."""
+"""Radians of an ankle, whose foot follows its own rotation in the world. Chosen by hand;
+`make sensitivity` varies it."""
 FOOT_RAD = np.radians(2.5)
 """Radians of a foot in the world. Chosen by hand: x0.5 costs 2.0 %, x2 gains 1.2 % and turns
 feet farther."""
@@ -44,8 +44,8 @@ CREEP_M = 0.02
 """Meters, for a leg of 0.9 m, by which a foot may creep in Max Contact Time. It guards long
 contacts in which the body drifts."""
 FLOOR_M = 0.002
-"""Meters, for a leg of 0.9 m, by which a planted sole may be off the floor. Chosen by hand:
-x0.5 costs 0.2 %, x2 gains 0.2 %."""
+"""Meters, for a leg of 0.9 m, by which a planted sole may be off the floor. Chosen by hand;
+`make sensitivity` varies it."""
 MAX_TURN_RAD_S = np.radians(8.0)
 """Radians per second by which a foot may turn while it rests flat. Chosen by hand: x0.5 gains
 0.3 %, x2 costs 0.9 %, but 2 degrees make knees before depth cameras jerk half as much again."""

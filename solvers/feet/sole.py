@@ -12,10 +12,10 @@ from .legs import LegJoints
 
 HEEL_FRACTION = 0.2
 """Distance of the heel behind the ankle, relative to the distance from ankle to ball. Chosen by
-hand: x0.5 gains 0.5 %, x2 costs 1.4 %."""
+hand; `make sensitivity` varies it."""
 LOAD_FALLOFF_M = 0.007
 """Meters, for a leg of 0.9 m: a point this far above the lowest carries 1/e of its load. Chosen
-by hand: x0.5 costs 0.5 %, x2 costs 0.2 %."""
+by hand; `make sensitivity` varies it."""
 SPEED_FALLOFF = 0.1
 """Meters per second, for a leg of 0.9 m: a point this much faster than the slowest carries 1/e
 of its load. Chosen by hand: x0.5 gains 0.9 %, x2 costs 1.6 %; x1.5 makes the worst knee of
@@ -23,14 +23,13 @@ squats whose feet were captured badly jerk 1.5 times as much."""
 MIN_RISE_M = 0.012
 """Meters, for a leg of 0.9 m, by which heel and ball are higher than the tip (or than the ankle
 above its own height at rest) when all carry the same load. Captured toes jitter, and a
-jittering tip should not carry a resting foot. Chosen by hand: x0.5 gains 0.3 %, x2 costs 0.3
-%."""
+jittering tip should not carry a resting foot. Chosen by hand; `make sensitivity` varies it."""
 MAX_REST_SPEED = 0.15
-"""Meters per second below which the entire foot rests on the floor. Chosen by hand: x0.5 gains
-2.7 %, x2 gains 0.9 %."""
+"""Meters per second below which the entire foot rests on the floor. Chosen by hand;
+`make sensitivity` varies it."""
 SMOOTHING_S = 0.03
-"""Seconds over which speeds and heights are smoothed before they are compared. Chosen by hand:
-x0.5 costs 0.5 %, x2 gains 0.3 %."""
+"""Seconds over which speeds and heights are smoothed before they are compared. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 def sole_points(skeleton: Skeleton, leg: LegJoints) -> tuple[BonePoint, ...]:

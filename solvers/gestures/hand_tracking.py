@@ -22,7 +22,7 @@ MEDIAN_SAMPLES = 3
 by hand: x2 costs 40 %; three is by definition the smallest number with that effect."""
 N_LENGTHS = 60
 """Number of frames, two seconds of a depth camera, whose median gives the arm length. Chosen by
-hand: x0.5 costs 1.3 %, x2 costs nothing."""
+hand; `make sensitivity` varies it."""
 HEADING_TIME_S = 0.3
 """Time constant in seconds at which the actor's heading follows the shoulders. Chosen by hand:
 without it UI-PRMD and MSR Action3D have 47 waves less and 33 others."""

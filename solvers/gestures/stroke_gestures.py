@@ -37,7 +37,7 @@ right and to the left. Chosen by hand: without the first UI-PRMD and MSR Action3
 more, without the second 55."""
 MAX_HANGING_HEIGHT = -0.45
 """Height of a wrist above its shoulder, in arm lengths, below which its arm hangs. Chosen by
-hand: x0.5 costs 20.0 %, x2 costs nothing."""
+hand; `make sensitivity` varies it."""
 
 
 class Clap:

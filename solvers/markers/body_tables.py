@@ -10,8 +10,7 @@ from .marker_sets import HEAD, PELVIS, TRUNK
 
 LOOSE_STD_M, FIRM_STD_M, TIGHT_STD_M = 0.03, 0.012, 0.006
 """Standard deviations, in meters, of a joint's or marker's offset from its mean. Chosen by
-hand: first, x0.5 gains 2.7 %, x2 gains 0.7 %; second, x0.5 gains 6.7 %, x2 costs 8.1 %; third,
-x0.5 costs 3.4 %, x2 gains 6.6 %."""
+hand; `make sensitivity` varies them."""
 FREE_STD_M = 1.0
 """Standard deviation of an offset that only the markers determine. By definition wider than any
 error. It guards leg lengths that start wrong, as of a knee marker placed too low."""
@@ -48,8 +47,8 @@ class MarkerPrior(NamedTuple):
 
 
 TRUNK_FLEXION_RAD: Triple = (0.4, 0.4, 0.4)
-"""Standard deviation of the rotation of a trunk joint, radians. Chosen by hand: x0.5 gains
-0.3 %, x2 gains 0.8 %."""
+"""Standard deviation of the rotation of a trunk joint, radians. Chosen by hand;
+`make sensitivity` varies it."""
 CENTRAL_JOINTS = (
     JointPrior("hips", ""),
     JointPrior("spine", "hips", (0.0, TIGHT_STD_M, TIGHT_STD_M), TRUNK_FLEXION_RAD),

@@ -8,8 +8,8 @@ from .body import MarkerBody, Poses
 from .fit_poses import compute_residuals
 
 MAX_ROTATION_STD_RAD = 0.8
-"""Standard deviation above which a joint's rotation is undetermined. Chosen by hand: x0.5 costs
-38.2 %, x2 gains 20.0 %."""
+"""Standard deviation above which a joint's rotation is undetermined. Chosen by hand;
+`make sensitivity` varies it."""
 MAX_POSITION_STD_M = 0.05
 """Standard deviation above which the position of the hips is undetermined. It guards frames
 without markers of the pelvis: legs determine the hips, shanks alone do not."""

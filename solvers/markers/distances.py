@@ -12,7 +12,7 @@ from .rigid_transform import MARKER_NOISE_M
 
 MAX_NEIGHBORS = 6
 """Number of markers, those at the most constant distance, that a label is compared with. Chosen
-by hand: x0.5 costs 3.6 %, x2 costs nothing."""
+by hand; `make sensitivity` varies it."""
 RIGID_SPREAD_M = 0.02
 """Maximum spread of a distance that identifies a marker by itself. It guards markers that move
 freely, any of whose distances are those of another one at times."""
@@ -24,7 +24,7 @@ MIN_OBSERVED_FRACTION = 0.2
 frames, in which no distance has time to vary: it would join a cluster."""
 MAX_MISFIT = 8.0
 """Maximum squared error of one distance, relative to its spread, over two: it limits outliers.
-Chosen by hand: x0.5 costs 27.3 %, x2 costs nothing."""
+Chosen by hand; `make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from .fit_poses import DAMPING, apply_step, compute_residuals, cost_of
 
 N_INDEPENDENT_FRAMES = 10.0
 """Effective number of independent frames of a take: skin motion correlates with the pose.
-Chosen by hand: x0.5 gains 1.4 %, x2 costs 3.8 %."""
+Chosen by hand; `make sensitivity` varies it."""
 MAX_STEPS = 25
 """Maximum number of Gauss-Newton steps. It bounds the run time: bodies of the test takes
 converge sooner. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""

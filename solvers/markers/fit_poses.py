@@ -17,14 +17,14 @@ from .vectors import matrix_from_rotation_vector
 FRAMES_PER_BLOCK = 256
 """Frames that are fitted at once. It bounds the memory."""
 CAUCHY_SCALE = 3.0
-"""Scale of the Cauchy weight, in standard deviations of a marker's noise. Chosen by hand: x0.5
-gains 3.6 %, x2 gains 5.4 %."""
+"""Scale of the Cauchy weight, in standard deviations of a marker's noise. Chosen by hand;
+`make sensitivity` varies it."""
 DAMPING = 1e-3
 """Initial weight of Levenberg-Marquardt damping, relative to the diagonal: that of Madsen,
 Nielsen, Tingleff (2004), Methods for non-linear least squares problems, eq. 3.14."""
 MAX_STEP_RAD = 0.5
-"""Radians: maximum rotation of a joint in one step. Chosen by hand: x0.5 gains 4.3 %, x2 gains
-2.8 %."""
+"""Radians: maximum rotation of a joint in one step. Chosen by hand; `make sensitivity` varies
+it."""
 MIN_COST_GAIN = 1e-4
 """Relative gain of the cost below which the iteration ends. It bounds the run time."""
 

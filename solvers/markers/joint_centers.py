@@ -18,26 +18,24 @@ PositionsByJoint = dict[str, Array]
 
 HINT_WEIGHT = 0.25
 """Weight of the trunk's axis of flexion, relative to the sine of the limb's own flexion. Chosen
-by hand: x0.5 costs 2.6 %, x2 gains 1.9 %."""
+by hand; `make sensitivity` varies it."""
 ADULT_LEG_M = 0.83
 """Length from hip to ankle of a body with the widths below. By definition."""
 HALF_KNEE_M, HALF_ELBOW_M, HALF_ANKLE_M = 0.06, 0.045, 0.045
-"""Distance of a joint center from the marker next to it. Chosen by hand: first, x0.5 costs
-3.0 %, x2 costs 9.3 %; second, x0.5 costs 1.8 %, x2 gains 3.3 %; third, x0.5 costs 20.3 %, x2
-costs 8.1 %."""
+"""Distance of a joint center from the marker next to it. Chosen by hand; `make sensitivity`
+varies them."""
 SHOULDER_DEPTH_M, WRIST_DEPTH_M = 0.05, 0.03
 """Distances, in meters, from the shoulder marker down to the joint and from the wrist markers
-back to it. Chosen by hand: first, x0.5 costs 6.9 %, x2 costs 4.1 %; second, x0.5 costs 0.8 %,
-x2 gains 5.2 %."""
+back to it. Chosen by hand; `make sensitivity` varies them."""
 HIPS_ABOVE_JOINTS_M = 0.05
 """Height of the hips joint above the hip joints in meters. By definition of this skeleton: in
 rigs it is 0.02 to 0.07."""
 HEADBAND_HEIGHT_M = 0.07
-"""Height of a headband above the head joint in meters. Chosen by hand: x0.5 costs 0.1 %, x2
-gains 0.3 %."""
+"""Height of a headband above the head joint in meters. Chosen by hand; `make sensitivity`
+varies it."""
 CHEST_FRACTION = 0.4
-"""Position of the chest joint between the lowest and the highest spine joint. Chosen by hand:
-x0.5 costs 1.0 %, x2 costs 0.7 %."""
+"""Position of the chest joint between the lowest and the highest spine joint. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, eq=False)

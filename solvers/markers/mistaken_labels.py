@@ -13,7 +13,7 @@ below which it is correct. First chosen by hand: x0.5 costs nothing, x2 costs 0.
 guards reflections, which fit no label."""
 MIN_NEIGHBORS = 3
 """Number of observed neighbors without which a label is not judged: spheres about three of them
-meet in two points. Chosen by hand: x0.5 costs nothing, x2 costs 5.5 %."""
+meet in two points. Chosen by hand; `make sensitivity` varies it."""
 MIN_JUMP_M = 0.06
 """Step relative to the neighbors in one frame that indicates another marker. It guards markers
 that get the label of a missing one for some frames: they would keep it."""

@@ -15,8 +15,8 @@ MAX_JUMP_EVIDENCE, FORBIDDEN_COST = 10.0, 1e9
 smoothly. Chosen by hand: first, x0.5 costs 2.1 %, x2 costs nothing; the second is a
 guard."""
 SWITCH_COST = 3.0
-"""Cost of each start and end of a swap, the logarithm of a probability. Chosen by hand: x0.5
-costs nothing, x2 costs 2.1 %."""
+"""Cost of each start and end of a swap, the logarithm of a probability. Chosen by hand;
+`make sensitivity` varies it."""
 FRAME_WEIGHT = 0.3
 """Weight of the distances in a frame, since consecutive frames are correlated. Chosen by hand:
 0 costs 50 %, x0.5 and x2 cost nothing."""

@@ -28,8 +28,8 @@ from .tables import (
 
 LEG_ROLES = {side + part for side in ("left", "right") for part in ("UpperLeg", "LowerLeg")}
 MIN_MASS_KG = 0.05
-"""Mass of a joint without a segment, for legs of 0.9 m. Chosen by hand: x0.5 costs nothing, x2
-costs 1.1 %."""
+"""Mass of a joint without a segment, for legs of 0.9 m. Chosen by hand; `make sensitivity`
+varies it."""
 
 MIN_SIZE, MAX_SIZE = 0.05, 20.0
 """Bounds of the size of a body: leg length relative to 0.9 m, from a doll to a giant. They

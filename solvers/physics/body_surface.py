@@ -13,17 +13,17 @@ from .body import PhysicsBody
 SIDES = ("left", "right")
 LEG = ("UpperLeg", "LowerLeg", "Foot")
 MAX_CONTACT_M = 0.005
-"""Meters, for legs of 0.9 m: a sole this near to the ground touches it. Chosen by hand: x0.5
-costs 1.5 %, x2 costs 6.6 %."""
+"""Meters, for legs of 0.9 m: a sole this near to the ground touches it. Chosen by hand;
+`make sensitivity` varies it."""
 
 ERROR_WINDOW_S = 1.0
 """Seconds: heights above or below the ground that last longer are capture errors. Chosen by
-hand: x0.5 costs 1.1 %, x2 costs 2.0 %."""
+hand; `make sensitivity` varies it."""
 
 MAX_SINK_M = 0.02
 """Meters, for legs of 0.9 m, of tolerated lasting depth: one foot is often a little lower than
-the other, and legs that press on it stand more firmly. Chosen by hand: x0.5 costs 0.2 %, x2
-costs 4.9 %."""
+the other, and legs that press on it stand more firmly. Chosen by hand; `make sensitivity`
+varies it."""
 
 MAX_HOVER_M = 0.25
 """Meters, for legs of 0.9 m: a body that stays higher is not on this ground. It guards takes on

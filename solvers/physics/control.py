@@ -12,24 +12,24 @@ from .world import GRAVITY, World
 
 BASE = slice(0, 6)
 MAX_CORRECTION_G, MAX_ANGULAR_CORRECTION = 1.0, 30.0
-"""Maximum acceleration of the base that corrects an error, in g and in 1/s^2. Chosen by hand:
-first, x0.5 gains 5.1 %, x2 gains 8.5 %; second, x0.5 gains 4.6 %, x2 gains 5.2 %."""
+"""Maximum acceleration of the base that corrects an error, in g and in 1/s^2. Chosen by hand;
+`make sensitivity` varies them."""
 
 N_ITERATIONS = 8
-"""Chosen by hand: x0.5 costs 0.7 %, x2 gains 0.2 %."""
+"""Chosen by hand; `make sensitivity` varies it."""
 REGULARIZATION = 1e-3
 """Tikhonov regularization of contact forces, relative to their mean, so that neighbors share
-the load. Chosen by hand: x0.5 gains 4.0 %, x2 gains 1.3 %."""
+the load. Chosen by hand; `make sensitivity` varies it."""
 ARM_REGULARIZATION = 100.0
 """Factor on the regularization for arms and head: legs carry the body where they can. Chosen by
 hand: without it feet of HDM05 slide 12.7 cm/s instead of 10.9 where actors use their hands
 (`test_legs_carry_the_body_where_arms_touch_too`)."""
 
 HELP_LEVER_M = 1.0
-"""Chosen by hand: x0.5 costs 6.5 %, x2 costs 2.1 %."""
+"""Chosen by hand; `make sensitivity` varies it."""
 TORQUE_LEVER_M = 1.0
-"""Meters, for legs of 0.9 m: weighs torques on the base against forces. Chosen by hand: x0.5
-gains 1.0 %, x2 costs 29.1 %."""
+"""Meters, for legs of 0.9 m: weighs torques on the base against forces. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from .body_surface import SIDES, lowest_points, measure_sole_speeds, select_foot
 
 SMOOTHING_S = 0.02
 """Standard deviation in seconds of the Gaussian that smooths loads, heights and speeds. Chosen
-by hand: x0.5 costs 0.3 %, x2 gains 0.5 %."""
+by hand; `make sensitivity` varies it."""
 
 MIN_LOAD, FULL_LOAD = 0.05, 0.15
 """Fractions of the weight: a foot with the first starts to stand; with the second it stands.
@@ -20,17 +20,15 @@ actor who rests on the other one: higher lets it slip, lower holds a foot that o
 
 HOLD_SPEED_M_S, RELEASE_SPEED_M_S = 0.3, 0.5
 """Meters per second, for legs of 0.9 m: a loaded sole is held below the first speed and slips
-above the second. Chosen by hand: first, x0.5 costs nothing, x2 costs 1.1 %; second, x0.5 costs
-2.3 %, x2 gains 2.0 %."""
+above the second. Chosen by hand; `make sensitivity` varies them."""
 
 HOLD_HEIGHT_M, RELEASE_HEIGHT_M = 0.02, 0.03
 """Meters above the ground, for legs of 0.9 m: a foot that stands in the target is held below
-the first height and free above the second. Chosen by hand: first, x0.5 costs nothing, x2 costs
-4.0 %; second, x0.5 costs 4.0 %, x2 costs nothing."""
+the first height and free above the second. Chosen by hand; `make sensitivity` varies them."""
 
 LOAD_DECAY_M = 0.002
 """Meters, for legs of 0.9 m: a part of the sole higher by this bears 1/e of the load. Chosen by
-hand: x0.5 gains 3.1 %, x2 costs 4.0 %."""
+hand; `make sensitivity` varies it."""
 
 
 def detect_target_contacts(body: PhysicsBody, motion: Motion) -> Flags:

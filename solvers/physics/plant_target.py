@@ -25,27 +25,27 @@ from .foot_support import distribute_load
 
 BLEND_S = 0.35
 """Seconds over which a released foot blends to its own motion, and a simulated body to the take
-next to a failure. Chosen by hand: x0.5 costs 0.2 %, x2 costs 2.3 %."""
+next to a failure. Chosen by hand; `make sensitivity` varies it."""
 
 MAX_TURN_RATE_RAD_S = 0.6
 """Radians per second: a foot that rotates faster on the ground does so on purpose. Chosen by
-hand: x0.5 costs 2.7 %, x2 gains 1.1 %."""
+hand; `make sensitivity` varies it."""
 
 CREEP_M_S = 0.001
 """Meters per second, for legs of 0.9 m, by which the loaded part of a held sole may creep. It
 guards loaded feet against slides (`test_loaded_foot_rests_on_a_fixed_point`)."""
 
 TURN_RAD_S = np.radians(2.0)
-"""Radians per second by which a held foot may turn. Chosen by hand: x0.5 and x2 change the
-mean by less than 0.1 %."""
+"""Radians per second by which a held foot may turn. Chosen by hand; `make sensitivity` varies
+it."""
 
 HEIGHT_M = 0.001
-"""Meters, for legs of 0.9 m, by which an end of the sole may leave its height. Chosen by
-hand: x0.5 gains 0.4 %, x2 costs 0.9 %."""
+"""Meters, for legs of 0.9 m, by which an end of the sole may leave its height. Chosen by hand;
+`make sensitivity` varies it."""
 
 ROOT_M = 0.006
-"""Meters, for legs of 0.9 m, by which the root may move. Chosen by hand: x0.5 and x2
-change the mean by less than 0.1 %."""
+"""Meters, for legs of 0.9 m, by which the root may move. Chosen by hand; `make sensitivity`
+varies it."""
 
 HIP_RAD, KNEE_RAD, ANKLE_RAD = np.radians([2.5, 6.0, 15.0])
 """Radians by which the joints of a leg may turn. Chosen by hand: knees of x0.5 let walking feet

@@ -34,7 +34,7 @@ from .world import build_world
 
 MAX_STEP_S = 1.0 / 239.0
 """Maximum time step. It gives 30, 60 and 120 frames a second the same steps of 1/240 s. Chosen
-by hand: x0.5 gains 0.2 %, x2 costs 8.4 %."""
+by hand; `make sensitivity` varies it."""
 
 MAX_JUMP_M, MAX_SPEED_M_S = 0.05, 12.0
 """Meters, for legs of 0.9 m, and meters per second. A greater mean joint displacement between
@@ -43,12 +43,12 @@ frames is a discontinuity. They guard takes with joined clips, or with a T-pose 
 
 STANCE_SPEED_M_S, SWING_SPEED_M_S = 0.3, 0.8
 """Meters per second, for legs of 0.9 m: a sole slower than the first in the target gets full
-friction, and one faster than the second only little. Chosen by hand: first, x0.5 costs 11.1 %,
-x2 costs 1.2 %; second, x0.5 costs 15.9 %, x2 gains 0.1 %."""
+friction, and one faster than the second only little. Chosen by hand; `make sensitivity` varies
+them."""
 
 MIN_FRICTION_FACTOR = 0.05
-"""Fraction of the friction under a swinging foot. Chosen by hand: x0.5 costs nothing, x2 gains
-0.1 %."""
+"""Fraction of the friction under a swinging foot. Chosen by hand; `make sensitivity` varies
+it."""
 
 
 RETRY_SMOOTHINGS_S = (0.04, 0.08, 0.16)
@@ -57,7 +57,7 @@ that the body does not follow, such as shaking ones; with more, little of a moti
 
 MAX_SUPPORT_FRACTION = 0.75
 """Fraction of the external force that a body in balance does not use on average. Chosen by
-hand: x0.5 gains 15.4 %, x2 costs 42.0 %."""
+hand; `make sensitivity` varies it."""
 
 
 class SimulationConditions(NamedTuple):

@@ -23,26 +23,23 @@ MIN_CONTACT_S = 0.5
 leap or a dive, whose lowest feet are not on it
 (`test_brief_contact_does_not_show_the_ground`)."""
 STANCE_PERCENTILE = 25.0
-"""Percentile of the heights of a foot in contact at which it stands flat. Chosen by hand: x0.5
-costs 1.4 %, x2 costs 0.1 %."""
+"""Percentile of the heights of a foot in contact at which it stands flat. Chosen by hand;
+`make sensitivity` varies it."""
 
 ANKLE_HEIGHTS_M, BALL_HEIGHTS_M = (0.075, 0.03, 0.14), (0.02, 0.008, 0.05)
 """Height of a standing foot's joints above the sole, for legs of 0.9 m: default, minimum,
-maximum. Chosen by hand: first, x0.5 costs 5.1 %, x2 costs 16.3 %; second, x0.5 costs 0.2 %, x2
-costs 3.1 %."""
+maximum. Chosen by hand; `make sensitivity` varies them."""
 
 HEEL_OFFSET_M = 0.04
-"""Chosen by hand: x0.5 gains 1.7 %, x2 costs 2.5 %."""
+"""Chosen by hand; `make sensitivity` varies it."""
 FOOT_LENGTH_M, TOE_LENGTH_M = 0.14, 0.05
 """Meters, for legs of 0.9 m, of feet without a toe joint, and of toes. Chosen by hand: second,
 x0.5 costs 3.6 %, x2 costs 6.5 %; the first is a guard of rigs whose feet end at the ankle
 (`test_feet_without_toes_reach_ahead_of_their_ankles`)."""
 HEEL_HALF_WIDTH_M, BALL_HALF_WIDTH_M = 0.015, 0.03
-"""Chosen by hand: first, x0.5 gains 0.1 %, x2 costs 4.3 %; second, x0.5 gains 1.2 %, x2 costs
-2.8 %."""
+"""Chosen by hand; `make sensitivity` varies them."""
 HEEL_RADIUS_M, BALL_RADIUS_M, TOE_RADIUS_M = 0.03, 0.02, 0.012
-"""Meters, for legs of 0.9 m. Chosen by hand: first, x0.5 costs 3.6 %, x2 costs 2.6 %; second,
-x0.5 costs 0.1 %, x2 costs 0.1 %; third, x0.5 gains 0.1 %, x2 gains 0.3 %."""
+"""Meters, for legs of 0.9 m. Chosen by hand; `make sensitivity` varies them."""
 
 
 def has_feet(humanoid: HumanoidMap) -> bool:

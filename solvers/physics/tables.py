@@ -12,7 +12,7 @@ each."""
 
 HUMAN_MASS_KG = 70.0
 """Mass of a body whose legs are 0.9 m long; it grows with the cube of that length. Chosen by
-hand: x0.5 gains 6.3 %, x2 costs 20.0 %."""
+hand; `make sensitivity` varies it."""
 
 MASS_FRACTIONS = {
     "hips": 0.1182, "spine": 0.1549, "chest": 0.0665, "upperChest": 0.0665,
@@ -32,18 +32,17 @@ STRENGTHS_NM = {
 with those values, jumpers whose feet were captured slightly off did not leave the ground."""
 
 DEFAULT_STRENGTH_NM = 400.0
-"""Maximum torque of a joint without a role. Chosen by hand: x0.5 costs 14.4 %, x2 costs
-1.3 %."""
+"""Maximum torque of a joint without a role. Chosen by hand; `make sensitivity` varies it."""
 
 SEGMENT_LENGTHS_M = {"head": 0.2, "Hand": 0.16, "Toes": 0.06, "Foot": 0.15}
 """Length of a segment without a joint at its end, for legs of 0.9 m."""
 
 MAX_RADIUS_M = 0.105
-"""Radius of the thickest capsule, for legs of 0.9 m: trunks are not round. Chosen by hand: x0.5
-costs 5.4 %, x2 costs 0.8 %."""
+"""Radius of the thickest capsule, for legs of 0.9 m: trunks are not round. Chosen by hand;
+`make sensitivity` varies it."""
 
 DENSITY_KG_M3 = 1000.0
-"""Density of a body. Chosen by hand: x0.5 gains 1.0 %, x2 costs 1.1 %."""
+"""Density of a body. Chosen by hand; `make sensitivity` varies it."""
 
 
 def role_without_side(role: str) -> str:

@@ -15,8 +15,8 @@ from ..rotations import inverse, multiply, normalize, slerp, unroll
 from ..signals import fill_gaps, fill_rotation_gaps, smooth_to_the_ends
 
 SPLINE_VARIANCE = 1.0 / 3.0
-"""Variance of the uniform cubic B-spline as a filter, in squared frames. Chosen by hand: x0.5
-costs 0.4 %, x2 costs 7.4 %."""
+"""Variance of the uniform cubic B-spline as a filter, in squared frames. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 class BodyStates(NamedTuple):

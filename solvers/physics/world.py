@@ -15,16 +15,16 @@ GRAVITY = 9.81
 SIDES = ("left", "right")
 WEAK_ROLES = {"neck", "head", *(side + part for side in SIDES for part in ARM)}
 CONTACT_TIME_S = 0.01
-"""Seconds in which the ground pushes out a penetrating body. Chosen by hand: x0.5 gains 2.5 %,
-x2 costs 11.1 %."""
+"""Seconds in which the ground pushes out a penetrating body. Chosen by hand; `make sensitivity`
+varies it."""
 
 SOLIMP = "0.95 0.995 0.002 0.5 2"
 """The engine's `solimp`: a foot is light, and the push of its leg must not sink it."""
 
 ROTOR_INERTIA = 0.001
 """Rotor inertia of a joint per strength, in seconds squared, as of a geared motor. Without it,
-feet are so light that a small error of the ground's force would rotate them. Chosen by hand:
-x0.5 gains 2.5 %, x2 gains 6.4 %."""
+feet are so light that a small error of the ground's force would rotate them. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 class World(NamedTuple):

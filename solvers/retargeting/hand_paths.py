@@ -15,11 +15,10 @@ from .placement import leg_length
 LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION = 0.2, 0.4
 """Heights of the wrist, as fractions of the leg length. Below the first, the height above
 ground is the source's, scaled by the legs; above the second, the ground has no influence.
-Chosen by hand: first, x0.5 costs 0.1 %, x2 gains 4.1 %; second, x0.5 gains 3.6 %, x2 gains
-0.3 %."""
+Chosen by hand; `make sensitivity` varies them."""
 SUPPORT_HEIGHT_FRACTIONS = (0.12, 0.18)
 """The same heights, as fractions of the leg length, for hands that support themselves on the
-ground. Chosen by hand: x0.5 costs nothing, x2 costs 0.1 %."""
+ground. Chosen by hand; `make sensitivity` varies it."""
 SUPPORT_SPEED, PASSING_SPEED = 0.25, 1.0
 """Speeds in leg lengths per second: low hands slower than the first support themselves on the
 ground; hands faster than the second only pass. They guard hands that sweep over the ground,

@@ -8,11 +8,11 @@ from scipy.linalg import solveh_banded
 from ..arrays import Array, Integers
 
 SLOPE_WEIGHT = 1e-3
-"""Weight of the samples' own slope at the keys, which regularizes the fit. Chosen by hand: x0.5
-costs nothing, x2 costs 0.1 %."""
+"""Weight of the samples' own slope at the keys, which regularizes the fit. Chosen by hand;
+`make sensitivity` varies it."""
 END_WEIGHT = 100.0
-"""Weight of the first and the last sample, where clips are joined. Chosen by hand: x0.5 and x2
-change the mean by less than 0.1 %."""
+"""Weight of the first and the last sample, where clips are joined. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, eq=False)

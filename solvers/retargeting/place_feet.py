@@ -30,23 +30,22 @@ from .stances import LATERAL_AXIS, foot_bone
 
 SWING_M, STANCE_M = 0.005, 0.01
 """Meters, for a leg of 0.9 m, by which ankles may leave their paths: of free and of standing
-feet, which must not slide. Chosen by hand: first, x0.5 gains 4.6 %, x2 costs 4.7 %; second,
-x0.5 gains 0.2 %, x2 costs 0.6 %."""
+feet, which must not slide. Chosen by hand; `make sensitivity` varies them."""
 SLIDE_M_S = 0.005
 """Meters per second, for a leg of 0.9 m, by which a foot may slide more than the source's. It
 guards standing feet (`test_feet_do_not_sink_or_slide_more_than_the_source`)."""
 DEPTH_M = 0.001
-"""Meters, for a leg of 0.9 m, of a sole below the ground. Chosen by hand: x0.5 gains 1.5 %, x2
-gains 0.7 %."""
+"""Meters, for a leg of 0.9 m, of a sole below the ground. Chosen by hand; `make sensitivity`
+varies it."""
 ROOT_M = 0.02
-"""Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand: x0.5 costs
-nothing, x2 costs 0.2 %."""
+"""Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand; `make sensitivity`
+varies it."""
 HIP_RAD, KNEE_RAD, ANKLE_RAD, TOE_RAD = np.radians([10.0, 10.0, 30.0, 10.0])
 """Radians by which the joints of a leg may turn. Chosen by hand: knees of x0.5 jerk 3 % more
 in walks."""
 MAX_TOE_FLEXION_RAD = np.radians(32.0)
-"""Maximum extension of toes beyond the rest pose to lift their tips. Chosen by hand:
-x0.5 and x2 change the mean by less than 0.1 %."""
+"""Maximum extension of toes beyond the rest pose to lift their tips. Chosen by hand;
+`make sensitivity` varies it."""
 FOOT_RAD = np.radians(3.0)
 """Radians by which a foot may turn in the world. Chosen by hand: x0.5 costs 5.0 %, x2 gains
 4.4 % and turns feet farther."""

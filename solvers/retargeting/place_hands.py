@@ -31,8 +31,8 @@ height. It guards hands that clap, which would stay apart on broad shoulders, an
 body that lies down, which would sink lower than the source's
 (`test_hands_that_meet_in_the_source_meet`)."""
 ARM_RAD = np.radians(20.0)
-"""Radians by which shoulders and elbows may turn. Chosen by hand: x0.5 costs nothing, x2 costs
-0.9 %."""
+"""Radians by which shoulders and elbows may turn. Chosen by hand; `make sensitivity` varies
+it."""
 RESERVE_RAD = np.radians(5.0)
 """Radians of flexion kept in an elbow, unless it is straighter already. It guards arms that
 reach for what is too far, which would snap straight

@@ -20,20 +20,20 @@ from .body import SIDES, HumanoidBody
 from .placement import leg_length, rests_on_ground
 
 SPEED_SMOOTHING_S = 0.05
-"""Standard deviation of the Gaussian that smooths the angular velocity. Chosen by hand: x0.5
-costs 0.2 %, x2 costs 0.2 %."""
+"""Standard deviation of the Gaussian that smooths the angular velocity. Chosen by hand;
+`make sensitivity` varies it."""
 STILL_QUANTILE = 0.5
 """Quantile, a fraction, of the angular speed in contact below which a foot is still. Chosen by
-hand: x0.5 gains 1.4 %, x2 gains 0.2 %."""
+hand; `make sensitivity` varies it."""
 MAX_ANKLE_DIFFERENCE_FRACTION = 0.02
-"""Maximum height of an ankle above the mean of both, in leg lengths. Chosen by hand: x0.5 gains
-0.2 %, x2 costs nothing."""
+"""Maximum height of an ankle above the mean of both, in leg lengths. Chosen by hand;
+`make sensitivity` varies it."""
 UPRIGHT_COSINE = np.cos(np.radians(30.0))
-"""A foot with a larger tilt does not stand on its sole. Chosen by hand: x0.5 gains 0.5 %, x2
-gains 4.4 %."""
+"""A foot with a larger tilt does not stand on its sole. Chosen by hand; `make sensitivity`
+varies it."""
 MAX_PITCH_RAD = np.radians(15.0)
-"""Maximum pitch of a standing foot relative to the rest pose. Chosen by hand: x0.5 gains 0.5 %,
-x2 costs nothing."""
+"""Maximum pitch of a standing foot relative to the rest pose. Chosen by hand;
+`make sensitivity` varies it."""
 LATERAL_AXIS = np.array([1.0, 0.0, 0.0])
 UP = np.array([0.0, 0.0, 1.0])
 

@@ -17,16 +17,16 @@ from .body import HumanoidBody
 
 CHEST_FRACTION = 0.5
 """Fraction of the swing that is applied to the chest, which otherwise matches the source's.
-Chosen by hand: x0.5 gains 0.6 %, x2 costs 1.5 %."""
+Chosen by hand; `make sensitivity` varies it."""
 STRAIGHT_COSINE, BENT_COSINE = np.cos(np.radians([10.0, 30.0]))
 """Cosines of the flexion of the trunk: below the first angle there is no swing, since rest
 poses differ; above the second the lean is the source's."""
 NOISE_SWING_RAD = np.radians(5.0)
 """Half of a swing of this size is removed, and most of smaller ones: they are noise. Chosen by
-hand: x0.5 gains 3.4 %, x2 costs 4.9 %."""
+hand; `make sensitivity` varies it."""
 N_ITERATIONS = 6
-"""Fixed-point iterations; each leaves less than half of the error. Chosen by hand: x0.5 costs
-0.6 %, x2 costs nothing."""
+"""Fixed-point iterations; each leaves less than half of the error. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 def leaning_swings(

@@ -18,10 +18,10 @@ DIFFERENCE_GAIN = np.sqrt(20.0)
 definition."""
 OUTLIER_SIGMAS = 3.5
 """Robust standard deviations of a moving window beyond which a sample is an outlier. Chosen by
-hand: x0.5 gains 3.5 %, x2 gains 4.2 %."""
+hand; `make sensitivity` varies it."""
 SHRINKAGE_LIMIT_SIGMAS = 3.0
 """Sampling error beyond which a channel keeps its own estimate (three-sigma rule). Chosen by
-hand: x0.5 costs 2.1 %, x2 costs 0.5 %."""
+hand; `make sensitivity` varies it."""
 
 
 def estimate_noise(values: Array) -> Array:

@@ -9,11 +9,10 @@ from ..arrays import Array
 from .noise import MAD_TO_SIGMA, estimate_noise
 
 N_REFITS = 8
-"""Refits after which the reweighting ends. Chosen by hand: x0.5 gains 0.8 %, x2 costs
-nothing."""
+"""Refits after which the reweighting ends. Chosen by hand; `make sensitivity` varies it."""
 MAX_WEIGHT_CHANGE = 0.02
-"""Change of the weights below which the iteration has converged. Chosen by hand: x0.5 costs
-nothing, x2 gains 0.8 %."""
+"""Change of the weights below which the iteration has converged. Chosen by hand;
+`make sensitivity` varies it."""
 TUKEY_SIGMAS = 4.685
 """Standard deviations beyond which a residual has no weight (95 % efficiency)."""
 

@@ -11,22 +11,20 @@ from ..signals import smooth_gaussian
 from .curves import headings_from_motion
 
 ALIGNMENT_RATE_HZ = 20.0
-"""Frame rate at which examples are aligned. Chosen by hand: x0.5 gains 0.9 %, x2 gains
-1.5 %."""
+"""Frame rate at which examples are aligned. Chosen by hand; `make sensitivity` varies it."""
 MAX_ALIGNED_FRAMES = 1500
 """Maximum frames of an example for alignment; longer examples are sampled more coarsely. It
 bounds the run time of examples of minutes."""
 SMOOTHING_S = 0.2
 """Standard deviation in seconds of the Gaussian that smooths the alignment: the steps of a
-warping path are no change of speed by the actor. Chosen by hand: x0.5 costs 2.9 %, x2 costs
-2.2 %."""
+warping path are no change of speed by the actor. Chosen by hand; `make sensitivity` varies
+it."""
 MIN_RELATIVE_SPEED, MAX_RELATIVE_SPEED = 0.4, 2.5
 """Bounds of the speed, relative to its own, at which the time of one example passes in that of
-another. Chosen by hand: first, x0.5 costs nothing, x2 costs nothing; second, x0.5 costs 0.3 %,
-x2 costs nothing."""
+another. Chosen by hand; `make sensitivity` varies them."""
 WARP_WINDOW = 0.3
 """Fraction of the clip by which the time of an example may run ahead of another's. Chosen by
-hand: x0.5 gains 0.5 %, x2 costs nothing."""
+hand; `make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,28 +16,28 @@ from .variation_model import VariationModel
 
 N_PAIRS = 5
 """Pairs of synthetic examples; the two of a pair deviate in opposite directions. Chosen by
-hand: x0.5 costs 5.9 %, x2 gains 0.7 %."""
+hand; `make sensitivity` varies it."""
 SWING_FRACTION = 0.2
 """Standard deviation of a limb's change of amplitude, as a fraction of its movement. Chosen by
-hand: x0.5 gains 0.2 %, x2 gains 1.0 %."""
+hand; `make sensitivity` varies it."""
 DELAY_S = 0.04
-"""Standard deviation of a limb's time shift, in seconds. Chosen by hand: x0.5 gains 1.0 %, x2
-gains 1.3 %."""
+"""Standard deviation of a limb's time shift, in seconds. Chosen by hand; `make sensitivity`
+varies it."""
 OFFSET_FRACTION = 0.25
-"""Standard deviation of a pose offset, as a fraction of the joint's movement. Chosen by hand:
-x0.5 costs 0.7 %, x2 costs 3.4 %."""
+"""Standard deviation of a pose offset, as a fraction of the joint's movement. Chosen by hand;
+`make sensitivity` varies it."""
 LOG_SPEED_STD = 0.1
-"""Standard deviation of the logarithm of the playback speed. Chosen by hand: x0.5 costs 3.4 %,
-x2 gains 5.2 %."""
+"""Standard deviation of the logarithm of the playback speed. Chosen by hand; `make sensitivity`
+varies it."""
 SMOOTHING_S = 0.05
 """Standard deviation in seconds of the Gaussian that smooths movement before it is amplified,
-so that noise is not. Chosen by hand: x0.5 gains 0.5 %, x2 gains 0.4 %."""
+so that noise is not. Chosen by hand; `make sensitivity` varies it."""
 SHARED_VARIANCE = 0.7
 """Fraction of the variance that joints of a partition share. Chosen by hand: x0.5 gains 0.7 %,
 x2 fails."""
 LEG_FACTOR, ROOT_FACTOR = 0.5, 0.3
 """Factors for legs, whose feet stand on the ground, and for the trajectory of the root. Chosen
-by hand: first, x0.5 gains 0.7 %, x2 gains 0.3 %; second, x0.5 costs 0.1 %, x2 gains 0.1 %."""
+by hand; `make sensitivity` varies them."""
 MAX_SCALE = 2.0
 """Maximum factor by which borrowed deviations grow where the clip moves more. It guards clips
 that move much more than the motion from which variation is borrowed."""

@@ -18,16 +18,16 @@ MIN_LOOP_FRAMES = 8
 """Minimum frames of a cyclic clip. It guards clips too short for a cycle."""
 MAX_MEAN_GAP_M = 0.06
 """Maximum mean joint distance in meters between the first and the last pose of a loop. Chosen
-by hand: x0.5 costs 7.6 %, x2 costs 0.9 %."""
+by hand; `make sensitivity` varies it."""
 MAX_JOINT_GAP_M = 0.25
-"""Maximum distance in meters of any single joint. Chosen by hand: x0.5 costs nothing, x2 gains
-3.3 %."""
+"""Maximum distance in meters of any single joint. Chosen by hand; `make sensitivity` varies
+it."""
 MAX_SPEED_CHANGE = 2.5
 """Maximum velocity difference at the seam, relative to the mean speed. It guards half cycles,
 whose ends are near but move in opposite directions."""
 SEAM_S = 0.3
-"""Seconds before and after the seam over which it is blended. Chosen by hand: x0.5 gains 0.3 %,
-x2 gains 1.1 %."""
+"""Seconds before and after the seam over which it is blended. Chosen by hand;
+`make sensitivity` varies it."""
 HORIZONTAL = np.array([1.0, 1.0, 0.0])
 MAX_SEAM_RAD = 0.02
 """Maximum joint difference in radians at the seam of a closed loop. It guards cycles that were

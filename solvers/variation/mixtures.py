@@ -15,23 +15,23 @@ from .variation_model import VariationModel
 
 BOOTSTRAP_VARIANCE = 0.9
 """Fraction of the weights' variance in the bootstrap, for many examples. Of n examples it is
-less by 1 / n, since two variants often draw the same example. Chosen by hand: x0.5 gains 0.1 %,
-x2 costs 1.8 %."""
+less by 1 / n, since two variants often draw the same example. Chosen by hand;
+`make sensitivity` varies it."""
 SOFTMAX_GAIN = 8.0
 """Factor of the softmax over examples; higher values copy a single example more closely. Chosen
-by hand: x0.5 costs 11.0 %, x2 costs 3.7 %."""
+by hand; `make sensitivity` varies it."""
 SHARED_VARIANCE = np.array([0.95, 0.7, 0.7, 0.95, 0.95])
 """Fraction of the variance that each partition shares with the others. Limbs move together, and
 legs move with the hips that they carry."""
 MAX_WEIGHT_RATIO = 1.6
 """Maximum length of a weight vector, relative to the typical one; longer ones are scaled back,
-so that variants stay near the examples. Chosen by hand: x0.5 costs 11.2 %, x2 costs 0.6 %."""
+so that variants stay near the examples. Chosen by hand; `make sensitivity` varies it."""
 SMOOTHING_S = 0.1
 """Standard deviation in seconds of the Gaussian that separates slow changes, with weights of
-each partition, from fast ones. Chosen by hand: x0.5 costs 0.9 %, x2 costs 1.4 %."""
+each partition, from fast ones. Chosen by hand; `make sensitivity` varies it."""
 DRAW_RATE_HZ = 30.0
-"""Rate at which weights are drawn; they change slowly. Chosen by hand: x0.5 costs 7.9 %, x2
-costs nothing."""
+"""Rate at which weights are drawn; they change slowly. Chosen by hand; `make sensitivity`
+varies it."""
 MAX_DRAWN_SAMPLES = 2000
 """Maximum count of drawn samples; in clips of more than a minute weights change more slowly. It
 bounds the memory."""

@@ -25,10 +25,10 @@ from .curves import MAX_FRAME_ROTATION_RAD, sample_curves, unwrap_rotation_vecto
 
 MAX_REFERENCE_ANGLE_RAD = 2.0
 """Angle from the fixed reference, in radians, beyond which a joint gets a moving reference.
-Chosen by hand: x0.5 gains 0.1 %, x2 costs 0.7 %."""
+Chosen by hand; `make sensitivity` varies it."""
 REFERENCE_SMOOTHING_S = 0.05
-"""Standard deviation in seconds of the Gaussian that smooths moving references. Chosen by hand:
-x0.5 costs nothing, x2 costs nothing."""
+"""Standard deviation in seconds of the Gaussian that smooths moving references. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 def split_moving_references(

@@ -23,7 +23,7 @@ from .vary_settings import DEFAULT_SETTINGS, VaryMethod, VarySettings
 
 RANGE_MARGIN = 0.15
 """Fraction of a channel's range in the examples by which a variant may exceed it. Chosen by
-hand: x0.5 costs 1.4 %, x2 costs 0.8 %."""
+hand; `make sensitivity` varies it."""
 PIN_S = 0.4
 """Seconds over which a variant leaves or reaches a pinned pose. By definition: the time that an
 animator sees as a blend; no unpinned variant has it."""

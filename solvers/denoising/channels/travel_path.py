@@ -11,10 +11,10 @@ from ...signals import fill_channel_gaps, remove_outliers, smooth_gaussian
 
 SMOOTHING_S = 0.5
 """Standard deviation of the kernel that removes the gait from the path, seconds. Chosen by
-hand: x0.5 gains 0.2 %, x2 costs nothing."""
+hand; `make sensitivity` varies it."""
 SPIKE_HALF_WIDTH_S = 0.15
 """Half width of the neighborhood in which a spike of the path is detected, seconds. Chosen by
-hand: x0.5 costs 0.1 %, x2 costs nothing."""
+hand; `make sensitivity` varies it."""
 MAX_ANGLE_RAD = np.radians(120.0)
 """Angle to a smooth reference within which rotation vectors are safe: two thirds of the half
 turn at which they jump. It guards takes that turn around, whose vectors would jump."""

@@ -23,8 +23,8 @@ of the patterns of Clean."""
 MAX_TRIALS = 120
 """Trial gaps in a take, and one more in each stretch without gaps. It bounds the run time."""
 N_FOLDS = 5
-"""Number of parts of the take that are predicted from the other parts. Chosen by hand: x0.5
-gains 0.8 %, x2 costs 0.1 %."""
+"""Number of parts of the take that are predicted from the other parts. Chosen by hand;
+`make sensitivity` varies it."""
 PRIOR_TRIALS = 1.0
 """Number of gaps of evidence that the prediction is right as it is, by definition one. It
 guards takes too short to test it."""

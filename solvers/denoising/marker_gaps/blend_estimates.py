@@ -9,7 +9,7 @@ from ...arrays import Array
 
 INDEPENDENT_FRACTION = 0.3
 """Fraction of each estimate's error variance, added as independent of all others. Chosen by
-hand: x0.5 gains 0.2 %, x2 gains 0.4 %."""
+hand; `make sensitivity` varies it."""
 MIN_SQUARED_ERROR = 1e-9
 """Square meters: errors below 0.03 mm are the same. Guards a singular matrix."""
 

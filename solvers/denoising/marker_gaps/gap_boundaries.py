@@ -11,22 +11,22 @@ MAX_TRAINING_FRAMES = 200
 """Number of training frames, in addition to those at the boundaries of gaps. It bounds the run
 time of long takes with many gaps: x0.2 gains 1.2 %."""
 MAX_TRAINING_RATE_HZ = 60.0
-"""Hertz: bodies move too slowly for more frames per second to add information. Chosen by hand:
-x0.5 costs 5.5 %, x2 gains 0.5 %."""
+"""Hertz: bodies move too slowly for more frames per second to add information. Chosen by hand;
+`make sensitivity` varies it."""
 BOUNDARY_FRAMES = (1, 2, 3, 5, 8)
-"""Distances in frames from a gap that are always training frames. Chosen by hand: x0.5 costs
-0.6 %, x2 costs 2.4 %."""
+"""Distances in frames from a gap that are always training frames. Chosen by hand;
+`make sensitivity` varies it."""
 FADE_TIME_S = 0.2
-"""Seconds over which the error at a boundary fades. Chosen by hand: x0.5 costs 1.4 %, x2 gains
-0.4 %."""
+"""Seconds over which the error at a boundary fades. Chosen by hand; `make sensitivity` varies
+it."""
 MIN_NOISE_M = 1e-5
 """Meters: the smallest noise of a trajectory; it guards a division."""
 MEDIAN_NORM = 1.538
 """Ratio of the median length of 3D vectors to the standard deviation of their Gaussian
 coordinates. By definition: the root of the median of chi-square with 3 degrees of freedom."""
 N_DEPTHS = 5
-"""Number of depths into a gap with separate expected errors. Chosen by hand: x0.5 gains 0.4 %,
-x2 costs 0.4 %."""
+"""Number of depths into a gap with separate expected errors. Chosen by hand; `make sensitivity`
+varies it."""
 
 
 def select_training_frames(

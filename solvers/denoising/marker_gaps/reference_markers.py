@@ -9,18 +9,16 @@ from ...arrays import Array, Flags
 from ...rotations import RIGID_POINTS, nearest_rotations
 
 MAX_REFERENCES = 24
-"""Reference markers that predict one marker. Chosen by hand: x0.5 gains 6.9 %, x2 costs
-nothing."""
+"""Reference markers that predict one marker. Chosen by hand; `make sensitivity` varies it."""
 MIN_GAP_COVERAGE, MIN_SHARED_FRACTION = 0.8, 0.6
 """Minimum fraction of the gap, and of the frames with the missing marker observed, in which all
-reference markers together must be available. Chosen by hand: first, x0.5 costs nothing, x2
-costs 100.0 %; second, x0.5 gains 0.9 %, x2 costs 100.0 %."""
+reference markers together must be available. Chosen by hand; `make sensitivity` varies them."""
 MIN_DISTANCE_M = 0.03
 """Minimum distance, meters, of the second marker from the first, and of the third from their
-line. Chosen by hand: x0.5 costs nothing, x2 costs 5.7 %."""
+line. Chosen by hand; `make sensitivity` varies it."""
 MIN_DEVIATION_M = 0.001
-"""Meters: minimum uncertainty of a distance, even if it never varied. Chosen by hand: x0.5
-gains 0.3 %, x2 costs 1.3 %."""
+"""Meters: minimum uncertainty of a distance, even if it never varied. Chosen by hand;
+`make sensitivity` varies it."""
 N_FITS = 3
 """Alternating fits of the frames and of the mean shape. Chosen by hand: one fit costs 2.4 %, 30
 gain nothing."""

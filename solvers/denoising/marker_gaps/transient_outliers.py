@@ -7,8 +7,8 @@ from scipy.ndimage import median_filter
 from ...arrays import Array
 
 COMPARED_FRAMES = (1, 2)
-"""Distances in frames, to both sides, at which a point is compared. Chosen by hand: x0.5 costs
-1.1 %, x2 costs 10.5 %."""
+"""Distances in frames, to both sides, at which a point is compared. Chosen by hand;
+`make sensitivity` varies it."""
 NEIGHBORHOOD_FRAMES = 8
 """Half width in frames of the neighborhood that defines the typical distance. Chosen by hand: a
 half width of 1 costs 9.8 %, one of 80 gains nothing."""
@@ -16,7 +16,7 @@ MIN_SPIKE_RATIO = 6.0
 """Minimum distance of a spike, relative to the typical distance. Chosen by hand: x0.5 gains
 0.2 %, x2 costs 1.4 %; at 120 Hz the minimum in meters decides instead."""
 MIN_SPIKE_M = 0.02
-"""Meters: a shorter distance is no spike. Chosen by hand: x0.5 costs 7.8 %, x2 costs 1.2 %."""
+"""Meters: a shorter distance is no spike. Chosen by hand; `make sensitivity` varies it."""
 
 
 def find_transient_outliers(positions: Array) -> NDArray[np.bool_]:

@@ -15,8 +15,8 @@ from .motion_mixture import N_CHANNELS, MotionMixture
 MAX_LEVERAGE = 1.0 - 1e-9
 """Largest weight of a sample in its own estimate. Guards a division."""
 N_OVERLAPS = 8
-"""Number of windows that start within the length of one. Chosen by hand: x0.5 gains 0.1 %, x2
-costs nothing."""
+"""Number of windows that start within the length of one. Chosen by hand; `make sensitivity`
+varies it."""
 MAX_BLOCK_WINDOWS = 64
 """Windows processed at a time: this bounds the memory, however long the take."""
 

@@ -41,13 +41,13 @@ suspicious. Chosen by hand on the development takes of the first press: with 1e6
 clean takes are taken for errors, with 1e9 one; of 446 true bursts 3 % are lost."""
 MIN_STEP = 10.0
 """Degrees or centimeters: an error that begins or ends with a smaller step is left to the
-smoothers. Chosen by hand: x0.5 gains 0.1 %, x2 costs 6.7 %."""
+smoothers. Chosen by hand; `make sensitivity` varies it."""
 MAX_BURST_S = 0.3
-"""Seconds: longest error that is looked for between two steps. Chosen by hand: x0.5 costs
-0.3 %, x2 costs nothing."""
+"""Seconds: longest error that is looked for between two steps. Chosen by hand;
+`make sensitivity` varies it."""
 MIN_NOISE = 2.0
 """Degrees or centimeters: smaller noise would let the mixture reject any movement that its
-recordings lack. Chosen by hand: x0.5 gains 0.5 %, x2 costs 10.8 %."""
+recordings lack. Chosen by hand; `make sensitivity` varies it."""
 
 
 class _Run(NamedTuple):

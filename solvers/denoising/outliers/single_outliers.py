@@ -5,11 +5,11 @@ import numpy as np
 from ...arrays import Array
 
 OUTLIER_DENSITY = 1.0 / 120.0
-"""Density of an outlier's error, per degree or centimeter: uniform within +-60. Chosen by hand:
-x0.5 costs 4.5 %, x2 costs 4.0 %."""
+"""Density of an outlier's error, per degree or centimeter: uniform within +-60. Chosen by hand;
+`make sensitivity` varies it."""
 INLIER_STD_FLOOR = 0.5
 """Degrees or centimeters: standard deviation of an inlier, in addition to noise and prediction.
-Chosen by hand: x0.5 costs 8.5 %, x2 gains 9.4 %."""
+Chosen by hand; `make sensitivity` varies it."""
 MIN_OUTLIER_RATE = 1e-4
 """Fraction of outliers before the first estimate, and the smallest one. It guards a division:
 up to 0.3 at the start, errors differ by less than 0.5 %."""

@@ -15,13 +15,13 @@ MAX_SAMPLED_FRAMES = 1000
 bounds the run time of long takes."""
 LENGTH_COST = 0.01
 """Cost per meter: of two equally constant connections the shorter one is preferred. Chosen by
-hand: x0.5 costs 0.4 %, x2 gains 0.4 %."""
+hand; `make sensitivity` varies it."""
 LOW_PERCENTILE, HIGH_PERCENTILE = 5.0, 95.0
 """Percentiles of all distances between which a length drifts: 90 % of them, by definition of
 the drift."""
 MAX_LENGTH_VARIATION = 0.1
-"""Interquartile range of a bone's length, relative to its length. Chosen by hand: x0.5 gains
-2.2 %, x2 costs 0.8 %."""
+"""Interquartile range of a bone's length, relative to its length. Chosen by hand;
+`make sensitivity` varies it."""
 MIN_NAMED_BONES = 6
 """With fewer named bones, the names are not those of a body. It guards takes of markers with
 one or two names of a body (`test_bones_are_found_and_their_drift_measured`)."""

@@ -14,14 +14,14 @@ from ...rotations import unroll
 from ...signals import fit_lowess
 
 HALF_WINDOW_S = 0.12
-"""Seconds to either side over which the smooth trajectory is fitted. Chosen by hand: x0.5 gains
-0.7 %, x2 costs 2.4 %."""
+"""Seconds to either side over which the smooth trajectory is fitted. Chosen by hand;
+`make sensitivity` varies it."""
 MIN_HALF_WINDOW_FRAMES = 3
-"""Frames to either side that the fit uses at least. Chosen by hand: x0.5 costs nothing, x2
-gains 1.1 %."""
+"""Frames to either side that the fit uses at least. Chosen by hand; `make sensitivity` varies
+it."""
 NOISE_WINDOW_S = 0.5
-"""Seconds over which the local noise is averaged. Chosen by hand: x0.5 costs 2.0 %, x2 costs
-2.4 %."""
+"""Seconds over which the local noise is averaged. Chosen by hand; `make sensitivity` varies
+it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,11 +20,11 @@ MAX_GROUP_CHANNELS = 96
 """Channels solved together; rigs with more are split between joints. Chosen by hand: x0.5 gains
 0.2 %, x2 costs nothing; it bounds the run time."""
 SPIKE_HALF_WIDTH = 4
-"""Frames to either side among which a spike of the first guess is found. Chosen by hand: x0.5
-gains 2.0 %, x2 gains 2.1 %."""
+"""Frames to either side among which a spike of the first guess is found. Chosen by hand;
+`make sensitivity` varies it."""
 FIRST_GUESS_EFFICIENCY = 0.2
-"""Of the median of overlapping differences, relative to a standard deviation. Chosen by hand:
-x0.5 gains 0.2 %, x2 costs 0.9 %."""
+"""Of the median of overlapping differences, relative to a standard deviation. Chosen by hand;
+`make sensitivity` varies it."""
 POOR_FIT_FRACTION = 0.2
 """Fraction of plain smoothness above which the examples are reported to fit badly. By
 definition of the report: it only decides its sentence."""

@@ -18,23 +18,23 @@ from .gap_patterns import find_gap_patterns, find_long_gaps
 from .smoothness import fit_smoothness
 
 MAX_ITERATIONS = 30
-"""Iterations after which the estimate ends unconverged. Chosen by hand: x0.5 costs 0.1 %, x2
-gains 0.3 %."""
+"""Iterations after which the estimate ends unconverged. Chosen by hand; `make sensitivity`
+varies it."""
 N_ADAPTATIONS = 5
-"""Iterations in which the prior still adapts to the take. Chosen by hand: x0.5 costs 0.3 %, x2
-gains 1.1 %."""
+"""Iterations in which the prior still adapts to the take. Chosen by hand; `make sensitivity`
+varies it."""
 MAX_SETTLED_CHANGE = 0.01
 """Root mean square change, degrees or centimeters, below which the estimate has converged.
-Chosen by hand: x0.5 gains 1.5 %, x2 costs 0.2 %."""
+Chosen by hand; `make sensitivity` varies it."""
 NOISE_FACTORS = (8.0, 4.0, 2.0)
-"""Factors by which the first rounds inflate the noise. Chosen by hand: x0.5 costs 0.5 %, x2
-gains 2.4 %."""
+"""Factors by which the first rounds inflate the noise. Chosen by hand; `make sensitivity`
+varies it."""
 MAX_LEVERAGE = 0.98
 """Largest fraction of its own weight in an estimate that a sample is corrected for. Chosen by
 hand: a limit of 0.99998 gains 0.1 %, one of 0.8 costs 0.1 %; 1 divides by zero."""
 NOISE_BOUNDS = (0.5, 1.1)
-"""Range of the estimated noise, relative to the first estimate. Chosen by hand: x0.5 costs
-8.2 %, x2 costs 3.8 %."""
+"""Range of the estimated noise, relative to the first estimate. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 def estimate_channels(

@@ -21,7 +21,7 @@ CLIP_VARIANCE_FRACTION = 0.1
 guards against examples that are copies, which make the matrix singular."""
 CORRELATION_FRAMES = 10.0
 """Frames of the examples' patterns after which a pose is independent evidence of the mean.
-Chosen by hand: x0.5 gains 0.1 %, x2 costs 0.1 %."""
+Chosen by hand; `make sensitivity` varies it."""
 MAX_NEIGHBORS = 300
 """Clips, nearest first, that predict the mean pose: others are too different to matter. It
 bounds the run time of large libraries."""

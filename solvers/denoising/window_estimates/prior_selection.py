@@ -22,34 +22,33 @@ from .mean_pose import estimate_mean_pose
 from .smoothness import build_smooth_kernels
 
 SMOOTH_FRACTIONS = (0.003, 0.05, 0.3)
-"""Weights of the smooth prior in its mixtures with the examples' prior. Chosen by hand: x0.5
-gains 1.7 %, x2 gains 1.1 %."""
+"""Weights of the smooth prior in its mixtures with the examples' prior. Chosen by hand;
+`make sensitivity` varies it."""
 N_TRIAL_ITERATIONS = 3
 """Iterations of a trial of each mixture. Chosen by hand: 1 costs 0.2 %, x0.5 and x2 cost
 nothing."""
 IN_SAMPLE_PENALTY = 1.007
 """The smooth prior learns from the samples that it predicts, so its error is too small. Each
-larger fraction of it multiplies the error by this factor. Chosen by hand: x0.5 costs 6.7 %, x2
-gains 0.2 %."""
+larger fraction of it multiplies the error by this factor. Chosen by hand; `make sensitivity`
+varies it."""
 MAX_NOISE_MULTIPLE = 4.0
-"""Errors beyond this many standard deviations of the noise all count the same. Chosen by hand:
-x0.5 costs nothing, x2 gains 0.9 %."""
+"""Errors beyond this many standard deviations of the noise all count the same. Chosen by hand;
+`make sensitivity` varies it."""
 MIN_OBSERVED_FRACTION = 0.5
-"""Fraction of a take in which a channel must be observed to score the examples. Chosen by hand:
-x0.5 costs nothing, x2 gains 1.7 %."""
+"""Fraction of a take in which a channel must be observed to score the examples. Chosen by hand;
+`make sensitivity` varies it."""
 OWN_WEIGHT, OWN_WEIGHT_IN_GAPS = 0.05, 0.2
 """Weight of the take's own covariance relative to the examples', and in windows with gaps.
-Chosen by hand: first, x0.5 gains 0.2 %, x2 costs 0.5 %; second, x0.5 gains 0.1 %, x2 costs
-0.3 %."""
+Chosen by hand; `make sensitivity` varies them."""
 WINDOWS_FOR_HALF_WEIGHT = 300
-"""Windows of a take at which its own covariance would have half the weight. Chosen by hand:
-x0.5 gains 0.3 %, x2 costs 0.2 %."""
+"""Windows of a take at which its own covariance would have half the weight. Chosen by hand;
+`make sensitivity` varies it."""
 MAX_OWN_WEIGHT = 0.3
 """Largest weight of the take's own covariance. It guards long takes, of 130 windows and more,
 from repeating their own errors."""
 OWN_WEIGHT_WITHOUT_EXAMPLES = 0.5
 """Weight in gaps without examples: a missing limb is best predicted from the same body. Chosen
-by hand: x0.5 costs nothing, x2 costs 1.4 %."""
+by hand; `make sensitivity` varies it."""
 
 
 def build_examples_prior(

@@ -6,13 +6,13 @@ from ...arrays import Array
 from ..window_priors import Windows
 
 CORRELATION_TIMES_S = (0.08, 0.16, 0.32, 0.64, 1.28)
-"""Correlation times, seconds, of the smooth movements whose sum is a channel. Chosen by hand:
-x0.5 gains 3.1 %, x2 costs 14.4 %."""
+"""Correlation times, seconds, of the smooth movements whose sum is a channel. Chosen by hand;
+`make sensitivity` varies it."""
 N_UPDATES = 30
-"""Multiplicative updates of the weights. Chosen by hand: x0.5 costs 0.4 %, x2 gains 0.1 %."""
+"""Multiplicative updates of the weights. Chosen by hand; `make sensitivity` varies it."""
 POOLED_WINDOWS = 1.0
 """Weight, in windows, of the assumption that a channel moves like the take's average channel.
-Chosen by hand: x0.5 gains 0.5 %, x2 costs 0.6 %."""
+Chosen by hand; `make sensitivity` varies it."""
 MIN_POWER = 1e-9
 """Square degrees or centimeters added to each power. Guards a division."""
 

@@ -11,16 +11,16 @@ from ...arrays import Array
 
 N_OVERLAPS = 6
 """Number of windows, and of trial gaps of a limb, that start within the length of one. Chosen
-by hand: x0.5 costs 0.4 %, x2 gains 1.9 %."""
+by hand; `make sensitivity` varies it."""
 N_FEW_OVERLAPS = 4
-"""The same for preliminary estimates and for long takes. Chosen by hand: x0.5 costs 2.0 %, x2
-gains 2.7 %."""
+"""The same for preliminary estimates and for long takes. Chosen by hand; `make sensitivity`
+varies it."""
 LONG_TAKE_FRAMES = 20_000
 """Frames above which windows overlap less. It bounds the run time of long takes."""
 
 LONG_GAP_FRACTION = 0.2
 """Fraction of a window above which a gap is solved exactly. Shorter gaps converge quickly.
-Chosen by hand: x0.5 costs 0.2 %, x2 costs 0.3 %."""
+Chosen by hand; `make sensitivity` varies it."""
 
 
 @dataclass(frozen=True)

@@ -18,11 +18,10 @@ from .tables import END_SEGMENTS, JOINTS, SEGMENTS
 _CARRIERS = np.array([*range(len(SEGMENTS)), *END_SEGMENTS])
 _YAW = COORDINATES.index("yaw")
 _REST_WEIGHT = 1e-3
-"""Weight per square radian of the rest pose. Chosen by hand: x0.5 gains 0.3 %, x2 costs
-1.2 %."""
+"""Weight per square radian of the rest pose. Chosen by hand; `make sensitivity` varies it."""
 _FRAME_WEIGHT = 100.0
-"""Weight per square meter of a joint's distance. Chosen by hand: x0.5 costs 0.6 %, x2 gains
-0.2 %."""
+"""Weight per square meter of a joint's distance. Chosen by hand; `make sensitivity` varies
+it."""
 _ROTATION_POINTS = 0.05 * np.array([*np.eye(3), *-np.eye(3)])
 """Points of a segment, meters, that constrain its rotation; larger offsets weigh more."""
 

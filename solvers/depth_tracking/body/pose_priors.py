@@ -12,10 +12,10 @@ _LIMB_PATTERN = re.compile("Humerus|Radius|Femur|Tibia")
 _ANKLE = "Ankle"
 LIMIT_WEIGHT = 1.0
 """Weight per square radian beyond the joint limits, in fits to joints and to depth pixels.
-Chosen by hand: x0.5 costs 16.1 %, x2 gains 2.6 %."""
+Chosen by hand; `make sensitivity` varies it."""
 MAX_STEP = 0.5
-"""Maximum change of a coordinate in one step of these fits, radians or meters. Chosen by hand:
-x0.5 gains 2.6 %, x2 gains 2.6 %."""
+"""Maximum change of a coordinate in one step of these fits, radians or meters. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 def stay_near(pose: Array, expected: Array, weights: Array) -> PoseEquations:
@@ -60,8 +60,8 @@ def joint_limits(pose: Array, weight: float) -> PoseEquations:
 
 
 _LIMB_WEIGHT = 0.1
-"""Weight of a limb's coordinates, relative to those of the trunk. Chosen by hand: x0.5 costs
-17.1 %, x2 costs 20.0 %."""
+"""Weight of a limb's coordinates, relative to those of the trunk. Chosen by hand;
+`make sensitivity` varies it."""
 _STANCE_WEIGHTS = np.array([
     0.0 if name in ROOT or name.endswith(_ANKLE)
     else _LIMB_WEIGHT if _LIMB_PATTERN.search(name) else 1.0

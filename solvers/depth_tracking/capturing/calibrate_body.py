@@ -25,8 +25,7 @@ MEASURED_PARTS = tuple(
 """Limbs with cylinder fits; the trunk is too short and wide for them."""
 PARENT_LIMBS = {"LowerArm": "UpperArm", "Hand": "LowerArm", "LowerLeg": "UpperLeg"}
 MIN_RADIUS_RATIO, MAX_RADIUS_RATIO = 0.6, 1.7
-"""Range of radii relative to the default. Chosen by hand: first, x0.5 costs 9.3 %, x2 costs
-3.0 %; second, x0.5 costs 6.1 %, x2 costs 3.0 %."""
+"""Range of radii relative to the default. Chosen by hand; `make sensitivity` varies them."""
 PARENT_PARTS = {"UpperArm": "chest", "UpperLeg": "hips"}
 TRUNK = ("hips", "spine", "chest")
 MIN_QUALITY = 0.25

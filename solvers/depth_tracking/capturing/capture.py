@@ -60,8 +60,8 @@ class CaptureSettings(RecoverySettings):
 
 DEFAULT_CAPTURE = CaptureSettings()
 _MOVEMENT_SCALE_M = 0.253
-"""Mean movement of the joints in one frame that costs as much as a score of 0. Chosen by hand:
-x0.5 costs 4.7 %, x2 costs nothing."""
+"""Mean movement of the joints in one frame that costs as much as a score of 0. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, eq=False)

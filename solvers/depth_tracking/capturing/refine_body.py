@@ -39,14 +39,14 @@ from ..terms import (
 )
 
 _POSE_DAMPING = 5.0
-"""Weight per square radian of a change of pose in one step. Chosen by hand: x0.5 costs
-0.1 %, x2 costs 0.4 %."""
+"""Weight per square radian of a change of pose in one step. Chosen by hand; `make sensitivity`
+varies it."""
 _PRIOR_WEIGHT_PIXELS = 100.0
-"""Number of pixels that weigh as much as the prior. Chosen by hand: x0.5 costs 7.0 %, x2 gains
-4.5 %."""
+"""Number of pixels that weigh as much as the prior. Chosen by hand; `make sensitivity` varies
+it."""
 _MAX_POSE_STEP, _MAX_SHAPE_STEP = 0.2, 0.1
 """Maximum change in one step: of the pose, radians or meters; of the shape, a ratio. Chosen by
-hand: first, x0.5 gains 2.5 %, x2 gains 1.9 %; second, x0.5 gains 0.1 %, x2 costs nothing."""
+hand; `make sensitivity` varies them."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -202,6 +202,6 @@ def _refine_candidate(
 
 
 START_WEIGHT = 2.0
-"""Weight per square radian: as much as a few pixels. Chosen by hand: x0.5 costs 22.1 %, x2
-costs 22.6 %."""
+"""Weight per square radian: as much as a few pixels. Chosen by hand; `make sensitivity` varies
+it."""
 _START_WEIGHTS = np.array([0.0] * N_ROOT + [START_WEIGHT] * (N_COORDINATES - N_ROOT))

@@ -35,16 +35,16 @@ from .robust_parts import FoundParts
 EquationList = list[SegmentEquations]
 
 REST_WEIGHT = 2e-3
-"""Weight per square radian; a fully observed part weighs 1 per square meter. Chosen by hand:
-x0.5 gains 2.6 %, x2 costs 4.5 %."""
+"""Weight per square radian; a fully observed part weighs 1 per square meter. Chosen by hand;
+`make sensitivity` varies it."""
 MAX_RESIDUAL_M = 0.08
-"""Pixels farther from the surface of their part have a limited pull. Chosen by hand: x0.5 gains
-0.2 %, x2 gains 4.7 %."""
+"""Pixels farther from the surface of their part have a limited pull. Chosen by hand;
+`make sensitivity` varies it."""
 SURFACE_STD_M = 0.06
-"""Standard deviation of pixels from the surface of their part. Chosen by hand: x0.5 costs
-20.1 %, x2 costs 10.9 %."""
+"""Standard deviation of pixels from the surface of their part. Chosen by hand;
+`make sensitivity` varies it."""
 MIN_PROBABILITY = 0.02
-"""Minimum probability of a part. Chosen by hand: x0.5 costs 22.1 %, x2 costs 0.1 %."""
+"""Minimum probability of a part. Chosen by hand; `make sensitivity` varies it."""
 TRUNK_PARTS = ("hips", "spine", "chest", "neck", "head", "Shoulder", "UpperArm")
 """Parts that determine position and heading; all parts if fewer than four are observed."""
 

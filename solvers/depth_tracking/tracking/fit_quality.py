@@ -15,14 +15,14 @@ MAX_DEPTH_ERROR_M = 0.1
 """A pixel with a larger depth error does not count as fitting. It guards images in which
 something stands in front of the actor (`test_offset_pose_has_failed_and_true_pose_has_not`)."""
 _CONFIDENCE_STD_M = 0.06
-"""Standard deviation of a joint position that halves its confidence. Chosen by hand: x0.5 costs
-11.2 %, x2 costs 1.6 %."""
+"""Standard deviation of a joint position that halves its confidence. Chosen by hand;
+`make sensitivity` varies it."""
 _REFERENCE_PIXELS = 8.0
-"""Number of pixels at which the fitting fraction of a part is halved. Chosen by hand: x0.5
-costs 1.1 %, x2 costs 6.1 %."""
+"""Number of pixels at which the fitting fraction of a part is halved. Chosen by hand;
+`make sensitivity` varies it."""
 _CORRELATED_PIXELS = 30.0
-"""Number of pixels of a part with correlated errors; it scales the covariance. Chosen by hand:
-x0.5 gains 0.4 %, x2 costs 7.5 %."""
+"""Number of pixels of a part with correlated errors; it scales the covariance. Chosen by hand;
+`make sensitivity` varies it."""
 
 
 class FitQuality(NamedTuple):

@@ -34,7 +34,7 @@ _MIN_STEP = 1e-3
 """A shorter step, radians or meters, ends the search. It bounds the run time."""
 _DAMPING_FACTOR = 5.0
 """Factor of the damping after a step that is refused; an accepted one divides by it. Chosen by
-hand: x0.5 costs nothing, x2 costs 27.1 %."""
+hand; `make sensitivity` varies it."""
 _METERS_PER_RADIAN = 0.5
 """Ratio of the limits of a step: of the hips in meters, and of rotations. By definition half a
 meter, the length of a thigh or upper body, so that both move the next joints equally far."""

@@ -27,8 +27,7 @@ ROWS_PER_BLOCK = 32
 """New frames that one matrix product filters. It bounds the run time."""
 
 N_NODES = 4
-"""Frames from which one value is interpolated. Chosen by hand: x0.5 costs 12.7 %, x2 costs 0.9
-%."""
+"""Frames from which one value is interpolated. Chosen by hand; `make sensitivity` varies it."""
 
 Recording = TypeVar("Recording", Motion, Tracks)
 

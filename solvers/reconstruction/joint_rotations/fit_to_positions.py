@@ -12,15 +12,15 @@ from ...progress import Progress, unwatched
 from ...signals import fill_gaps, fill_rotation_gaps
 
 POSITION_M = 0.02
-"""Meters by which a reliable joint may miss its observed position. Chosen by hand: x0.5 costs
-0.1 %, x2 costs 0.3 %."""
+"""Meters by which a reliable joint may miss its observed position. Chosen by hand;
+`make sensitivity` varies it."""
 ROTATION_RAD = 0.2
 """Radians by which a joint may turn from where its bone was aimed; the root may move by the
-meters that this turn moves at a distance of one meter. Chosen by hand: x0.5 costs 0.3 %, x2
-costs 0.1 %."""
+meters that this turn moves at a distance of one meter. Chosen by hand; `make sensitivity`
+varies it."""
 FADE_S = 0.1
-"""Seconds in which a change fades that no position asks for. Chosen by hand: x0.5 gains 0.1 %,
-x2 costs 0.1 %."""
+"""Seconds in which a change fades that no position asks for. Chosen by hand; `make sensitivity`
+varies it."""
 
 
 def fit_to_positions(

@@ -15,8 +15,8 @@ HINGES = {"Arm": (0.0, -1.0, 0.0), "Leg": (0.0, 1.0, 0.0)}
 MIN_FLEXION, FULL_FLEXION = np.radians([8.0, 30.0])
 """Flexion angles (radians) between which the weight of the flexion plane rises from 0 to 1."""
 SMOOTHING_S = 0.1
-"""Time (s) over which the axial rotation is smoothed where the limb is flexed. Chosen by hand:
-x0.5 costs 1.2 %, x2 gains 0.2 %."""
+"""Time (s) over which the axial rotation is smoothed where the limb is flexed. Chosen by hand;
+`make sensitivity` varies it."""
 REST_WEIGHT = 0.02
 """Weight of zero axial rotation relative to the trunk; a flexed limb has weight 1. Chosen by
 hand: x10 costs 2 % on one take."""

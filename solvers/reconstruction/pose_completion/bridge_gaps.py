@@ -9,10 +9,10 @@ from ...signals import find_runs
 from .held_out_paths import rest_probability
 
 HALF_WEIGHT_S = 0.12
-"""Gap time (s) at which the joint's own path and the library pose have equal weight, if
-the joint moves. The gap time is half the harmonic mean of the times to the nearest reliable
-frames. Movements outside the library are best with 0.25 s (UI-PRMD), movements inside it with
-0; this value is a compromise. Chosen by hand: x0.5 costs 0.4 %, x2 gains 0.8 %."""
+"""Gap time (s) at which the joint's own path and the library pose have equal weight, if the
+joint moves. The gap time is half the harmonic mean of the times to the nearest reliable frames.
+Movements outside the library are best with 0.25 s (UI-PRMD), movements inside it with 0; this
+value is a compromise. Chosen by hand; `make sensitivity` varies it."""
 
 
 def blend_gaps(

@@ -16,14 +16,13 @@ LIMBS = ((4, 5, 6, 7), (8, 9, 10, 11), (12, 13, 14, 15), (16, 17, 18, 19), (3,))
 MAX_FRAMES = 60
 """Frames, evenly spaced, in which a limb is held out. It bounds the run time."""
 MIN_RELIABILITY = 0.5
-"""Reliability above which a joint is compared. Chosen by hand: x0.5 costs 0.1 %, x2 costs
-0.3 %."""
+"""Reliability above which a joint is compared. Chosen by hand; `make sensitivity` varies it."""
 HALF_WEIGHT_FRAMES = 6.0
-"""Number of frames at which a measured offset gets half its weight. Chosen by hand: x0.5 and x2
-change the mean by less than 0.1 %."""
+"""Number of frames at which a measured offset gets half its weight. Chosen by hand;
+`make sensitivity` varies it."""
 DEFAULT_ERROR_M = 0.1
-"""Meters: expected error of a joint without observations. Chosen by hand: x0.5 costs nothing,
-x2 costs 0.2 %."""
+"""Meters: expected error of a joint without observations. Chosen by hand; `make sensitivity`
+varies it."""
 
 
 class SynthesisErrors(NamedTuple):

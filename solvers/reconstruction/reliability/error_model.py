@@ -19,24 +19,24 @@ from .terms import frame_count, vector_lengths, weighted_sum
 from .transient_jumps import find_transient_jumps
 
 SMOOTHING_WINDOW_S = 1.0 / 3.0
-"""Window (s) of the polynomial that smooths the path. Chosen by hand: x0.5 gains 0.5 %, x2
-costs 2.9 %."""
+"""Window (s) of the polynomial that smooths the path. Chosen by hand; `make sensitivity` varies
+it."""
 DEGREE = 4
-"""A count: degree of the polynomial that smooths the positions of a window. Chosen by hand:
-x0.5 costs 1.8 %, x2 costs nothing."""
+"""A count: degree of the polynomial that smooths the positions of a window. Chosen by hand;
+`make sensitivity` varies it."""
 DEVIATION_WINDOW_S = 0.4
-"""Window (s) over which deviations from the smoothed path are averaged. Chosen by hand: x0.5
-gains 3.0 %, x2 costs 6.2 %."""
+"""Window (s) over which deviations from the smoothed path are averaged. Chosen by hand;
+`make sensitivity` varies it."""
 LENGTH_WINDOW_S = 0.2
-"""Window (s) over which length errors are averaged. Chosen by hand: x0.5 costs nothing, x2
-gains 0.1 %."""
+"""Window (s) over which length errors are averaged. Chosen by hand; `make sensitivity` varies
+it."""
 ONE_CENTIMETER = 0.01
 """Meters, added to errors before the logarithm is taken. Chosen by hand: x0.5 costs 1.4 %, x2
 costs 0.8 %."""
 JUMP_DEVIATION_M = 0.05
 """Deviation (m) of a transient jump in averages, however far the joint jumped. Adjacent frames
-are wrong more often than others, but mostly right. Chosen by hand: x0.5 gains 0.4 %, x2 costs
-4.6 %."""
+are wrong more often than others, but mostly right. Chosen by hand; `make sensitivity` varies
+it."""
 
 
 @dataclass(frozen=True)

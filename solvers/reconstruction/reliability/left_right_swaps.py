@@ -20,8 +20,8 @@ MAX_GAP_S = 0.25
 while his body is lost: without it his sides are swapped
 (`test_turn_of_an_occluded_body_is_no_swap`)."""
 MAX_STEP_RATIO = 0.5
-"""Maximum ratio of the steps with sides swapped to the steps as tracked. Chosen by hand: x0.5
-gains 1.4 %, x2 gains 2.7 %."""
+"""Maximum ratio of the steps with sides swapped to the steps as tracked. Chosen by hand;
+`make sensitivity` varies it."""
 MIN_GAIN_M = 0.08
 """Minimum reduction (m) of the mean step by swapping sides. It guards limbs side by side, whose
 steps say nothing (`test_legs_side_by_side_are_not_swapped`)."""

@@ -13,10 +13,10 @@ OUT, DOWN = (1.0, 0.0), (0.0, -1.0)
 ARMS = (("UpperArm", "LowerArm"), ("LowerArm", "Hand"))
 LEGS = (("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"))
 MAX_ANGLE_DEG = 30.0
-"""Largest angle (degrees) between a limb and its direction in a reference pose. Chosen by hand:
-x0.5 costs nothing, x2 costs 0.9 %."""
+"""Largest angle (degrees) between a limb and its direction in a reference pose. Chosen by hand;
+`make sensitivity` varies it."""
 MIN_FRAMES = 5
-"""Minimum number of frames for a length. Chosen by hand: x0.5 costs 1.0 %, x2 costs nothing."""
+"""Minimum number of frames for a length. Chosen by hand; `make sensitivity` varies it."""
 
 
 def parent_distances(positions: Array, parents: NDArray[np.intp]) -> Array:

@@ -14,8 +14,8 @@ hand: x10 costs 4.4 %. It guards joints that are far off:
 `test_wrong_joint_is_replaced_and_an_uncertain_one_stays_near`."""
 REPLACED_RELIABILITY = 0.2
 """Reliability below which a joint takes the position of a library pose; joints that one round
-of the search completed with confidence have it in the next. Chosen by hand: x0.5 costs 2.2 %,
-x2 gains 3.2 %."""
+of the search completed with confidence have it in the next. Chosen by hand; `make sensitivity`
+varies it."""
 
 
 class ReliabilityMethod(Choice):

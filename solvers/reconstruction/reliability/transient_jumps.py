@@ -6,24 +6,23 @@ from ...arrays import Array, Flags
 from .terms import vector_lengths
 
 MAX_JUMP_S = 0.2
-"""Maximum duration (s) of a transient jump. Chosen by hand: x0.5 costs 20.9 %, x2 gains
-6.2 %."""
+"""Maximum duration (s) of a transient jump. Chosen by hand; `make sensitivity` varies it."""
 MIN_JUMP_M = 0.05
 """Minimum step (m) of a jump at any frame rate. It guards recordings of 120 Hz and more:
 without it a wobble of 2 cm is a jump
 (`test_wobbles_of_two_centimeters_are_no_jumps_at_high_rates`)."""
 MIN_ACCELERATION = 100.0
-"""Minimum acceleration (m/s²) of a jump, to reach its speed within one frame. Chosen by hand:
-x0.5 costs nothing, x2 costs 0.6 %."""
+"""Minimum acceleration (m/s²) of a jump, to reach its speed within one frame. Chosen by hand;
+`make sensitivity` varies it."""
 MIN_STEP_RATIO = 3.0
-"""Minimum ratio of a jump to the steps before and after it. Chosen by hand: x0.5 gains 0.4 %,
-x2 costs 2.2 %."""
+"""Minimum ratio of a jump to the steps before and after it. Chosen by hand; `make sensitivity`
+varies it."""
 CONTEXT_S = 0.1
 """Duration (s) of the steps before and after. A joint that jumps more often vibrates. Chosen by
-hand: x0.5 costs nothing, x2 costs 0.6 %."""
+hand; `make sensitivity` varies it."""
 MAX_RETURN_RATIO = 0.5
 """Maximum distance between start and return position, as a fraction of the jump. Chosen by
-hand: x0.5 costs 5.9 %, x2 gains 6.8 %."""
+hand; `make sensitivity` varies it."""
 
 
 def find_transient_jumps(positions: Array, frame_rate: float) -> Flags:

@@ -23,8 +23,7 @@ from ...signals import smooth_gaussian
 from .kernel import squared_distances
 
 CONTEXT_S = 0.5
-"""Time (s) to the poses before and after. Chosen by hand: x0.5 and x2 change the mean by less
-than 0.1 %."""
+"""Time (s) to the poses before and after. Chosen by hand; `make sensitivity` varies it."""
 MEAN_WINDOW_S = 1.0
 """Time (s) on both sides of the mean that a pose is compared with. Chosen by hand: x0.1 gains
 0.3 %; the shipped prior was learned with it."""
@@ -71,7 +70,7 @@ out one of four actors; each choice without a fifth actor gives the same values.
 COVERAGE_RANGE_M = (1.0, 0.3)
 """Context distance (m) up to which movements count as covered, and the fall-off beyond. Of
 actors outside the training set, 95 in 100 are covered; of exercises outside it, half are.
-Chosen by hand: x0.5 costs nothing, x2 costs 0.6 %."""
+Chosen by hand; `make sensitivity` varies it."""
 
 
 class MovementDistances(NamedTuple):

@@ -11,7 +11,7 @@ from ..postures import N_PARTS, ClipPostures, half_precision
 from .vocabulary import N_AXES, Vocabulary
 
 CLIP_RATE_HZ = 20.0
-"""Hertz at which clips are compared. Chosen by hand: x0.5 gains 0.4 %, x2 costs 1.6 %."""
+"""Hertz at which clips are compared. Chosen by hand; `make sensitivity` varies it."""
 MIN_SEGMENT_S = 2.0
 """Seconds; other segments are two, four ... times as long. It guards libraries of takes of
 minutes, in which an action is a small part: clips of twice this length are also indexed in
@@ -21,8 +21,8 @@ MAX_SEGMENT_FRACTION = 0.7
 one would describe the clip itself again."""
 N_CUBES = 3
 N_STEPS = 16
-"""Time samples of a segment for dynamic time warping. Chosen by hand: x0.5 costs 0.3 %, x2
-gains 0.4 %."""
+"""Time samples of a segment for dynamic time warping. Chosen by hand; `make sensitivity` varies
+it."""
 MAX_FRAMES = 1200
 """Frames of a segment for its histogram, evenly spaced. It bounds the run time: at 20 Hz,
 longer segments than a minute are subsampled."""

@@ -18,12 +18,12 @@ NEIGHBOR_WEIGHT = 4.0
 the training data of docs/benchmarks/retrieval.md."""
 MAX_DISTANCE_RATIO = 1.2
 """Maximum of the re-ranked distance over the original one: the query itself stays near. Chosen
-by hand: x0.5 gains 2.0 %, x2 costs 0.7 %."""
+by hand; `make sensitivity` varies it."""
 RECIPROCAL_WEIGHT = 3.0
 """Additional weight of reciprocal neighbors. Chosen by a sweep over the training data of
 docs/benchmarks/retrieval.md."""
 N_ROUNDS = 2
-"""Number of averaging passes. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+"""Number of averaging passes. Chosen by hand; `make sensitivity` varies it."""
 STEP_STRIDE = 2
 """Every n-th time sample of a clip is compared with those of other clips. It bounds the run
 time: all samples take four times as long, and change errors by less than 0.2 %."""

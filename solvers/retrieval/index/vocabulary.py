@@ -25,13 +25,12 @@ from ..postures import (
 )
 
 N_AXES = 8
-"""Number of principal components of a part. Chosen by hand: x0.5 gains 0.5 %, x2 costs 0.5
-%."""
+"""Number of principal components of a part. Chosen by hand; `make sensitivity` varies it."""
 N_WORDS = 64
-"""Number of codewords of a part. Chosen by hand: x0.5 gains 0.9 %, x2 costs 0.9 %."""
+"""Number of codewords of a part. Chosen by hand; `make sensitivity` varies it."""
 N_NEAREST = 3
-"""Number of words with a nonzero weight in one frame. Chosen by hand: x0.5 costs 0.3 %, x2
-gains 0.3 %."""
+"""Number of words with a nonzero weight in one frame. Chosen by hand; `make sensitivity` varies
+it."""
 JITTER_M = 1e-6
 """Meters of random noise that separates equal frames: k-means needs distinct points. It guards
 a search for clusters."""
