@@ -200,19 +200,20 @@ def _recording(
         raise InvalidFileError(
             f"{path}: the number of joints of body {body} changes. Export it again."
         ) from None
-    if len(names) != points.shape[1]:
-        unnamed = body_of_points(path, points)
-        if unnamed is None:
-            raise InvalidFileError(
-                f"{path} has {points.shape[1]} points without names, which form no body in a"
-                " known order. Store the joints as a joint CSV, which has names."
-            )
-        return read_body(path, unnamed, scale, progress, times, rate)
-    found = body_of_named_points(names, points)
+    is_named = len(names) == points.shape[1]
+    found = body_of_named_points(names, points) if is_named else None
     if found is None:
+        unnamed = body_of_points(path, points)
+        if unnamed is not None:
+            return read_body(path, unnamed, scale, progress, times, rate)
+        if is_named:
+            raise InvalidFileError(
+                f"{path} has joints called {', '.join(names[:3])} ..., which are no body. Store"
+                " them as a joint CSV."
+            )
         raise InvalidFileError(
-            f"{path} has joints called {', '.join(names[:3])} ..., which are no body. Store"
-            " them as a joint CSV."
+            f"{path} has {points.shape[1]} points without names, which form no body in a"
+            " known order. Store the joints as a joint CSV, which has names."
         )
     if times is None and rate is None:
         progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))

@@ -61,12 +61,20 @@ def _person(body: Mapping[str, Any], count: int) -> Iterator[JsonPerson]:
     if isinstance(joints, Mapping):
         names, joints = tuple(map(str, joints)), list(joints.values())
     elif isinstance(joints, list) and joints and all(isinstance(k, Mapping) for k in joints):
-        named = next((each for each in NAME_KEYS if each in joints[0]), "")
-        names = tuple(str(joint.get(named)) for joint in joints) if named else ()
+        names = _names_of(joints)
     values = [_place(joint) for joint in joints] if names else joints
     points = _points(values) if isinstance(values, list) else None
-    if points is not None and len({*names}) == len(names):
+    if points is not None:
         yield JsonPerson(identity, names, points)
+
+
+def _names_of(joints: list[Mapping[str, Any]]) -> tuple[str, ...]:
+    """Return the names of joints that are objects, by the first member that differs in all."""
+    for key in NAME_KEYS:
+        names = tuple(str(joint.get(key)) for joint in joints)
+        if len({*names}) == len(names):
+            return names
+    return ()
 
 
 def _place(joint: Any) -> Any:

@@ -38,7 +38,10 @@ JSON_HEAD = re.compile(
     rb'(?is)\s*[\[{].*"(skeletons|users|skeleton)"\s*:\s*\['
     rb'.*"(joints"\s*:\s*\[|joints"\s*:|(head|torso|JOINT_\w+)"\s*:)\s*\{'
 )
-OWN_JOINTS = re.compile(rb'(?i)"(joint_\w+|torso|waist|left_?collar|type)"')
+OWN_JOINTS = re.compile(
+    rb'(?i)"(joint_(?!names?")\w+|torso|waist|left_?collar)"'
+    rb'|"type"\s*:\s*"?(\d|joint_|head|neck|torso|waist)'
+)
 """What other programs with `skeletons` and `joints` lack: its joints, or their type."""
 KEYS = frozenset({"skeletons", "Skeletons", "users", "Users", "skeleton", "Skeleton"})
 IDS = ("user_id", "userId", "id", "ID", "Id")

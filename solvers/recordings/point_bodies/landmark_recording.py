@@ -55,10 +55,7 @@ def recording_from_landmarks(
         raise InvalidFileError(f"{path} has {len(points)} frames but no body in any of them.")
     if not is_world(points):
         return _triangulated(path, points, visibility, times, frame_rate, scale, progress)
-    if times is None and frame_rate is None:
-        progress(
-            0.9, Remark(f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
-        )
+    _say_missing_rate(times, frame_rate, progress)
     progress(
         0.9, Remark("MediaPipe keeps the hips at the origin, so the actor does not travel")
     )
@@ -91,12 +88,18 @@ def _triangulated(
 ) -> JointRecording:
     observed = [at for at in range(N_POINTS) if np.isfinite(points[:, at]).all(axis=-1).any()]
     names = [BODY_POINTS[at] for at in observed]
-    body = None if is_of_picture(points) else body_of_named_points(names, points[:, observed])
-    if body is None:
+    if is_of_picture(points):
         raise InvalidFileError(
             f"{path} has image landmarks, without true depth. Save the pose_world_landmarks of"
             " MediaPipe instead."
         )
+    body = body_of_named_points(names, points[:, observed])
+    if body is None:
+        raise InvalidFileError(
+            f"{path} has joints called {', '.join(names[:3])} ..., which are no body. Store"
+            " them as a joint CSV."
+        )
+    _say_missing_rate(times, frame_rate, progress)
     joints = [LANDMARK_JOINTS.index(name) for name in body.names if name in LANDMARK_JOINTS]
     certain = with_computed_joints(np.nan_to_num(visibility))[:, joints]
     return stand_body(
@@ -109,3 +112,12 @@ def _triangulated(
         scale=scale,
         progress=progress,
     )
+
+
+def _say_missing_rate(
+    times: Array | None, frame_rate: float | None, progress: Progress
+) -> None:
+    if times is None and frame_rate is None:
+        progress(
+            0.9, Remark(f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
+        )

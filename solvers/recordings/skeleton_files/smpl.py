@@ -139,7 +139,9 @@ def open_smpl(
     arrays = read_archive_members(path, (*READ, "posed_joints"))
     if "posed_joints" in arrays and not {*ROTATIONS, *ROOT} & arrays.keys():
         return open_kimodo(path, scale=scale, progress=progress)
-    arrays = with_rotation_vectors(arrays, {*ROTATIONS, *ROOT, *BODY_POSE})
+    arrays = with_rotation_vectors(
+        arrays, {*ROTATIONS, *ROOT, *BODY_POSE, *HANDS, *LEFT_HAND, *RIGHT_HAND}
+    )
     people = split_people(arrays, SIZES)
     vectors = [_rotation_vectors(path, person) for person in people]
     rate = _rate(arrays, unwatched)

@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...rotations import quaternion_from_matrix, rotation_vector_from_quaternion
 
 MAX_DEVIATION = 1e-2
@@ -30,11 +30,11 @@ def with_rotation_vectors(
 
 
 def _are_rotations(array: Array) -> bool:
-    """Return whether an array holds rotation matrices, or NaN where there is none."""
+    """Return whether an array holds rotation matrices, or NaN or zeros where there is none."""
     if array.ndim < 3 or array.shape[-2:] != (3, 3):
         return False
     matrices = array.reshape(-1, 3, 3)
-    matrices = matrices[np.isfinite(matrices).all(axis=(1, 2))]
+    matrices = matrices[_is_known(matrices)]
     products = matrices @ np.swapaxes(matrices, 1, 2) - np.eye(3)
     return (
         len(matrices) > 0
@@ -45,7 +45,13 @@ def _are_rotations(array: Array) -> bool:
 
 def _rotation_vectors(array: Array) -> Array:
     matrices = array.reshape(-1, 3, 3)
-    known = np.isfinite(matrices).all(axis=(1, 2))
+    known = _is_known(matrices)
     vectors = np.full((len(matrices), 3), np.nan)
     vectors[known] = rotation_vector_from_quaternion(quaternion_from_matrix(matrices[known]))
     return vectors.reshape(array.shape[:-1])
+
+
+def _is_known(matrices: Array) -> Flags:
+    """Return which matrices are there; programs write zeros where nobody was detected."""
+    known: Flags = np.isfinite(matrices).all(axis=(1, 2)) & matrices.any(axis=(1, 2))
+    return known

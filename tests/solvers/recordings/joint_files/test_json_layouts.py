@@ -67,6 +67,16 @@ LAYOUTS = {
             for frame in frames
         ]
     },
+    "joint_name": lambda names, frames: [
+        {"skeletons": [{"joints": [
+            {"type": "joint", "joint_name": name, "position": coordinates(point)}
+            for name, point in frame.items()
+        ]}]}
+        for frame in frames
+    ],
+    "names apart and skeletons": lambda names, frames: {
+        "joint_names": list(names), "frames": [skeletons(names, frame) for frame in frames],
+    },
     "names apart": lambda names, frames: {
         "joint_names": list(names),
         "positions": [[point.tolist() for point in frame.values()] for frame in frames],
@@ -92,3 +102,14 @@ def test_named_joints_are_read(tmp_path, walk, layout, names):
         expected = (walk[role] - walk["rightUpperLeg"])[..., [0, 2, 1]] * (1.0, -1.0, 1.0)
         found = joints[role] - joints["rightUpperLeg"]
         assert np.allclose(found, expected, atol=1e-4), role
+
+
+def test_unknown_names_apart_from_the_positions_are_ignored(tmp_path, walk):
+    """Joints in a known order are recognized by their bones."""
+    limbs = {side: [walk[side + role] for role in PARTS.values()] for side in SIDES}
+    points = [walk["head"]] * 5 + [limbs[side][k] for k in range(6) for side in SIDES]
+    positions = np.stack(points, axis=1).tolist()
+    path = tmp_path / "take.json"
+    path.write_text(json.dumps({"names": [f"J{k}" for k in range(17)], "positions": positions}))
+
+    assert "left_elbow" in read_recording(path).names

@@ -158,3 +158,16 @@ def test_joints_called_pose_are_not_taken_for_rotations(tmp_path):
 
     with pytest.raises(MocapAssistError, match=r"^(?!.*SMPL)"):
         read_recording(tmp_path / "take.npz")
+
+
+def test_matrices_of_fingers_and_of_frames_without_a_person(tmp_path):
+    hand = np.tile(Rotation.from_rotvec([0.0, 0.0, 0.5]).as_matrix(), (N_FRAMES, 15, 1, 1))
+    root, body = MATRICES[:, :1].copy(), MATRICES[:, 1:22].copy()
+    root[3] = body[3] = 0.0
+    np.savez(tmp_path / "take.npz", global_orient=root, body_pose=body, transl=TRANS,
+             left_hand_pose=hand, right_hand_pose=hand)  # fmt: skip
+
+    motion = read_recording(tmp_path / "take.npz")
+
+    assert motion.skeleton.n_joints == 52
+    assert np.flatnonzero(np.isnan(motion.rotations).any(axis=(1, 2))).tolist() == [3]
