@@ -31,20 +31,26 @@ class HeldFeet(NamedTuple):
     """Contacts that `detect_contacts` finds in the complete motion."""
     times_ms: list[float]
 
+    @property
+    def slide_m(self) -> float:
+        """Return how far both soles slide in contact, meters."""
+        return _slide(self.held, self.later)
+
     def cells(self) -> list[str]:
         """Return the row of the table."""
-        jump, eased = self._jumps()
+        jump, eased = self.jumps_m
         figures = [
             100.0 * float((self.contacts == self.later).mean()),
             100.0 * _slide(self.raw, self.later),
-            100.0 * _slide(self.held, self.later),
+            100.0 * self.slide_m,
             100.0 * jump,
             100.0 * eased,
             *map(float, np.percentile(self.times_ms, [50, 95])),
         ]
         return [f"{figures[0]:.0f}", *(f"{each:.1f}" for each in figures[1:])]
 
-    def _jumps(self) -> tuple[float, float]:
+    @property
+    def jumps_m(self) -> tuple[float, float]:
         """Return the largest jump if feet were let go at once, and the largest step now."""
         shift = _ankles(self.held) - _ankles(self.raw)
         steps = np.linalg.norm(np.diff(shift, axis=0), axis=-1)

@@ -231,6 +231,14 @@ GUARDS: dict[str, Guard] = {
         0.0,
         "variation/test_loops.py::test_variants_of_a_looping_walk_loop",
     ),
+    "feet/live_contacts.MAX_GAP_S": Guard(
+        inf,
+        "feet/test_live_planting.py::test_after_a_gap_nothing_is_held",
+    ),
+    "feet/live_planting.MAX_HOLD_M": Guard(
+        inf,
+        "feet/test_live_planting.py::test_a_foot_that_is_held_too_far_away_slides_on",
+    ),
     "feet/standing_feet.MIN_HIP_HEIGHT": Guard(
         0.0,
         "feet/test_lying_feet.py::test_feet_are_planted_until_the_actor_lies",
