@@ -1,6 +1,7 @@
 """Constants that bound the run time or the memory, or decide what is drawn."""
 
 BOUNDS: dict[str, tuple[str, ...]] = {
+    "bounds the delay of live contacts in noise": ("feet/live_contacts.MAX_LINE_S",),
     "bounds the run time, not the result": (
         "depth_scene/actor.*SAMPLES*",
         "depth_scene/bodies.MAX_FULL_PIXELS",
