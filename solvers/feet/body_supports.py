@@ -11,7 +11,7 @@ from ..motion.humanoid import (
     HUMAN_LEG_LENGTH_M,
     ContactModel,
     HumanoidMap,
-    foot_points,
+    known_foot_points,
     leg_length,
     measure_feet,
 )
@@ -119,7 +119,7 @@ def support_probabilities(motion: Motion, humanoid: HumanoidMap) -> Array:
 def _ground(motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, size: float) -> Array:
     """Return the height of the ground for a leg of 0.9 m, from the lowest part of the body."""
     joints = humanoid.indices(motion.skeleton)
-    lowest = [*foot_points(motion.skeleton, humanoid).ravel()]
+    lowest = [*known_foot_points(motion.skeleton, humanoid).ravel()]
     lowest += [joints[role] for role in GROUND_ROLES if role in joints]
     heights = poses.positions[:, lowest, 2].min(axis=1)
     return ground_level(heights / size, motion.frame_rate)

@@ -121,8 +121,10 @@ def plant_feet(
         segment = motion.slice(start, stop) if cuts else motion
         given = None if contacts is None else contacts[start:stop]
         if bool(cuts) and is_short_shot(stop - start, motion.frame_rate):
-            none = np.zeros((stop - start, N_FEET + len(SUPPORTS)), dtype=np.bool_)
-            results.append(_planted(segment, none if given is None else given, settings))
+            kept = np.zeros((stop - start, N_FEET + len(SUPPORTS)), dtype=np.bool_)
+            if given is not None:
+                kept[:, : given.shape[1]] = given
+            results.append(_planted(segment, kept, settings))
             continue
         found = _find_contacts(segment, given, humanoid_map, legs, settings)
         step = within(progress, start / motion.n_frames, stop / motion.n_frames)

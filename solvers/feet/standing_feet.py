@@ -6,11 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
-from ..motion.humanoid import (
-    HumanoidMap,
-    detect_contacts,
-    foot_points,
-)
+from ..motion.humanoid import HumanoidMap, detect_contacts, known_foot_points
 from ..motion.skeletons import still_joints
 from ..signals import find_runs
 from .legs import SIDES, LegJoints
@@ -64,7 +60,7 @@ def rests_on_hips(
     On the back with flexed legs it tilts, so that the hip joints are above its center.
     """
     heights = forward_kinematics(motion).positions[..., 2]
-    feet = foot_points(motion.skeleton, humanoid_map).ravel()
+    feet = known_foot_points(motion.skeleton, humanoid_map).ravel()
     ground = np.percentile(heights[:, feet].min(axis=1), GROUND_PERCENTILE)
     pelvis = [leg.hip for leg in legs]
     length = np.mean([leg.length(motion.skeleton) for leg in legs])

@@ -168,11 +168,18 @@ def foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.intp]:
         raise InvalidMotionError(
             f"No joint has the humanoid role {' or '.join(missing)}. Choose one in the map."
         )
+    return known_foot_points(skeleton, humanoid)
+
+
+def known_foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.intp]:
+    """Return the rows of `foot_points` whose foot has a role, (n_feet, 2)."""
+    joints = humanoid.indices(skeleton)
     rows = []
     for side in ("left", "right"):
-        foot = joints[f"{side}Foot"]
-        rows.append([foot, joints.get(f"{side}Toes", ball_of_foot(skeleton, foot))])
-    return np.array(rows)
+        foot = joints.get(f"{side}Foot")
+        if foot is not None:
+            rows.append([foot, joints.get(f"{side}Toes", ball_of_foot(skeleton, foot))])
+    return np.array(rows, dtype=np.intp).reshape(-1, 2)
 
 
 def leg_length(skeleton: Skeleton, humanoid: HumanoidMap) -> float:
