@@ -24,7 +24,7 @@ from ...solvers.denoising import (
     measure_quality,
     plant_feet,
 )
-from ...solvers.feet import find_legs
+from ...solvers.feet import find_legs, find_supports
 from ...solvers.markers import Swap, unswap_markers
 from ...solvers.motion import (
     JointLimits,
@@ -208,12 +208,20 @@ def _low_confidence_of_legs(body: Motion | Tracks, finish: Finish) -> str:
 
 
 def _planted(body: Motion, finish: Finish, progress: Progress) -> Planted | None:
-    """Plant the feet of what has legs, if the legs were chosen at all."""
-    if finish.planting is None:
+    """Plant the feet of what has legs, and its hands, if the limbs were chosen."""
+    planting = finish.planting
+    if planting is None or not _chosen_legs(body, finish):
         return None
-    if not _chosen_legs(body, finish):
-        return None
-    return plant_feet(body, finish.contacts, settings=finish.planting, progress=progress)
+    if not _arms(body) <= finish.chosen:
+        planting = replace(planting, hands_and_knees=False)
+    return plant_feet(body, finish.contacts, settings=planting, progress=progress)
+
+
+def _arms(body: Motion) -> set[str]:
+    """Return the joints that rotate where hands are held in place."""
+    found = find_supports(body.skeleton, find_humanoid_map(body.skeleton))
+    arms = [joint for each in found if each.is_arm for joint in each.chain]
+    return {body.skeleton.names[joint] for joint in arms}
 
 
 def _chosen_legs(body: Motion, finish: Finish) -> set[str]:

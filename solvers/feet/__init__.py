@@ -1,5 +1,6 @@
 """Foot-skate cleanup: hold planted feet in place."""
 
+from .body_supports import find_supports
 from .legs import SIDES, LegJoints, find_foot_joints, find_legs
 from .live_planting import LivePlanting, PlantedPose
 from .plant_feet import Planted, plant_feet
@@ -16,6 +17,7 @@ __all__ = [
     "PlantedPose",
     "find_foot_joints",
     "find_legs",
+    "find_supports",
     "plant_feet",
     "sole_points",
 ]

@@ -1,4 +1,4 @@
-"""Strength of Clean by body part, and with keys."""
+"""What Clean changes by body part: strength, with keys, and selected legs."""
 
 import numpy as np
 import pytest
@@ -52,6 +52,32 @@ def test_feet_are_planted_at_any_strength(blank, clean, keys_of):
                if after[slot, path, index] != column}  # fmt: skip
     assert {"LeftUpLeg", "LeftLeg", "RightUpLeg", "RightLeg"} <= changed
     assert not {"Spine", "Neck", "Head", "LeftForeArm"} & changed
+
+
+def test_hands_are_held_only_if_the_arms_are_chosen(blank, clean, keys_of, load):
+    assert blank.ops.mocap_assist.load_sample() == {"FINISHED"}
+    armature = blank.context.object
+    contact_keys = load("mocap_assist.actions.contact_keys")
+    action = armature.animation_data.action
+    first, last = map(int, action.frame_range)
+    frames = np.arange(first, last + 1.0)
+    contacts = np.zeros((len(frames), 6), bool)
+    contacts[: len(frames) // 2] = True
+    source = action, armature.animation_data.action_slot
+    contact_keys.write_contacts(armature, *source, frames, contacts)
+    before = keys_of(action)
+    for bone in armature.pose.bones:
+        is_leg = "Leg" in bone.name or "Foot" in bone.name
+        load("mocap_assist.blender.compat").select_bone(bone, is_leg)
+
+    after = keys_of(clean(bones="SELECTED", plant_feet=True))
+
+    changed = {
+        path.split('"')[1]
+        for (slot, path, index), keys in after.items()
+        if path.startswith("pose") and keys != before[slot, path, index]
+    }
+    assert "LeftLeg" in changed and not any("Arm" in name for name in changed), changed
 
 
 @pytest.mark.parametrize("name", ["strength", "strength_head"])
