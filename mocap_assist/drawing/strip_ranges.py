@@ -168,13 +168,15 @@ def issue_ranges(
     return rows
 
 
-def contact_ranges(keys: Array, step: float, mark: Mark) -> tuple[Range, ...]:
+def contact_ranges(keys: Array, end: float, step: float, mark: Mark) -> tuple[Range, ...]:
     """Return the frames in which a foot, hand or knee is down.
 
     Parameters
     ----------
     keys : shape (n_keys, 2)
         Frame and value of keys that hold until the next one: 1 it is down, 0 it is not.
+    end : float
+        Last frame of the action, until which the last key holds.
     step : float
         Frames from one sample to the next.
     mark : Mark
@@ -184,7 +186,7 @@ def contact_ranges(keys: Array, step: float, mark: Mark) -> tuple[Range, ...]:
         if value <= 0.5:
             continue
         is_last = index == len(keys) - 1
-        last = frame if is_last else max(keys[index + 1, 0] - step, frame)
+        last = max(end if is_last else keys[index + 1, 0] - step, frame)
         if found and frame - found[-1].last <= MAX_STEPS_APART * step:
             found[-1] = found[-1]._replace(last=float(last))
         else:

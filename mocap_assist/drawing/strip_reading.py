@@ -148,7 +148,7 @@ def strip_from(
         ),
     }
     for (row, mark), part in zip(CONTACT_ROWS, keys.contacts, strict=True):
-        rows[row] = contact_ranges(part, keys.step, mark)
+        rows[row] = contact_ranges(part, keys.last, keys.step, mark)
     found = {row: ranges for row, ranges in rows.items() if ranges}
     return Strip(keys.first, keys.last, keys.step, found) if found else None
 
