@@ -19,7 +19,7 @@ LABELS = (
     "Left Knee Contact",
     "Right Knee Contact",
 )
-HINT = "Key 1 while the foot is planted, 0 while it moves, then press Plant Feet."
+HINT = "Key 1 while it bears on the floor, 0 while it moves, then press Plant Feet."
 
 
 class FeetPanel(PanelMixin):

@@ -67,7 +67,7 @@ def write_planted(
     history.record(action, played, entry)
     put_to_use(armature, action, slot, Output.ACTION)
     message = (
-        f"{action.name}: foot slide {100 * planted.slide_before:.1f} →"
+        f"{action.name}: slide on the floor {100 * planted.slide_before:.1f} →"
         f" {100 * planted.slide_after:.1f} cm, moved {len(result.moved)} bones."
     )
     return " ".join([message, *(f"{remark}." for remark in planted.remarks)])

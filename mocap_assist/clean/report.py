@@ -19,7 +19,7 @@ def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0
     planted = cleaned.planted
     if planted:
         slides = (100 * planted.slide_before, 100 * planted.slide_after)
-        done.append(f"foot slide {slides[0]:.1f} → {slides[1]:.1f} cm")
+        done.append(f"slide on the floor {slides[0]:.1f} → {slides[1]:.1f} cm")
     message = [f"{name}: cleaned {n_frames} frames: {', '.join(done)}.", body.prior_used]
     if n_modified:
         message.append(f"Applied the modifiers of {n_modified} curves.")

@@ -220,7 +220,7 @@ def _message_of(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
     short = f"{name}: rebuilt {percent:.1f} % of joint samples"
     if planted := rebuilt.planted:
         slides = (100 * planted.slide_before, 100 * planted.slide_after)
-        short += "; foot slide {:.1f} → {:.1f} cm".format(*slides)
+        short += "; slide on the floor {:.1f} → {:.1f} cm".format(*slides)
     remarks = [f"{short}.", *rebuilt.remarks]
     if n_modified:
         remarks.append(f"Applied the modifiers of {n_modified} curves.")

@@ -193,8 +193,8 @@ def _plant_feet(
             raise
         return clean, None, {"feet": f"Feet were not planted. {error}"}
     message = (
-        f"Feet slid {100 * planted.slide_before:.1f} cm in total before planting, and"
-        f" {100 * planted.slide_after:.1f} cm after."
+        f"The slide on the floor was {100 * planted.slide_before:.1f} cm in total before"
+        f" planting, and {100 * planted.slide_after:.1f} cm after."
     )
     figures = {"slide_before_m": planted.slide_before, "slide_after_m": planted.slide_after}
     return planted.motion, planted.contacts, {"feet": message, **figures}

@@ -196,7 +196,8 @@ def _outcome(given: Any, rebuilt: RebuiltTake) -> Outcome:
     if rebuilt.slide is not None:
         first, last = rebuilt.slide
         lines.append(
-            f"Feet slid {100 * first:.1f} cm before planting, {100 * last:.1f} cm after."
+            f"The slide on the floor was {100 * first:.1f} cm before planting,"
+            f" {100 * last:.1f} cm after."
         )
     lines += [*rebuilt.remarks, compare_quality(before, after)]
     figures = {

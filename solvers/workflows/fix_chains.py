@@ -248,9 +248,19 @@ def _planted(planting_result: PlantingResult) -> list[str]:
     planted, remarks = planting_result.planted, planting_result.remarks
     if planted is None:
         return remarks
-    if not planted.contacts.any():
-        return ["No foot stands in this take, so Plant Feet changed nothing.", *remarks]
-    return ["Plant Feet keeps planted feet in place by moving legs and hips.", *remarks]
+    feet, hands, knees = np.split(planted.all_contacts.any(axis=0), (2, 4))
+    if hands.any():
+        text = (
+            "Plant Feet keeps feet, hands and knees on the floor in place by moving legs,"
+            " arms and hips."
+        )
+    elif knees.any():
+        text = "Plant Feet keeps feet and knees on the floor in place by moving legs and hips."
+    elif feet.any():
+        text = "Plant Feet keeps planted feet in place by moving legs and hips."
+    else:
+        text = "No foot stands in this take, so Plant Feet changed nothing."
+    return [text, *remarks]
 
 
 def _unswapped(n_swaps: int) -> list[str]:

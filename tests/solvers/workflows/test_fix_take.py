@@ -110,12 +110,13 @@ def test_feet_stay_as_they_are_on_request(noisy):
 
 
 def test_contacts_of_the_animator_are_used(noisy):
-    contacts = np.zeros((noisy.n_frames, 2), bool)
-    contacts[20:40, 0] = True
+    contacts = np.zeros((noisy.n_frames, 6), bool)
+    contacts[20:40, [0, 3]] = True
 
     result = fix_take(noisy, contacts=contacts)
 
-    assert np.array_equal(result.chain.planted.contacts, contacts)
+    assert np.array_equal(result.chain.planted.all_contacts, contacts)
+    assert "moving legs, arms and hips" in " ".join(result.chain.steps)
 
 
 def test_skeleton_without_legs_is_cleaned_all_the_same():
