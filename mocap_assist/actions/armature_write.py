@@ -86,7 +86,7 @@ def write_take(
         Named like the source with the suffix, and kept by a fake user.
     """
     here, origin = BlockReference.of(armature), SourceReference.of(source)
-    playing = _playing(armature)
+    playing = identify_played(armature)
     poses = yield from in_thread.steps(take.bone_poses)
     unchanged = None
     if recorded is not None:
@@ -103,14 +103,14 @@ def write_take(
             if should_yield():
                 yield number / len(indices)
                 armature, curves = here.find(), animated_curves(*made.find())
-                if _playing(armature) != playing:
+                if identify_played(armature) != playing:
                     raise changed_during_solve(here.name)
                 if unchanged:
                     unchanged.find_again()
     return made.find()
 
 
-def _playing(armature: bpy.types.Object) -> tuple[int, int] | None:
+def identify_played(armature: bpy.types.Object) -> tuple[int, int] | None:
     """Return what identifies the action of an armature and its slot."""
     animation = armature.animation_data
     if animation is None or animation.action is None:

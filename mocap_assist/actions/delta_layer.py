@@ -8,7 +8,12 @@ import numpy as np
 from ...solvers.arrays import Array
 from ...solvers.rotations import inverse, multiply, unroll
 from ..blender import compat
-from ..blender.block_references import BlockReference, SourceReference, removed_on_failure
+from ..blender.block_references import (
+    BlockReference,
+    SourceReference,
+    changed_during_solve,
+    removed_on_failure,
+)
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene import history
@@ -16,6 +21,7 @@ from .armature_write import (
     NUMBERED,
     check_writable,
     delta_tracks,
+    identify_played,
     keep_replaced,
     new_strip,
     play_in,
@@ -47,17 +53,25 @@ def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Ste
 
     Blender's NLA combines by channel: it multiplies quaternions and adds all else. Channels
     that are equal are left out. A key of `base` that is no number has no delta.
+
+    Raises
+    ------
+    InvalidMotionError
+        Between two time slices a bone was deleted, or the armature was made to play another
+        action.
     """
     action = bpy.data.actions.new(NUMBERED.sub("", base[0].name) + SUFFIX)
     action.use_fake_user = True
     slot = action.slots.new(armature.id_type, result[1].name_display)
     here, made = BlockReference.of(armature), SourceReference.of((action, slot))
     sources = SourceReference.of(base), SourceReference.of(result)
-    names = armature.pose.bones.keys()
+    names, playing = armature.pose.bones.keys(), identify_played(armature)
     before, after = animated_curves(*base), animated_curves(*result)
     with removed_on_failure(action):
         for number, name in enumerate(names):
-            bone, bag = here.find().pose.bones[name], compat.ensure_channelbag(*made.find())
+            bone, bag = here.find().pose.bones.get(name), compat.ensure_channelbag(*made.find())
+            if bone is None:
+                raise changed_during_solve(here.name)
             for path, frames, deltas in _deltas(bone, before, after):
                 for index, column in deltas.items():
                     curve = compat.new_curve(bag, path, index, name)
@@ -66,6 +80,8 @@ def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Ste
             if should_yield():
                 yield number / len(names)
                 before, after = (animated_curves(*source.find()) for source in sources)
+                if identify_played(here.find()) != playing:
+                    raise changed_during_solve(here.name)
         action, _ = made.find()
         history.mark_delta(action, *(source.find() for source in sources))
     return made.find()

@@ -1,5 +1,7 @@
 """Delta Layer: the change of Clean on an additive NLA track above the recorded action."""
 
+import itertools
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -140,6 +142,36 @@ def test_delta_without_its_base_is_replaced_with_its_influence(noisy, clean):
 
     played = [(t.strips[0].action.name, t.strips[0].influence) for t in tracks]
     assert played == [("walk", 1.0), ("walk.delta.001", 0.25)]
+
+
+def delete_last_bone(blank, armature):
+    blank.ops.object.mode_set(mode="EDIT")
+    armature.data.edit_bones.remove(armature.data.edit_bones[-1])
+    blank.ops.object.mode_set(mode="OBJECT")
+
+
+def play_another_action(blank, armature):
+    armature.animation_data.action = None
+
+
+@pytest.mark.parametrize("change", [delete_last_bone, play_another_action])
+def test_take_that_changes_between_time_slices_gets_no_delta(
+    noisy, blank, load, monkeypatch, change
+):
+    source = noisy.animation_data.action, noisy.animation_data.action_slot
+    time_slices = load("mocap_assist.blender.time_slices")
+    clock = itertools.count()
+    monkeypatch.setattr(time_slices, "monotonic", lambda: next(clock))
+    write = load("mocap_assist.actions.delta_layer").write_delta
+    work = time_slices.Work(write, noisy, source, source)
+    assert not work.run_slice(3)
+
+    change(blank, noisy)
+
+    with pytest.raises(ValueError, match="was changed during the solve; nothing was written"):
+        while not work.run_slice(3):
+            pass
+    assert list(blank.data.actions) == [source[0]]
 
 
 def test_dialed_influence_shows_at_once(noisy, clean, load, blank):
