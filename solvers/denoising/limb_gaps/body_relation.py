@@ -66,7 +66,7 @@ class BodyRelation:
     keys : tuple of str, length n_parts
     moments : shape (n_features, n_features), square degrees
         Features outermost to innermost: missing or observed (`Bridge`), which of the three,
-        part, axis.
+        part, axis. Those of the body's position are in centimeters.
     trained_on : str
     """
 
@@ -113,7 +113,7 @@ class BodyRelation:
         Parameters
         ----------
         missing, observed : sequence of str
-            Keys. Unknown missing ones deviate as all known ones do on average.
+            Keys. Unknown missing ones deviate as all known joints do on average.
         regression : Array
             As `regress` returns.
 
@@ -123,8 +123,10 @@ class BodyRelation:
             Shape (3 * n_missing,), square degrees.
         """
         indices, targets = self._features_and_targets(missing, observed)
-        power, all_targets = np.diag(self.moments), self._number[1, 0].ravel()
-        result = np.full(len(targets), power[all_targets].mean())
+        power = np.diag(self.moments)
+        joints = [key for key in self.keys if key != BODY_POSITION]
+        mean = power[self._numbers(self._number[1, 0], joints)].mean()
+        result = np.full(len(targets), mean)
         rows, columns = np.flatnonzero(indices >= 0), np.flatnonzero(targets >= 0)
         known, wanted = indices[rows], targets[columns]
         used = regression[np.ix_(rows, columns)]

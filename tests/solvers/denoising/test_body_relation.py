@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from solvers.denoising.channels import BODY_POSITION
 from solvers.denoising.limb_gaps import (
     BodyRelation,
     learn_body_relation,
@@ -16,13 +17,13 @@ from solvers.samples import walking_gait
 
 def test_regression_is_the_conditional_mean_of_the_moments(rng):
     """The same as a least-squares fit to rows whose moments they are, with a ridge."""
-    keys, n_rows, ridge = ("a", "b", "c"), 400, 2.0
-    rows = rng.normal(size=(n_rows, 54)) @ rng.normal(size=(54, 54))
+    keys, n_rows, ridge = ("a", "b", "c", BODY_POSITION), 400, 2.0
+    rows = rng.normal(size=(n_rows, 72)) @ rng.normal(size=(72, 72))
     relation = BodyRelation(keys, rows.T @ rows / n_rows)
 
     found = relation.regress(["b", "new"], ["c", "a"], ridge)
 
-    features = rows.reshape(n_rows, 2, 3, 3, 3)
+    features = rows.reshape(n_rows, 2, 3, 4, 3)
     x = np.concatenate(
         [features[:, 0, :, 1].reshape(n_rows, 9)]
         + [features[:, 1, kind, part] for kind in range(3) for part in (2, 0)],
@@ -40,7 +41,7 @@ def test_regression_is_the_conditional_mean_of_the_moments(rng):
         by_kind[:, 0, :, :3].reshape(9, 3),
         found[18:, :3],
     ])
-    mean = (features[:, 1, 0] ** 2).mean()
+    mean = (features[:, 1, 0, :3] ** 2).mean()  # of joints: the position is in centimeters
     assert_allclose(
         relation.error_variance(["b", "new"], ["c", "a"], found),
         [*(left**2).mean(axis=0), mean, mean, mean],
