@@ -107,6 +107,7 @@ class LiveRig:
         if choices.hold_feet:
             self._planting = LivePlanting(self._retargeting.update(measured), target.humanoid)
         self._last_frame = 0
+        self._body: int | None = None
         self._sources = _sources(target, roles, names)
         self._still = Carried(IDENTITY[None], np.zeros(3), np.zeros((1, 3)))
         self.bones = LiveBones(
@@ -134,16 +135,23 @@ class LiveRig:
         )
 
     def _posed(self, live: LiveMotion) -> tuple[Motion, tuple[bool, bool]]:
-        """Return the pose of the target within its limits, with its feet held."""
+        """Return the pose of the target with its feet held, as far as its limits allow."""
         posed = self._retargeting.update(_moved(live.motion, -self._start))
         elapsed_s = (live.frame - self._last_frame) / self.frame_rate
         self._last_frame = live.frame
-        if self._limits is not None:
-            posed = clamp_to_limits(posed, self._limits, humanoid_map=self._target.humanoid)
+        posed = self._within_limits(posed)
         if self._planting is None:
             return posed, (False, False)
+        if self._body not in (None, live.body):
+            self._planting.restart()
+        self._body = live.body
         posed, (left, right) = self._planting.update(posed, elapsed_s)
-        return posed, (bool(left), bool(right))
+        return self._within_limits(posed), (bool(left), bool(right))
+
+    def _within_limits(self, posed: Motion) -> Motion:
+        if self._limits is None:
+            return posed
+        return clamp_to_limits(posed, self._limits, humanoid_map=self._target.humanoid)
 
     def _confidence(self, live: LiveMotion) -> Single:
         if live.joints is None:

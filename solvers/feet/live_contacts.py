@@ -12,9 +12,6 @@ from ..signals import TwoStateFilter
 MAX_LINE_S = 0.15
 """Seconds of frames from which a speed is measured at most. It bounds the delay of contacts in
 noisy streams to half of it, and what a single frame after dropped ones counts."""
-MAX_GAP_S = 0.5
-"""Seconds without a frame after which speeds and feet begin again. By definition those after
-which a live take begins again."""
 
 
 class RunningLine:
@@ -45,16 +42,13 @@ class RunningLine:
         self._points: deque[Array] = deque(maxlen=int(counts[chosen]))
 
     def update(self, points: Array, elapsed_s: float) -> tuple[Array, Array]:
-        """Return the mean positions and the velocities; 0 in the first frame and after a gap.
+        """Return the mean positions and the velocities; 0 in the first frame.
 
         Parameters
         ----------
         points : shape (..., 3)
         elapsed_s : float, seconds since the last frame
         """
-        if elapsed_s > MAX_GAP_S:
-            self._times.clear()
-            self._points.clear()
         self._times.append((self._times[-1] if self._times else 0.0) + elapsed_s)
         self._points.append(points)
         stacked = np.stack(self._points)
@@ -64,6 +58,11 @@ class RunningLine:
             return mean, np.zeros_like(points)
         return mean, np.tensordot(times, stacked - mean, 1) / (times @ times)
 
+    def restart(self) -> None:
+        """Forget the frames so far."""
+        self._times.clear()
+        self._points.clear()
+
 
 class LiveContacts:
     """The probability of foot contact by the model of `contact_probabilities`, frame by frame.
@@ -71,7 +70,9 @@ class LiveContacts:
     What needs later frames there looks back here: speeds are those of a line through the last
     frames, the ground is the highest level of the last two seconds above which the lower foot
     stayed for one, and the hidden Markov model is filtered forward only. So contacts begin and
-    end up to some frames late.
+    end up to some frames late. The ground is at most `MAX_CLIMB_M` above the lowest ground of
+    the last two seconds: three seconds after the last step onto a higher floor, that is the
+    ground, and neither a step down nor a foot that is seen too low counts longer.
 
     Parameters
     ----------
@@ -88,8 +89,8 @@ class LiveContacts:
         window = round(GROUND_WINDOW_S * frame_rate)
         self._lower: deque[Array] = deque(maxlen=2 * window + 1)
         self._levels: deque[Array] = deque(maxlen=4 * window + 1)
-        self._lowest_level = np.full(2, np.inf)
-        self._filter = TwoStateFilter(CONTACT_MODEL.landing_rate, CONTACT_MODEL.lift_rate)
+        self._grounds: deque[Array] = deque(maxlen=4 * window + 1)
+        self._filter = _contact_filter()
 
     def update(self, points: Array, elapsed_s: float) -> Array:
         """Return the probability that the left and the right foot are in contact, shape (2,).
@@ -114,11 +115,21 @@ class LiveContacts:
         )
         return self._filter.update(feet.evidence(CONTACT_MODEL)[0], elapsed_s)
 
+    def restart(self) -> None:
+        """Forget the frames so far, as after a gap or with another actor."""
+        self._line.restart()
+        for past in (self._lower, self._levels, self._grounds):
+            past.clear()
+        self._filter = _contact_filter()
+
     def _ground(self, lower: Array) -> Array:
         """Return the level of the ground for ankles and for toes, shape (2,)."""
         self._lower.append(lower)
-        level = np.min(self._lower, axis=0)
-        self._levels.append(level)
-        self._lowest_level = np.minimum(self._lowest_level, level)
-        highest = np.max(self._levels, axis=0)
-        return np.asarray(np.minimum(highest, self._lowest_level + MAX_CLIMB_M))
+        self._levels.append(np.min(self._lower, axis=0))
+        self._grounds.append(np.max(self._levels, axis=0))
+        lowest = np.min(self._grounds, axis=0)
+        return np.asarray(np.minimum(self._grounds[-1], lowest + MAX_CLIMB_M))
+
+
+def _contact_filter() -> TwoStateFilter:
+    return TwoStateFilter(CONTACT_MODEL.landing_rate, CONTACT_MODEL.lift_rate)

@@ -16,9 +16,12 @@ from ..motion.humanoid import (
 )
 from ..motion_fitting.goals import BonePoint
 from .legs import SIDES, LegJoints, find_legs
-from .live_contacts import MAX_GAP_S, LiveContacts, RunningLine
+from .live_contacts import LiveContacts, RunningLine
 from .sole import SPEED_FALLOFF, instant_loads, measure_standing_heights, sole_points
 
+MAX_GAP_S = 0.5
+"""Seconds without a frame after which contacts and feet begin again. By definition those after
+which a live take begins again."""
 RELEASE_RATE = 16.0
 """Per second: rate of the critically damped return of a foot to its captured path. By
 definition: 5 % are left after the 0.3 s of Blend (`PlantSettings`)."""
@@ -92,6 +95,8 @@ class LivePlanting:
             return PlantedPose(pose, np.zeros(len(SIDES), dtype=np.bool_))
         poses = forward_kinematics(pose)
         points = poses.positions[0, self._contact_points]
+        if elapsed_s > MAX_GAP_S:
+            self.restart()
         contacts = self._contacts.update(points, elapsed_s) > 0.5
         for foot, is_in_contact in zip(self._feet, contacts, strict=True):
             shift = foot.update(poses, bool(is_in_contact), elapsed_s)
@@ -99,6 +104,13 @@ class LivePlanting:
                 target = poses.positions[:, foot.leg.ankle] + shift
                 pose = reach(pose, foot.leg.chain, target, world=poses)
         return PlantedPose(pose, np.array([foot.is_held for foot in self._feet]))
+
+    def restart(self) -> None:
+        """Begin again where the feet are in the next pose, as with another actor."""
+        if self._feet:
+            self._contacts.restart()
+        for foot in self._feet:
+            foot.restart()
 
 
 class _LiveFoot:
@@ -115,16 +127,14 @@ class _LiveFoot:
         self._line = RunningLine(motion.frame_rate, noise, SPEED_FALLOFF * self._size)
         for positions in path:
             self._load = self._loads(positions, motion.dt)
-        self._last = path[-1]
+        self._last: Array | None = path[-1]
         self._shift, self._speed = np.zeros(3), np.zeros(3)
         self._is_slipping = self.is_held = False
 
     def update(self, poses: WorldPoses, is_in_contact: bool, elapsed_s: float) -> Array:
         """Return the shift of the foot in meters, shape (3,)."""
         positions = np.concatenate([point.position(poses) for point in self._points])
-        if elapsed_s > MAX_GAP_S:
-            self._last, self._shift, self._speed = positions, np.zeros(3), np.zeros(3)
-        last, load_before = self._last, self._load
+        last, load_before = positions if self._last is None else self._last, self._load
         self._last, self._load = positions, self._loads(positions, elapsed_s)
         step = 0.5 * (self._load + load_before) @ (positions - last)
         held = self._shift - step
@@ -142,6 +152,11 @@ class _LiveFoot:
         else:
             self._ease_out(elapsed_s)
         return self._shift
+
+    def restart(self) -> None:
+        """Forget the frames so far."""
+        self._line.restart()
+        self._last, self._shift, self._speed = None, np.zeros(3), np.zeros(3)
 
     def _ease_out(self, elapsed_s: float) -> None:
         """Let the shift return to zero, as the exact solution of the spring for a time."""

@@ -36,8 +36,11 @@ class LiveMotion(NamedTuple):
         One frame, without gaps.
     joints : LivePose, optional
         None for streams of bones, which are not reconstructed.
+    body : int
+        The person in the stream.
     """
 
     frame: int
     motion: Motion
     joints: LivePose | None
+    body: int

@@ -132,7 +132,7 @@ class _StartedTake:
         if slot is None:
             return None
         observed = ObservedFrame(frame.positions, frame.states, frame.confidence)
-        return LiveMotion(slot, *self._reconstruct(observed))
+        return LiveMotion(slot, *self._reconstruct(observed), frame.body)
 
     def _reconstruct(self, observed: ObservedFrame) -> tuple[Motion, LivePose]:
         found, actor = self._reconstructor.update(observed), self._actor

@@ -93,7 +93,7 @@ class PoseTake:
             np.array(frame.root_position[None]),
             self.calibration.frame_rate,
         )
-        return LiveMotion(slot, motion, None)
+        return LiveMotion(slot, motion, None, frame.body)
 
 
 def _continues(last: PoseFrame, frame: PoseFrame) -> bool:

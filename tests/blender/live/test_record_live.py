@@ -150,7 +150,7 @@ class TestBones:
         limit.owner_space, limit.use_limit_x = "LOCAL", True
         limit.min_x, limit.max_x = np.radians([-10.0, 10.0])
 
-        blank.ops.mocap_assist.record_live(duration=1.5, calibration_s=1.0, hold_feet=False)
+        blank.ops.mocap_assist.record_live(duration=1.5, calibration_s=1.0)
 
         bends = []
         first, last = map(round, rig.animation_data.action.frame_range)

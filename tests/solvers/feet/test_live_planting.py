@@ -88,7 +88,7 @@ def test_a_foot_returns_to_its_path_without_a_jump(sliding, planted):
 
 def test_contacts_equal_those_of_complete_arrays(sliding):
     """An independent evaluation: lines by polyfit, and a forward filter over arrays."""
-    points = feet_of(sliding)[:120]
+    points = stepping(feet_of(sliding), 40, 80, 0.6)
     noise, size = 0.01, 1.1
     live = LiveContacts(RATE, size, noise)
     found = [live.update(each, 1.0 / RATE) for each in points]
@@ -98,21 +98,53 @@ def test_contacts_equal_those_of_complete_arrays(sliding):
     assert_allclose(found, expected, atol=1e-9)
 
 
+def stepping(points, first, last, depth):
+    """Return the points, lower by a depth from one frame to another."""
+    lowered = points.copy()
+    lowered[first:last, ..., 2] -= depth
+    return lowered
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "depth", "settled"), [(60, 61, 1.2, 75), (60, 120, 0.6, 212)]
+)
+def test_contacts_return_after_a_low_frame_and_a_step_down(
+    sliding, first, last, depth, settled
+):
+    """A frame hardly counts; from a low floor the ground has risen after three seconds."""
+    points = feet_of(sliding)
+    lowered = stepping(points, first, last, depth)
+    live, expected = LiveContacts(RATE), LiveContacts(RATE)
+    found = [live.update(each, 1.0 / RATE) > 0.5 for each in lowered]
+    plain = [expected.update(each, 1.0 / RATE) > 0.5 for each in points]
+    assert np.any(plain[settled:], axis=0).all()
+    assert_array_equal(found[settled:], plain[settled:])
+
+
+def test_contacts_after_a_restart_are_those_of_a_new_stream(sliding):
+    points = feet_of(sliding)
+    live, new = LiveContacts(RATE, noise=0.01), LiveContacts(RATE, noise=0.01)
+    for each in points[:60]:
+        live.update(each - (0.0, 0.0, 1.0), 1.0 / RATE)
+    live.restart()
+    found = [live.update(each, 1.0 / RATE) for each in points[60:90]]
+    assert_array_equal(found, [new.update(each, 1.0 / RATE) for each in points[60:90]])
+
+
 def line_noise(n, noise):
     return noise * RATE * np.sqrt(12.0 / (n * (n**2 - 1)))
 
 
 def probabilities(points, line, speed_noise):
     speeds, heights = np.zeros(points.shape[:-1]), np.zeros(points.shape[:-1])
-    lower = []
+    lower, levels, grounds = [], [], []
     for frame in range(len(points)):
         part = points[max(frame - line + 1, 0) : frame + 1]
         mean = part.mean(axis=0)
         lower.append(mean[..., 2].min(axis=0))
-        levels = [
-            np.min(lower[max(each - 30, 0) : each + 1], axis=0) for each in range(frame + 1)
-        ]
-        top = np.minimum(np.max(levels[-61:], axis=0), np.min(levels, axis=0) + 0.3)
+        levels.append(np.min(lower[max(frame - 30, 0) :], axis=0))
+        grounds.append(np.max(levels[max(frame - 60, 0) :], axis=0))
+        top = np.minimum(grounds[-1], np.min(grounds[max(frame - 60, 0) :], axis=0) + 0.3)
         heights[frame] = mean[..., 2] - top
         if len(part) > 1:
             slopes = np.polyfit(np.arange(len(part)) / RATE, part.reshape(len(part), -1), 1)[0]
@@ -164,12 +196,21 @@ def test_a_foot_that_is_held_too_far_away_slides_on(sliding):
     assert 0.1 < distance.max() < 0.2
 
 
-def test_after_a_gap_nothing_is_held(sliding):
+@pytest.mark.parametrize("is_other_actor", [False, True])
+def test_after_a_gap_and_with_another_actor_feet_begin_again(sliding, is_other_actor):
+    """The first pose stays as it is, and the floor may be another one."""
     roles = find_humanoid_map(sliding.skeleton)
     live = LivePlanting(sliding.slice(0, N_CALIBRATION), roles)
     for frame in range(N_CALIBRATION, 90):
         pose = sliding.slice(frame, frame + 1)
         shifted = live.update(pose, sliding.dt).motion
     assert np.abs(feet_of(shifted) - feet_of(pose)).max() > 0.005
-    pose = sliding.slice(150, 151)
-    assert_array_equal(live.update(pose, 2.0).motion.rotations, pose.rotations)
+    later = sliding.slice(150, 180)
+    later = later.with_poses(later.rotations, later.root_positions + (0.0, 0.0, 1.0))
+    pose, elapsed_s = later.slice(0, 1), 2.0
+    if is_other_actor:
+        live.restart()
+        elapsed_s = sliding.dt
+    assert_array_equal(live.update(pose, elapsed_s).motion.rotations, pose.rotations)
+    found = [live.update(later.slice(n, n + 1), sliding.dt).contacts for n in range(1, 30)]
+    assert np.any(found, axis=0).all()

@@ -98,3 +98,4 @@ def test_another_actor_begins_with_fresh_filters(started, frames):
     names = list(started.names)
     hips = poses[0].joints.positions[names.index("HipCenter")]
     assert np.linalg.norm(hips - far[0].positions[names.index("HipCenter")]) < 0.1
+    assert poses[0].body == 7

@@ -43,7 +43,7 @@ def test_poses_are_those_of_the_stream(started, frames, walk):
     poses = [pose for frame in frames[31:] for pose in started.add([frame])]
 
     assert [pose.frame for pose in poses] == list(range(1, 30))
-    assert poses[0].joints is None and poses[0].motion.frame_rate == 30.0
+    assert poses[0].joints is None and poses[0].body == 0 and poses[0].motion.frame_rate == 30.0
     assert_allclose([pose.motion.rotations[0] for pose in poses], walk.rotations[31:])
     assert_allclose([pose.motion.root_positions[0] for pose in poses], walk.root_positions[31:])
 
