@@ -160,6 +160,32 @@ class TestBones:
         assert np.radians(10.0) < max(bends) < np.radians(15.1)
 
 
+@pytest.mark.parametrize("rig", ["Mixamo"], indirect=True)
+def test_feet_begin_again_with_another_actor(rig, blank, load, walk):
+    """The first pose of another body is as captured, as nothing of it is held yet."""
+    solve, target_read = load("mocap_assist.live.solve_live_rig"), load(
+        "mocap_assist.rigs.target_read"
+    )
+    workflows = load("solvers.workflows.live.live_motion")
+    limbs = load("mocap_assist.rigs.control_plan").Limbs
+    roles = target_read.find_roles(rig)
+    target, _ = target_read.read_target(blank.context.scene, rig, roles, limbs.FK, False)
+
+    def recorded(last_body, **choices):
+        live = solve.LiveRig(
+            target, solve.LiveRigChoices(**choices), walk.slice(0, 30), (), 1.0
+        )
+        for frame in range(30, 41):
+            body = last_body if frame == 40 else 3
+            motion = walk.slice(frame, frame + 1)
+            keys = live.keys(workflows.LiveMotion(frame - 29, motion, None, body), 0)
+        return keys.rotations
+
+    captured = recorded(3, hold_feet=False)
+    assert np.abs(recorded(3) - captured).max() > 1e-3
+    np.testing.assert_array_equal(recorded(4), captured)
+
+
 def knee_angles(legs):
     """Degrees between thigh and shin, for hip, knee and ankle in each frame."""
     thigh, shin = np.diff(legs, axis=1).swapaxes(0, 1)
