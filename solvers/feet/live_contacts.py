@@ -71,8 +71,8 @@ class LiveContacts:
     frames, the ground is the highest level of the last two seconds above which the lower foot
     stayed for one, and the hidden Markov model is filtered forward only. So contacts begin and
     end up to some frames late. The ground is at most `MAX_CLIMB_M` above the lowest ground of
-    the last two seconds: three seconds after the last step onto a higher floor, that is the
-    ground, and neither a step down nor a foot that is seen too low counts longer.
+    the last two seconds: a floor that is higher counts three seconds after the step onto it,
+    and a single low frame does not count.
 
     Parameters
     ----------

@@ -163,8 +163,9 @@ class TestBones:
 @pytest.mark.parametrize("rig", ["Mixamo"], indirect=True)
 def test_feet_begin_again_with_another_actor(rig, blank, load, walk):
     """The first pose of another body is as captured, as nothing of it is held yet."""
-    solve, target_read = load("mocap_assist.live.solve_live_rig"), load(
-        "mocap_assist.rigs.target_read"
+    solve, target_read = (
+        load("mocap_assist.live.solve_live_rig"),
+        load("mocap_assist.rigs.target_read"),
     )
     workflows = load("solvers.workflows.live.live_motion")
     limbs = load("mocap_assist.rigs.control_plan").Limbs

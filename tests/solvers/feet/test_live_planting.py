@@ -206,7 +206,7 @@ def test_after_a_gap_and_with_another_actor_feet_begin_again(sliding, is_other_a
         shifted = live.update(pose, sliding.dt).motion
     assert np.abs(feet_of(shifted) - feet_of(pose)).max() > 0.005
     later = sliding.slice(150, 180)
-    later = later.with_poses(later.rotations, later.root_positions + (0.0, 0.0, 1.0))
+    later = later.with_poses(later.rotations, later.root_positions + np.array([0.0, 0.0, 1.0]))
     pose, elapsed_s = later.slice(0, 1), 2.0
     if is_other_actor:
         live.restart()
