@@ -17,7 +17,7 @@ def sender_text(state: ListenerState) -> str:
         return ""
     protocol, sender, rate = state.protocol.label, state.sender, round(state.rate)
     text = f"{protocol} from {sender}, {rate} Hz, {state.counts.dropped} dropped."
-    if state.n_people < 2:
+    if state.n_people < 2 or not state.is_present:
         return text
     return f"{text} {state.n_people} people; person {state.person} is followed."
 
@@ -26,7 +26,7 @@ def issue_text(state: ListenerState) -> str:
     """Return the most important issue of a stream; empty without one."""
     if state.is_silent:
         return "The stream has stopped."
-    if state.person > state.n_people > 0:
+    if state.person and state.n_people and not state.is_present:
         return f"Person {state.person} is not in the stream."
     if state.other:
         return f"{state.other} sends too, and is ignored."

@@ -36,6 +36,8 @@ class ListenerState(NamedTuple):
     """Number of people in the last second of the stream."""
     person: int = 0
     """Number of the one who is followed, from 1 in the order in which they appear."""
+    is_present: bool = False
+    """Whether that one was in the last second of the stream."""
 
 
 class StreamListener:
@@ -94,6 +96,7 @@ class StreamListener:
             self._has_frames and self._now() - self._useful_at > SILENCE_S,
             self._reader.n_people,
             self._reader.followed,
+            self._reader.is_present,
         )
 
     def poll(self) -> list[StreamFrame]:

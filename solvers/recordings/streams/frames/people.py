@@ -70,6 +70,10 @@ class StreamPeople:
         """Number of people in the last second of the stream."""
         return len(self._by_identity)
 
+    def is_present(self, number: int) -> bool:
+        """Return whether a number is that of someone in the last second of the stream."""
+        return any(person.number == number for person in self._by_identity.values())
+
     def add(self, frame: LiveFrame | PoseFrame) -> Person | None:
         """Return who a frame shows; None beyond the maximum number of people."""
         self._forget_absent(frame.time)

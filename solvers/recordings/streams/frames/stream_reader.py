@@ -123,6 +123,11 @@ class StreamReader:
         return self._chosen or (self._followed.number if self._followed else 0)
 
     @property
+    def is_present(self) -> bool:
+        """Whether the person who is followed was in the last second of the stream."""
+        return self._people.is_present(self.followed)
+
+    @property
     def rate(self) -> float:
         """Mean rate of the last frames, hertz; 0 before there are two."""
         return 1.0 / float(np.mean(self._steps)) if self._steps else 0.0
@@ -164,7 +169,8 @@ class StreamReader:
         if self._chosen and (person is None or person.number != self._chosen):
             self.counts.others += 1
             return False
-        if person is not self._followed and not starts_stream:
+        is_other = self._followed is not None and person is not self._followed
+        if is_other and not starts_stream:
             self.counts.others += 1
             return False
         if not (starts_stream or elapsed > 0.0 or self._restarts(frame.time)):

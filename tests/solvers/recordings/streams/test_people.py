@@ -89,6 +89,25 @@ def test_without_the_chosen_person_nothing_comes():
     assert came == [] and (reader.n_people, reader.followed) == (2, 3)
 
 
+def test_the_others_keep_their_numbers_when_the_chosen_person_leaves():
+    frames = [each for each in walk(90) if each.body == 9 or each.time < 1.0]
+    seen = [followed([each for each in frames if each.time < end], 1)[0] for end in (1.0, 3.0)]
+    assert [reader.is_present for reader in seen] == [True, False]
+
+    reader, came = followed(frames, 2)
+    assert (reader.n_people, reader.is_present, len(came)) == (1, True, 90)
+
+
+def test_the_actor_is_followed_at_once_after_empty_frames():
+    empty = np.full((2, 3), np.nan)
+    frames = [body(7, frame / RATE, 0.0) for frame in range(60)]
+    frames[:20] = [replace(each, body=0, positions=empty) for each in frames[:20]]
+
+    reader, came = followed(frames)
+
+    assert (len(came), reader.counts.others, reader.followed) == (60, 0, 1)
+
+
 def test_memory_of_a_flood_of_identities_is_bounded():
     people = StreamPeople()
     for identity in range(200):
