@@ -12,7 +12,7 @@ import bpy
 from ...solvers.gestures import Gesture, GestureEvent
 from ...solvers.motion import JointRecording
 from ..drawing.view_control import rotate_views, zoom_views
-from ..search.performing import choose, page, search_with, show_all, show_library
+from ..search.performing import choose, news, page, search_with, show_all, show_library
 
 STARTED = "Perform what you search for, then clap."
 
@@ -31,10 +31,17 @@ class Library:
     show_all: Callable[[bpy.types.Context], str]
     choose: Callable[[bpy.types.Context], str]
     """Search with the clip that is shown."""
+    news: Callable[[], str]
+    """Message about what has ended in the background since the last call."""
 
 
-LIBRARY = Library(show_library, page, search_with, show_all, choose)
+LIBRARY = Library(show_library, page, search_with, show_all, choose, news)
 """The one that gestures reach."""
+
+
+def library_news() -> str:
+    """Return the message about what the library has done in the background, if any."""
+    return LIBRARY.news()
 
 
 def last_performance() -> JointRecording | None:

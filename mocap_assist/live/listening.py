@@ -18,7 +18,7 @@ from ..drawing.live_figure import LiveFigure
 from ..drawing.overlay_drawing import Color
 from ..drawing.view_drawing import redraw
 from ..languages import translated
-from .commands import obey_all, search_for
+from .commands import library_news, obey_all, search_for
 from .stream_state import issue_text
 
 logger = logging.getLogger(__name__)
@@ -57,6 +57,7 @@ class Listening:
         self.listener = StreamListener(port, protocol, allowed_networks(allowed), person=person)
         self.session = LiveSession()
         self.message = ""
+        library_news()  # of an earlier session
         self._shown_texts: list[str] = []
         self.figure = LiveFigure(color, width)
         manager = context.window_manager
@@ -81,6 +82,7 @@ class Listening:
     def poll(self, context: bpy.types.Context) -> None:
         """Receive new frames, execute their commands, and show the result."""
         frames = self.listener.poll()
+        self.message = library_news() or self.message
         if frames:
             self._perform(context, self.session.add(frames))
         if frames or self._texts() != self._shown_texts:

@@ -18,9 +18,9 @@ CLEAN, RECONSTRUCT = "clean", "reconstruct"
 def learn_from_best(context: bpy.types.Context, group: str, n_best: int) -> str:
     """Replace the list of examples by the best matches.
 
-    Returns a sentence about it; raises InvalidMotionError where nothing was found.
+    Returns a sentence about it; raises InvalidMotionError where nothing was searched for or found.
     """
-    search, _ = searches.chosen(context)
+    search = searches.ranked(context)
     best = search.finding.found[:n_best]
     usable = dict.fromkeys(entry for found in best if (entry := _example(context, found)))
     settings = getattr(context.scene.mocap_assist, group)

@@ -131,8 +131,10 @@ def _draw_matches(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
     if search is None:
         draw_sentence(column, context, "Outdated. Press Find Similar again.", icon="INFO")
         return
-    title = f'Similar to "{listed.query}"' if search.is_ranked else "Clips of the library"
-    draw_sentence(column, context, title)
+    if search.is_ranked:
+        draw_sentence(column, context, f'Similar to "{listed.query}"')
+    else:
+        draw_sentence(column, context, "Clips of the library")
     column.operator(BROWSE, icon="PLAY")
     n_good = draw_match_grid(column, context, search)
     header, body = column.panel("mocap_assist_all_matches", default_closed=True)
@@ -172,6 +174,12 @@ def _draw_chosen(
     row.operator(LOAD, text="Append", icon="ACTION").result_as = "ACTION"
     row.operator(LOAD, text="Add to NLA", icon="NLA").result_as = "NLA_TRACK"
     block.operator(LINK, text="Link", icon="LINKED")
+    if search.is_ranked:
+        _draw_uses(column, context)
+    column.operator(MARK, icon="ASSET_MANAGER")
+
+
+def _draw_uses(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
     column.label(text="Use Best Matches in:")
     row = column.row(align=True)
     row.operator(LEARN, text="Clean", icon="BRUSH_DATA").group = "clean"
@@ -180,7 +188,6 @@ def _draw_chosen(
     row = column.row(align=True)
     row.operator(USE, icon="MOD_ARRAY")
     row.prop(context.scene.mocap_assist.use, "n_best", text="")
-    column.operator(MARK, icon="ASSET_MANAGER")
 
 
 register, unregister = bpy.utils.register_classes_factory((MOCAP_UL_matches,))

@@ -17,6 +17,7 @@ from ...solvers.motion import JointRecording, Tracks
 from ...solvers.motion.humanoid import POSTURE_JOINTS
 from ..drawing.view_drawing import redraw
 from ..jobs.job import Job, run
+from ..library.solve_prior import Own
 from ..library.sources import library_path
 from ..runtime.solver_operator import in_background
 from ..scene.units import unit_of
@@ -35,6 +36,9 @@ POLL_INTERVAL_S = 0.2  # seconds
 PERFORMED = "your performance"
 THE_LIBRARY = "the library"
 NO_LIBRARY = "There is no library yet. Add folders, then press Build Library."
+
+_jobs: list[Job[Finding]] = []  # the newest one, until it has ended
+_news: list[str] = []
 
 
 def show_library(context: bpy.types.Context) -> str:
@@ -87,21 +91,37 @@ def choose(context: bpy.types.Context) -> str:
     except InvalidMotionError as error:
         return str(error)
     postures = found.postures.astype(np.float64)
-    return search_with(context, Tracks(POSTURE_JOINTS, postures, found.rate), found.entry.name)
+    origin, query = found.entry.origin, Tracks(POSTURE_JOINTS, postures, found.rate)
+    own = ((origin.path, origin.item),) if origin is not None else ()
+    return search_with(context, query, found.entry.name, own)
 
 
 def search_with(
-    context: bpy.types.Context, query: JointRecording | Tracks, name: str = PERFORMED
+    context: bpy.types.Context,
+    query: JointRecording | Tracks,
+    name: str = PERFORMED,
+    own: Own = (),
 ) -> str:
-    """Search with a recording in the background, and fill the list at the end."""
+    """Search with a recording in the background, and fill the list at the end.
+
+    Clips from the files and actions of the query itself, `own`, are not listed.
+    """
     library = _library()
     if library is None:
         return NO_LIBRARY
     settings = bpy.context.scene.mocap_assist.find.settings().finding
-    solve = partial(find_clips, FindProblem(query, str(library), settings))
+    solve = partial(find_clips, FindProblem(query, str(library), settings, own))
     n_frames = len(query.positions) if isinstance(query, Tracks) else query.n_frames
     listing = _Listing.of(name, query.frame_rate)
     return _list_later(solve, listing, f"Searching with {n_frames} frames...")
+
+
+def news() -> str:
+    """Return the sentence about a list that was filled since the last call, or why it failed.
+
+    Empty without one.
+    """
+    return _news.pop() if _news else ""
 
 
 def chosen_sentence() -> str:
@@ -131,10 +151,22 @@ def _next_first(finding: Finding, step: int) -> int:
 
 
 def _list_later(solve: Callable[..., Finding], listing: "_Listing", waiting: str) -> str:
-    """List what a solve finds, once it has ended; return a sentence for the meantime."""
+    """List what a solve finds, once it has ended; return a sentence for the meantime.
+
+    A solve that has not ended yet is cancelled.
+    """
     if in_background():
         return listing.fill(run(solve))
-    job: Job[Finding] = Job(solve)
+    if _jobs:
+        older = _jobs.pop()
+        older.cancel()
+        older.tidy_up()
+    _news.clear()
+    try:
+        job: Job[Finding] = Job(solve)
+    except MocapAssistError as error:
+        return str(error)
+    _jobs.append(job)
     timers.register(partial(_poll_search, job, listing), first_interval=POLL_INTERVAL_S)
     return waiting
 
@@ -158,17 +190,22 @@ class _Listing(NamedTuple):
         """List the clips; say which is chosen."""
         fill_list(bpy.context, searches.keep(self.query, self.grid, self.meters, finding))
         if self.is_last_chosen:
-            bpy.context.window_manager.mocap_assist_matches.active = len(finding.found) - 1
+            last = max(len(finding.found) - 1, 0)
+            bpy.context.window_manager.mocap_assist_matches.active = last
         return chosen_sentence()
 
 
 def _poll_search(job: Job[Finding], listing: _Listing) -> float | None:
     """Fill the list once the job has ended; otherwise return the seconds to the next call."""
+    if job not in _jobs:  # it was cancelled
+        return None
     if not job.done():
         return POLL_INTERVAL_S
+    _jobs.remove(job)
     try:
-        listing.fill(job.result())
+        _news[:] = [listing.fill(job.result())]
     except MocapAssistError as error:
+        _news[:] = [str(error)]
         bpy.context.window_manager.mocap_assist_indexing.report = str(error)
     redraw(bpy.context)
     return None

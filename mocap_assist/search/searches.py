@@ -43,6 +43,9 @@ def keep(query: str, grid: tuple[float, float], meters: float, finding: Finding)
     _last[0] += 1
     search = Search(_last[0], query, *grid, meters, finding)
     _cache[search.number] = search
+    browsed = [number for number, each in _cache.items() if not each.is_ranked]
+    for number in browsed[:-1]:  # pages of complete clips are large
+        del _cache[number]
     while len(_cache) > MAX_CACHED:
         del _cache[next(iter(_cache))]
     return search
@@ -63,6 +66,17 @@ def chosen(context: bpy.types.Context) -> tuple[Search, Found]:
     if search is None or not 0 <= index < len(search.finding.found):
         raise InvalidMotionError("No clip is chosen. Press Find Similar, and click on one.")
     return search, search.finding.found[index]
+
+
+def ranked(context: bpy.types.Context) -> Search:
+    """Return the search whose matches are listed, the best first.
+
+    Raises InvalidMotionError where none is chosen, or where the clips were not searched for.
+    """
+    search, _ = chosen(context)
+    if not search.is_ranked:
+        raise InvalidMotionError("These clips were not searched for. Press Find Similar first.")
+    return search
 
 
 def why_none(context: bpy.types.Context) -> str:

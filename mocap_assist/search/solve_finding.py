@@ -127,6 +127,8 @@ def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Findi
 def list_clips(library: str, first: int, *, progress: Progress = unwatched) -> Finding:
     """Show some clips of a library, unranked, from a place in it on.
 
+    Beyond its last clip, as it may have shrunk, those from the first one on are shown.
+
     Raises
     ------
     InvalidFileError
@@ -134,6 +136,7 @@ def list_clips(library: str, first: int, *, progress: Progress = unwatched) -> F
     """
     with load_clip_library(Path(library)) as clips:
         entries = clips.numbered()
+        first = first if first < len(entries) else 0
         numbers = list(entries)[first : first + MAX_MATCHES]
         found = []
         for index, number in enumerate(numbers):

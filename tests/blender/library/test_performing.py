@@ -50,8 +50,12 @@ def test_library_is_browsed_and_a_clip_searched_with(
 
     assert performing.page(blank.context, 1).startswith("2 of 6: ")
     name = listed.rows[1].name
-    assert f"1 of 6: {name} (" in performing.choose(blank.context)
-    assert listed.query == name
+    with pytest.raises(RuntimeError, match="These clips were not searched for"):
+        blank.ops.mocap_assist.learn_from_matches()
+    with pytest.raises(RuntimeError, match="These clips were not searched for"):
+        blank.ops.mocap_assist.use_matches()
+    assert performing.choose(blank.context).startswith("1 of 5: ")
+    assert listed.query == name and name not in [row.name for row in listed.rows]
 
     monkeypatch.setattr(load("mocap_assist.search.solve_finding"), "MAX_MATCHES", 4)
     monkeypatch.setattr(performing, "MAX_MATCHES", 4)
@@ -61,6 +65,65 @@ def test_library_is_browsed_and_a_clip_searched_with(
     back = [performing.page(blank.context, -1)[:6] for _ in range(3)]
     assert back == ["6 of 6", "5 of 6", "4 of 6"]
     assert performing.page(blank.context, 1).startswith("5 of 6: ")
+
+    shrunk = performing.show_all(blank.context, first=48, is_last_chosen=True)
+    assert shrunk.startswith("4 of 6: ")
+    cache = load("mocap_assist.search.searches")._cache.values()
+    assert [each.is_ranked for each in cache].count(False) == 1
+
+
+@pytest.fixture
+def jobs(performing, load, monkeypatch, tmp_path):
+    """Start jobs that end when they are made to; `end(outcome)` ends the newest one."""
+    errors, polls, started = load("solvers.errors"), [], []
+
+    class HeldJob:
+        def __init__(self, solve):
+            self.outcome, self.is_cancelled = None, False
+            started.append(self)
+
+        def done(self):
+            return self.outcome is not None
+
+        def cancel(self):
+            self.is_cancelled = True
+
+        def tidy_up(self):
+            assert self.is_cancelled
+
+        def result(self):
+            if isinstance(self.outcome, str):
+                raise errors.InvalidFileError(self.outcome)
+            return self.outcome
+
+    def end(*outcomes):
+        for job, outcome in zip(started, outcomes, strict=True):
+            job.outcome = outcome
+        polls[:] = [poll for poll in polls if poll() is not None]
+        return len(polls)
+
+    monkeypatch.setattr(performing, "in_background", lambda: False)
+    monkeypatch.setattr(performing, "_library", lambda: tmp_path / "clips.library")
+    monkeypatch.setattr(performing, "Job", HeldJob)
+    monkeypatch.setattr(performing.timers, "register", lambda poll, **_: polls.append(poll))
+    return end
+
+
+def test_the_newest_command_fills_the_list_and_reports_its_end(
+    performing, performance, jobs, blank, load
+):
+    finding = load("mocap_assist.search.solve_finding").Finding((), None, 0)
+    listed = blank.context.window_manager.mocap_assist_matches
+
+    assert performing.show_all(blank.context) == "Reading the library..."
+    assert performing.search_with(blank.context, performance).startswith("Searching with")
+    assert jobs(finding, None) == 1 and performing.news() == ""
+    assert jobs(finding, finding) == 0
+    assert listed.query == "your performance" and performing.news() == "No search yet."
+
+    performing.show_all(blank.context)
+    assert jobs(finding, finding, "The library is damaged.") == 0
+    assert performing.news() == "The library is damaged." and performing.news() == ""
 
 
 def test_show_library_turns_on_the_ghost(performing, blank):

@@ -19,6 +19,7 @@ def library(load, monkeypatch):
         search=lambda context, query: calls.append(query) or "Searched.",
         show_all=lambda context: calls.append("all") or "All clips.",
         choose=lambda context: calls.append("choose") or "Chosen.",
+        news=lambda: "Found." if "choose" in calls else "",
     )
     monkeypatch.setattr(commands, "LIBRARY", library)
     return calls
@@ -109,6 +110,10 @@ def test_gestures_reach_the_library_and_a_performance_starts_a_search(
     assert query is load("mocap_assist.live.commands").last_performance()
     assert window.status[-1].startswith("Searched.")
 
+    library.append("choose")
+    act(button, "rest")
+    assert window.status[-1].startswith("Found.")
+
 
 def test_missing_library_is_reported_and_the_performance_is_kept(listen, act, load, window):
     button = listen()
@@ -151,6 +156,16 @@ def test_invalid_datagrams_are_counted_only(listen, load, window, port, event):
 
     statistics = load("mocap_assist.live.listening").current().stream_state
     assert (statistics.counts.frames, statistics.counts.unreadable) == (0, 3)
+
+
+def test_a_followed_person_who_left_is_reported(load):
+    texts, streams = load("mocap_assist.live.stream_state"), load("solvers.recordings.streams")
+    protocol, counts = streams.StreamProtocol.JSON, streams.StreamCounts(frames=9)
+    state = streams.ListenerState("tracker", protocol, 30.0, counts, "", 0, False, 2, 1, True)
+    gone = state._replace(is_present=False)
+
+    assert texts.state_text("", state).endswith("2 people; person 1 is followed.")
+    assert texts.state_text("", gone).endswith("0 dropped. Person 1 is not in the stream.")
 
 
 def test_figure_stands_on_the_ground_at_the_origin(listen, act, load):
