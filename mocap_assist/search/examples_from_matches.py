@@ -18,7 +18,7 @@ CLEAN, RECONSTRUCT = "clean", "reconstruct"
 def learn_from_best(context: bpy.types.Context, group: str, n_best: int) -> str:
     """Replace the list of examples by the best matches.
 
-    Returns a sentence about it; raises InvalidMotionError where nothing was searched for or found.
+    Returns a sentence about it; raises InvalidMotionError where no search found anything.
     """
     search = searches.ranked(context)
     best = search.finding.found[:n_best]

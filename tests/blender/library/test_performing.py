@@ -72,29 +72,35 @@ def test_library_is_browsed_and_a_clip_searched_with(
     assert [each.is_ranked for each in cache].count(False) == 1
 
 
+class HeldJob:
+    """A job that ends once it has an outcome."""
+
+    def __init__(self):
+        self.outcome, self.is_cancelled = None, False
+
+    def done(self):
+        return self.outcome is not None
+
+    def cancel(self):
+        self.is_cancelled = True
+
+    def tidy_up(self):
+        assert self.is_cancelled
+
+    def result(self):
+        if isinstance(self.outcome, Exception):
+            raise self.outcome
+        return self.outcome
+
+
 @pytest.fixture
-def jobs(performing, load, monkeypatch, tmp_path):
-    """Start jobs that end when they are made to; `end(outcome)` ends the newest one."""
-    errors, polls, started = load("solvers.errors"), [], []
+def jobs(performing, monkeypatch, tmp_path):
+    """Start jobs that end when they are made to; `end(*outcomes)` returns how many run."""
+    polls, started = [], []
 
-    class HeldJob:
-        def __init__(self, solve):
-            self.outcome, self.is_cancelled = None, False
-            started.append(self)
-
-        def done(self):
-            return self.outcome is not None
-
-        def cancel(self):
-            self.is_cancelled = True
-
-        def tidy_up(self):
-            assert self.is_cancelled
-
-        def result(self):
-            if isinstance(self.outcome, str):
-                raise errors.InvalidFileError(self.outcome)
-            return self.outcome
+    def start(solve):
+        started.append(HeldJob())
+        return started[-1]
 
     def end(*outcomes):
         for job, outcome in zip(started, outcomes, strict=True):
@@ -104,7 +110,7 @@ def jobs(performing, load, monkeypatch, tmp_path):
 
     monkeypatch.setattr(performing, "in_background", lambda: False)
     monkeypatch.setattr(performing, "_library", lambda: tmp_path / "clips.library")
-    monkeypatch.setattr(performing, "Job", HeldJob)
+    monkeypatch.setattr(performing, "Job", start)
     monkeypatch.setattr(performing.timers, "register", lambda poll, **_: polls.append(poll))
     return end
 
@@ -113,6 +119,7 @@ def test_the_newest_command_fills_the_list_and_reports_its_end(
     performing, performance, jobs, blank, load
 ):
     finding = load("mocap_assist.search.solve_finding").Finding((), None, 0)
+    damaged = load("solvers.errors").InvalidFileError("The library is damaged.")
     listed = blank.context.window_manager.mocap_assist_matches
 
     assert performing.show_all(blank.context) == "Reading the library..."
@@ -122,7 +129,7 @@ def test_the_newest_command_fills_the_list_and_reports_its_end(
     assert listed.query == "your performance" and performing.news() == "No search yet."
 
     performing.show_all(blank.context)
-    assert jobs(finding, finding, "The library is damaged.") == 0
+    assert jobs(finding, finding, damaged) == 0
     assert performing.news() == "The library is damaged." and performing.news() == ""
 
 

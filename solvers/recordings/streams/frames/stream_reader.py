@@ -169,7 +169,10 @@ class StreamReader:
         if self._chosen and (person is None or person.number != self._chosen):
             self.counts.others += 1
             return False
-        is_other = self._followed is not None and person is not self._followed
+        if self._followed is None:
+            is_other = person is None and self._people.n_present > 0
+        else:
+            is_other = person is not self._followed
         if is_other and not starts_stream:
             self.counts.others += 1
             return False

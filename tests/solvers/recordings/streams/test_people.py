@@ -98,6 +98,15 @@ def test_the_others_keep_their_numbers_when_the_chosen_person_leaves():
     assert (reader.n_people, reader.is_present, len(came)) == (1, True, 90)
 
 
+def test_the_actor_is_followed_next_to_a_place_that_stays_empty():
+    empty = body(0, 0.0, np.nan)
+    slots = [(replace(empty, time=time), body(7, time, 0.0)) for time in np.arange(60) / RATE]
+
+    reader, came = followed([frame for pair in slots for frame in pair])
+
+    assert [frame.body for frame in came] == [0] + [7] * 59 and reader.followed == 1
+
+
 def test_the_actor_is_followed_at_once_after_empty_frames():
     empty = np.full((2, 3), np.nan)
     frames = [body(7, frame / RATE, 0.0) for frame in range(60)]
