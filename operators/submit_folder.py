@@ -12,6 +12,8 @@ from ..mocap_assist.farm.submitting import read_submission, report_submitted, wh
 class MOCAP_OT_submit_folder(FarmOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.submit_folder"
     bl_label = "Submit Folder"
-    bl_description = "Submit a job to Flamenco in which a farm fixes each recording of a folder"
+    bl_description = (
+        "Submit a job to Flamenco that fixes the takes of a folder, but for FBX, glTF and USD"
+    )
     settings_group = "fix"
     why_not, read_scene, write_scene = why_not_submit, read_submission, report_submitted

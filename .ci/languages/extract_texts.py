@@ -14,6 +14,7 @@ NOT_SHOWN = (
     "solvers/depth_tracking/forest/", "solvers/depth_tracking/forest_training/",
     "solvers/reconstruction/residual_correction/learn_", "solvers/rotations/",
     "solvers/retrieval/index/", "solvers/retrieval/library/values.py",
+    "solvers/retrieval/find_in_libraries.py",
     "solvers/retrieval/library/clip_rows.py",
     *(f"solvers/recordings/streams/{name}.py"
       for name in ("frames/joint_frames", "senders")),
@@ -26,6 +27,8 @@ NOT_SHOWN = (
 """Beginnings of paths without texts of the window: verbs of the command line, what translates,
 scripts that learn, damaged packets of streams, and checks of arrays that only programs and
 damaged libraries fail."""
+SHOWN = ("solvers/command_line/farm/flamenco_",)
+"""Beginnings of paths among those whose texts Submit Folder shows."""
 LABELED = {
     "mocap_assist/blender/fbx_curves.py": {"describe_lost_curves"},
     "mocap_assist/check/checking.py": {"_summary"},
@@ -101,7 +104,7 @@ def source_texts(root: Path) -> set[str]:
     found: set[str] = set()
     for path in _files(root):
         name = path.relative_to(root).as_posix()
-        if not name.startswith(NOT_SHOWN):
+        if name.startswith(SHOWN) or not name.startswith(NOT_SHOWN):
             tree = ast.parse(path.read_text(encoding="utf-8"))
             hidden = {id(node) for node in _not_shown(tree)}
             shown = [node for node in ast.walk(tree) if id(node) not in hidden]

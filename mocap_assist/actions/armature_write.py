@@ -96,8 +96,8 @@ def write_take(
     action = copy_of(original[0], suffix)
     made = SourceReference.of((action, same_slot(action, original[1])))
     indices = [index for index, name in enumerate(take.rig.bones) if name in bones]
-    armature, curves = here.find(), animated_curves(*made.find())
     with removed_on_failure(action):
+        armature, curves = here.find(), animated_curves(*made.find())
         for number, bone in enumerate(indices):
             _BoneWriter.of(armature, curves, take, bone, key_types).write(poses, unchanged)
             if should_yield():

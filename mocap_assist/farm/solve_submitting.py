@@ -9,19 +9,24 @@ from ...solvers.command_line.farm import (
     FlamencoJob,
     FlamencoSettings,
     SubmittedJob,
-    submit_job,
+    check_job,
     texts_of_settings,
 )
 from ...solvers.command_line.files import MOTIONS, find_recordings, unique_targets
 from ...solvers.command_line.fix_verb import add_fix_options, list_takes
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import reason_of, write_atomically
-from ...solvers.progress import Progress, within
+from ...solvers.files import real_path, reason_of, write_atomically
+from ...solvers.progress import Progress
+from ...solvers.recordings import is_scene_file
+from ...solvers.recordings.containers import files_below
 from ...solvers.workflows import FixSettings
+from ..track.pose_previews import Show, no_preview
 
 N_DIGITS = 8
 """Hexadecimal digits of a hash in the name of a list. It guards the list of a job that runs:
 other takes have another name, the same takes the same."""
+SUBMITTING = "Submitting"
+"""Progress while the job is sent: the Manager may have it already."""
 
 
 class Submission(NamedTuple):
@@ -41,10 +46,21 @@ class Submitted(NamedTuple):
 
     job: SubmittedJob
     n_takes: int
+    n_left_out: int
+    """Files that only Blender reads, such as FBX."""
 
 
-def submit_takes(problem: Submission, progress: Progress) -> Submitted:
+def submit_takes(problem: Submission, progress: Progress, show: Show = no_preview) -> Submitted:
     """Write the list of takes into the output folder and submit the job.
+
+    Nothing is written before the Manager has the job type.
+
+    Parameters
+    ----------
+    problem : Submission
+    progress : Progress
+    show : Show
+        Called with `SUBMITTING` before the job is sent. Unlike progress, no call is skipped.
 
     Raises
     ------
@@ -53,36 +69,54 @@ def submit_takes(problem: Submission, progress: Progress) -> Submitted:
     MocapAssistError
         The Flamenco Manager does not accept the job.
     """
+    progress(0.0, "Listing")
     found = find_recordings([problem.takes], problem.output_folder, list_takes)
-    progress(0.3, "Listing")
+    n_left_out = _count_left_out(problem)
     targets = unique_targets([name for _, name in found], [MOTIONS] * len(found))
     lines = [
         json.dumps({"input": str(path), "output": target.as_posix()}) + "\n"
         for (path, _), target in zip(found, targets, strict=True)
     ]
+    text = "".join(lines)
     job = FlamencoJob(
         verb="fix",
         title=problem.takes.name,
-        manifest=_write_list(problem, "".join(lines)),
+        manifest=_path_of_list(problem, text),
         output_folder=problem.output_folder,
         texts=texts_of_settings(add_fix_options, problem.fixing),
         command=problem.command,
         settings=problem.settings,
     )
-    submitted = submit_job(job, problem.address, progress=within(progress, 0.5, 1.0))
-    return Submitted(submitted, len(found))
+    progress(0.3, "Connecting")
+    checked = check_job(job, problem.address)
+    _write_list(job.manifest, text)
+    progress(0.7, SUBMITTING)
+    show(SUBMITTING)
+    return Submitted(checked.submit(), len(found), n_left_out)
 
 
-def _write_list(problem: Submission, text: str) -> Path:
-    """Write the list of takes, unless it is there; return its file."""
+def _count_left_out(problem: Submission) -> int:
+    """Return the number of files that only Blender reads, but for those among the results."""
+    excluded = real_path(problem.output_folder)
+    return sum(
+        is_scene_file(path) and excluded not in real_path(path).parents
+        for path in files_below(problem.takes)
+    )
+
+
+def _path_of_list(problem: Submission, text: str) -> Path:
+    """Return the file for a list of takes."""
     digest = sha256(text.encode()).hexdigest()[:N_DIGITS]
-    path = problem.output_folder / f"{problem.takes.name}.takes-{digest}.txt"
+    return problem.output_folder / f"{problem.takes.name}.takes-{digest}.txt"
+
+
+def _write_list(path: Path, text: str) -> None:
+    """Write a list of takes."""
     try:
-        problem.output_folder.mkdir(exist_ok=True)
+        path.parent.mkdir(exist_ok=True)
     except OSError as error:
         raise InvalidFileError(
-            f"The folder {problem.output_folder} cannot be made: {reason_of(error)}."
+            f"The folder {path.parent} cannot be made: {reason_of(error)}."
         ) from None
     with write_atomically(path) as part:
         part.write_text(text, encoding="utf-8")
-    return path

@@ -5,8 +5,15 @@ from typing import Any, ClassVar
 import bpy
 from bpy.props import BoolProperty
 
+from ...solvers.errors import SolveCancelled
 from ..blender.path_properties import FOLDER, HIDDEN, absolute, path_property
+from ..jobs.job import Job
 from ..runtime.solver_operator import SolverOperator, in_background
+
+MAYBE_SUBMITTED = (
+    "Cancelled while the job was sent. Look at the Manager's list of jobs before you submit it"
+    " again."
+)
 
 
 class FarmOperator(SolverOperator):
@@ -48,6 +55,14 @@ class FarmOperator(SolverOperator):
 
     def remember(self, context: bpy.types.Context) -> None:
         """Remember nothing: there is no subject."""
+
+    def result_from_job(self, job: Job[Any]) -> Any:
+        """Return what the Manager accepted; after Esc, say if it may have the job."""
+        was_sent = job.cancelled and bool(job.all_previews())
+        try:
+            return super().result_from_job(job)
+        except SolveCancelled:
+            raise SolveCancelled(MAYBE_SUBMITTED if was_sent else "Cancelled.") from None
 
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True

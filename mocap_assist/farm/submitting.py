@@ -1,11 +1,11 @@
 """Submit Folder: read the preferences, and report what the Flamenco Manager accepted."""
 
-from functools import partial
 from pathlib import Path
 
 import bpy
 
 from ...solvers.errors import InvalidSettingError
+from ..jobs.protocol import PreviewSolve
 from ..panels.preference_values import preferred
 from .button_settings import FarmBundle
 from .solve_submitting import Submission, Submitted, submit_takes
@@ -20,6 +20,9 @@ RETARGETS = (
     "The farm fixes takes without a scene, and cannot retarget them. Clear Retarget To in Last"
     " Steps."
 )
+NO_NAMES = ("", "..")
+"""Last part of a drive, of an empty path, and of the folder above another one."""
+UNNAMED = "Choose a folder of takes that has a name, or choose an output folder as well."
 
 
 def why_not_submit(context: bpy.types.Context) -> str:
@@ -31,23 +34,27 @@ def why_not_submit(context: bpy.types.Context) -> str:
 
 def read_submission(
     takes: Path, output_folder: Path | None, settings: FarmBundle
-) -> "partial[Submitted]":
-    """Return the submission of a folder.
+) -> PreviewSolve[Submitted]:
+    """Return the submission of a folder. Its paths are absolute: workers have other folders.
 
     The address and the command come from the preferences: a .blend file of another person
     cannot set them.
     """
     if bpy.context.scene.mocap_assist.fix.rig:
         raise InvalidSettingError(RETARGETS)
+    if output_folder is None:
+        if takes.name in NO_NAMES:
+            raise InvalidSettingError(UNNAMED)
+        output_folder = takes.with_name(takes.name + OUTPUT_ENDING)
     problem = Submission(
-        takes=takes,
-        output_folder=output_folder or takes.with_name(takes.name + OUTPUT_ENDING),
+        takes=takes.absolute(),
+        output_folder=output_folder.absolute(),
         address=preferred("flamenco_manager"),
         command=preferred("flamenco_command"),
         settings=settings.job,
         fixing=settings.fixing,
     )
-    return partial(submit_takes, problem)
+    return PreviewSolve(submit_takes, problem)
 
 
 def report_submitted(
@@ -58,4 +65,7 @@ def report_submitted(
     solved_digest: str | None = None,
 ) -> str:
     """Return the message for the status bar."""
-    return f"Submitted {submitted.n_takes} takes of {takes.name} to {submitted.job.page}."
+    message = f"Submitted {submitted.n_takes} takes of {takes.name} to {submitted.job.page}."
+    if submitted.n_left_out:
+        message += f" {submitted.n_left_out} files need Blender and were left out."
+    return message

@@ -34,21 +34,29 @@ def keep_waiting() -> None:
 
 def is_waiting() -> bool:
     """Return whether a process waits."""
-    return bool(_waiting) and _waiting[0].is_waiting()
+    return any(child.is_waiting() for child in tuple(_waiting))
 
 
 def take_waiting() -> ChildProcess | None:
-    """Return the process that waits, for one solve; None if there is none."""
+    """Return the process that waits, for one solve; None if there is none.
+
+    Any thread may call it: what it returns no other call returns or ends.
+    """
     _died_unused[0] = False
-    if not _waiting:
-        return None
-    if _waiting[0].is_waiting():
-        return _waiting.pop()
-    end_waiting()
+    child = _pop()
+    if child is None or child.is_waiting():
+        return child
+    child.abandon()
     return None
 
 
 def end_waiting() -> None:
     """End the process that waits, if any."""
-    while _waiting:
-        _waiting.pop().abandon()
+    while child := _pop():
+        child.abandon()
+
+
+def _pop() -> ChildProcess | None:
+    with suppress(IndexError):
+        return _waiting.pop()
+    return None

@@ -189,7 +189,7 @@ class SolverOperator(SettingsMixin):
 
         try:
             # In a thread, since the request of a long take is a large file.
-            yield from self._in_slices("Starting", in_thread, start)
+            yield from self._in_slices("Starting", in_thread, start, 0.0)
             self._job = job = started[0]
             self._is_solving = True
             while not job.done():

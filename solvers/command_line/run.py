@@ -25,7 +25,7 @@ from .batch import (
     task_entries,
     verb_name,
 )
-from .farm import FlamencoSettings, add_flamenco_options, job_of_batch, submit_job
+from .farm import FlamencoSettings, add_flamenco_options, check_job, job_of_batch
 from .options import (
     SentenceParser,
     add_cluster_option,
@@ -136,8 +136,9 @@ def _add_common_options(parser: argparse.ArgumentParser, makes: OutputKind) -> N
         )  # fmt: skip
         if has_manifest or makes is OutputKind.LIBRARY:
             add_cluster_option(workers)
-            add_flamenco_options(parser)
-            arguments_from(parser, FlamencoSettings)
+    if has_manifest:
+        add_flamenco_options(parser)
+        arguments_from(parser, FlamencoSettings)
     add_threads_option(parser)
     parser.add_argument(
         "--json", action="store_true",
@@ -150,7 +151,7 @@ def _submit(verb: Verb, arguments: argparse.Namespace, words: list[str]) -> int:
     settings = settings_from_arguments(arguments, FlamencoSettings)
     add_common = partial(_add_common_options, makes=verb.makes)
     job = job_of_batch(arguments, settings, words, add_common, verb.add_options)
-    submitted = submit_job(job, arguments.flamenco)
+    submitted = check_job(job, arguments.flamenco).submit()
     text = f"Submitted {job.name} in {settings.flamenco_tasks} tasks: {submitted.page}"
     figures = {"job": submitted.identifier, "page": submitted.page}
     sys.stdout.write(f"{json.dumps(figures) if arguments.json else text}\n")

@@ -126,6 +126,25 @@ def test_process_killed_at_the_last_moment_is_replaced(waiting, job, monkeypatch
     assert job(Expression(OWN_PID)).result() != 0
 
 
+def test_process_that_another_thread_takes_is_not_missed(waiting, job, monkeypatch):
+    """Threads start solves: the first one may take it while the second looks at it."""
+    waiting.keep_waiting()
+    child = waiting._waiting[0]
+    look, taken = child.is_waiting, []
+
+    def is_waiting():
+        if not taken:
+            taken.append(None)
+            taken.append(waiting.take_waiting())
+        return look()
+
+    monkeypatch.setattr(child, "is_waiting", is_waiting)
+    first = waiting.take_waiting()
+
+    assert [first, taken[1]].count(child) == 1
+    child.abandon()
+
+
 def test_other_programs_and_threads_start_their_own(waiting, job):
     waiting.keep_waiting()
     expected = pid_of(waiting)

@@ -7,8 +7,8 @@ from .flamenco_jobs import (
     FlamencoSettings,
     SubmittedJob,
     add_flamenco_options,
+    check_job,
     job_of_batch,
-    submit_job,
 )
 from .job_types import texts_of_settings
 
@@ -18,8 +18,8 @@ __all__ = [
     "FlamencoSettings",
     "SubmittedJob",
     "add_flamenco_options",
+    "check_job",
     "cluster_workers",
     "job_of_batch",
-    "submit_job",
     "texts_of_settings",
 ]

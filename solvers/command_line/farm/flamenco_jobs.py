@@ -6,14 +6,16 @@ import shlex
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...errors import InvalidSettingError, MocapAssistError
-from ...progress import Progress, unwatched
 from ...settings import Settings, setting
 from ...version import version
 from ..sharing import read_manifest
 from .job_types import JOB_TYPE, job_type_of, options_of, script_of, texts_of, words_of
+
+if TYPE_CHECKING:
+    from .flamenco_manager import FlamencoManager
 
 COMMAND = "python3 -m solvers"
 """Command of Mocap Assist on workers that have the checkout on their path."""
@@ -79,7 +81,7 @@ class FlamencoJob(NamedTuple):
         of_verb = {"verb": self.verb} if self.job_type == JOB_TYPE else {}
         return {**of_verb, **shared, **self.texts}
 
-    def request(self, etag: object) -> dict[str, Any]:
+    def request(self, etag: str) -> dict[str, Any]:
         """Return the job as the Manager's interface describes it.
 
         Parameters
@@ -106,22 +108,41 @@ class SubmittedJob(NamedTuple):
     """Address of its page in the Manager's web interface."""
 
 
-def submit_job(
-    job: FlamencoJob, address: str, *, progress: Progress = unwatched
-) -> SubmittedJob:
-    """Submit a job to the Flamenco Manager at an address.
+class CheckedJob(NamedTuple):
+    """A job whose Manager has its job type."""
+
+    job: FlamencoJob
+    manager: "FlamencoManager"
+    etag: str
+    """Hash of the job type."""
+
+    def submit(self) -> SubmittedJob:
+        """Submit the job.
+
+        Raises
+        ------
+        InvalidSettingError
+            The Manager refuses the job.
+        MocapAssistError
+            The Manager cannot take it now, or does not answer.
+        """
+        identifier = self.manager.submit(self.job.request(self.etag))
+        return SubmittedJob(identifier, f"{self.manager.address}/app/jobs/{identifier}")
+
+
+def check_job(job: FlamencoJob, address: str) -> CheckedJob:
+    """Check that the Flamenco Manager at an address can take a job; it is not submitted yet.
 
     Raises
     ------
     InvalidSettingError
-        The address is invalid, or the Manager refuses the job.
+        The address is invalid.
     MocapAssistError
         The Manager cannot be reached, is of another version, or has no such job type.
     """
     from .flamenco_manager import FlamencoManager  # and HTTP, which other verbs need not load
 
     manager = FlamencoManager(address)
-    progress(0.0, "Connecting")
     manager.check_version()
     found = manager.job_type(job.job_type)
     script = script_of(job.job_type)
@@ -130,15 +151,12 @@ def submit_job(
             f"The Flamenco Manager at {manager.address} has no job type {job.job_type}. Copy"
             f" {script} into the folder scripts next to the Manager."
         )
-    keys = {each.get("key") for each in found["settings"] if isinstance(each, dict)}
-    if keys != job.settings_of_type().keys():
+    if found.keys != job.settings_of_type().keys():
         raise MocapAssistError(
             f"The job type {job.job_type} of the Flamenco Manager at {manager.address} is of"
             f" another version of Mocap Assist. Copy {script} into its folder scripts."
         )
-    progress(0.5, "Submitting")
-    identifier = manager.submit(job.request(found.get("etag", "")))
-    return SubmittedJob(identifier, f"{manager.address}/app/jobs/{identifier}")
+    return CheckedJob(job, manager, found.etag)
 
 
 def add_flamenco_options(parser: argparse._ActionsContainer) -> None:

@@ -4,8 +4,9 @@ This is the only module that opens a connection of HTTP: to the address that the
 """
 
 import json
+import re
 from http.client import HTTPException
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.error import HTTPError, URLError
 from urllib.parse import quote, urlsplit
 from urllib.request import HTTPRedirectHandler, ProxyHandler, Request, build_opener
@@ -20,11 +21,22 @@ MAX_ANSWER_BYTES = 1_000_000
 """Bytes of an answer. It guards memory against servers of other kinds: job types have 5,000."""
 MAX_MESSAGE_LETTERS = 300
 """Letters of a Manager's message that are shown. It bounds the sentence in the status bar."""
+IDENTIFIER = re.compile(r"[0-9a-f-]{1,64}")
+"""Identifier of a job: Flamenco documents a UUID. It guards the address that is shown."""
 VERSION = "3"
 """The version of Flamenco whose interface this is."""
 OK, NOT_FOUND, OUTDATED = 200, 404, 412
 REDIRECTS, CLIENT_ERRORS = range(300, 400), range(400, 500)
 """Status codes of HTTP, as the interface uses them."""
+
+
+class KnownJobType(NamedTuple):
+    """A job type as a Manager knows it."""
+
+    keys: frozenset[str]
+    """Names of its settings; empty for one without a name."""
+    etag: str
+    """Hash of the job type, by which the Manager refuses a job for another version of it."""
 
 
 class FlamencoManager:
@@ -59,25 +71,28 @@ class FlamencoManager:
                 f" Flamenco {VERSION}. Name another Manager."
             )
 
-    def job_type(self, name: str) -> dict[str, Any] | None:
+    def job_type(self, name: str) -> KnownJobType | None:
         """Return the job type as the Manager knows it; None if it does not."""
         status, found = self._request("GET", f"jobs/type/{quote(name, safe='')}")
         if status == NOT_FOUND and _text_at(found, "message"):
             return None
         if status != OK:
             raise self._refusal(status, found)
-        if not isinstance(found, dict) or not isinstance(found.get("settings"), list):
+        settings = found.get("settings") if isinstance(found, dict) else None
+        if not isinstance(settings, list):
             raise self._not_flamenco()
-        return found
+        keys = frozenset(_text_at(each, "key") for each in settings)
+        return KnownJobType(keys, _text_at(found, "etag"))
 
     def submit(self, job: dict[str, Any]) -> str:
         """Submit a job, as the interface describes it; return its identifier."""
         status, found = self._request("POST", "jobs", job)
         if status != OK:
             raise self._refusal(status, found)
-        if identifier := _text_at(found, "id"):
-            return identifier
-        raise self._not_flamenco()
+        identifier = _text_at(found, "id")
+        if not IDENTIFIER.fullmatch(identifier):
+            raise self._not_flamenco()
+        return identifier
 
     def _request(self, method: str, path: str, body: Any = None) -> tuple[int, Any]:
         """Return the status and the parsed answer of a request."""

@@ -2,10 +2,11 @@
 
 import json
 import time
+from pathlib import Path
 
 import bpy
 import pytest
-from clusters.flamenco_stub import JOB_ID, JOBS, TYPE, flamenco_stub
+from clusters.flamenco_stub import JOB_ID, JOBS, TYPE, VERSION, flamenco_stub
 from modal_events import event
 
 OFFLINE = "Blender's online access is off. Allow it in Preferences > System to submit jobs"
@@ -35,6 +36,22 @@ def folder(load, tmp_path):
         recordings.write_bvh(walk, tmp_path / "shoot" / name)
     (tmp_path / "shoot" / "a.asf").write_bytes((tmp_path / "shoot" / "a.bvh").read_bytes())
     return tmp_path / "shoot"
+
+
+@pytest.fixture
+def press(make_button, manager, folder, window, load):
+    """Press the button for the folder in the window, and return it: it waits."""
+
+    def pressed():
+        bundle = load("mocap_assist.farm.button_settings").FarmBundle
+        fixing = load("solvers.workflows").FixSettings()
+        settings = bundle(load("solvers.command_line.farm").FlamencoSettings(), fixing)
+        button = make_button("submit_folder", settings)
+        button.directory, button.output_folder, button.is_chosen = str(folder), "", True
+        assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+        return button
+
+    return pressed
 
 
 @pytest.fixture
@@ -70,28 +87,68 @@ def test_folder_is_submitted_as_a_job(blank, manager, folder):
     assert not blank.data.objects
 
 
-def test_window_goes_on_until_the_manager_answers(make_button, manager, folder, window, load):
-    bundle = load("mocap_assist.farm.button_settings").FarmBundle
-    fixing = load("solvers.workflows").FixSettings()
-    settings = bundle(load("solvers.command_line.farm").FlamencoSettings(), fixing)
-    button = make_button("submit_folder", settings)
-    button.directory, button.output_folder, button.is_chosen = str(folder), "", True
-
-    assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+def test_window_goes_on_until_the_manager_answers(press, manager, folder, window):
+    (folder / "day2" / "c.fbx").write_bytes(b"Kaydara FBX Binary")
+    (folder / "d.usda").write_text("#usda 1.0")
+    button = press()
     while (status := button.modal(window.context, event("TIMER"))) == {"RUNNING_MODAL"}:
         time.sleep(0.01)
 
     page = f"{manager.address}/app/jobs/{JOB_ID}"
-    assert (status, window.reports) == (
-        {"FINISHED"}, [({"INFO"}, f"Submitted 3 takes of shoot to {page}.")],
-    )  # fmt: skip
+    message = f"Submitted 3 takes of shoot to {page}. 2 files need Blender and were left out."
+    assert (status, window.reports) == ({"FINISHED"}, [({"INFO"}, message)])
 
 
 def test_failure_of_the_manager_is_reported(blank, manager, folder):
+    """And nothing is written."""
     manager.changed[TYPE] = manager.answer("/api/v3/jobs/type/unknown")
 
     with pytest.raises(RuntimeError, match=r"no job type mocap-assist-fix\. Copy .*_fix\.js"):
         blank.ops.mocap_assist.submit_folder(directory=str(folder))
+
+    assert not folder.with_name("shoot_fixed").exists()
+
+
+def test_cancelled_job_that_was_sent_is_not_taken_back(press, manager, window):
+    manager.changed = {TYPE: manager.answer(f"{TYPE}mocap-assist-fix"), JOBS: None}
+    button = press()
+    while not any(each[1] == JOBS for each in manager.requests):
+        assert button.modal(window.context, event("TIMER")) == {"RUNNING_MODAL"}
+        time.sleep(0.01)
+
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+    ((_, message),) = window.reports
+    assert "Look at the Manager's list of jobs before you submit it again" in message
+
+
+def test_cancelled_job_that_was_not_sent(press, manager, window):
+    manager.changed[VERSION] = None  # no answer
+    button = press()
+    while not manager.requests:
+        assert button.modal(window.context, event("TIMER")) == {"RUNNING_MODAL"}
+        time.sleep(0.01)
+
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+    assert window.reports == [({"INFO"}, "Cancelled.")]
+
+
+@pytest.mark.parametrize("directory", ["", "/"])
+def test_folder_without_a_name_needs_an_output_folder(blank, manager, directory):
+    with pytest.raises(RuntimeError, match="Choose a folder of takes that has a name"):
+        blank.ops.mocap_assist.submit_folder(directory=directory)
+
+    assert not manager.requests
+
+
+def test_paths_for_the_farm_are_absolute(blank, manager, folder, monkeypatch):
+    monkeypatch.chdir(folder.parent)
+
+    blank.ops.mocap_assist.submit_folder(directory="shoot", output_folder="fixed")
+
+    settings = manager.requests[-1][2]["settings"]
+    assert settings["output_folder"] == str(folder.with_name("fixed"))
+    first = json.loads(Path(settings["manifest"]).read_text().splitlines()[0])
+    assert first["input"] == str(folder / "a.asf")
 
 
 def test_take_that_the_farm_cannot_retarget_is_refused(blank, manager, folder):

@@ -101,6 +101,8 @@ OTHER_VERSION = Answer(
     200, {"version": "4.1-beta", "shortversion": "4.1", "name": "", "git": ""}
 )
 NO_TYPE = Answer(404, {"code": 404, "message": "no such job type known"})
+ODD_TYPE = Answer(200, {"settings": [{"key": []}, 3], "etag": []})
+ODD_ID = Answer(200, {"id": "\x1b[2J5c5c"})
 OLD_TYPE = Answer(200, {"settings": [{"key": "manifest"}], "etag": "0"})
 REFUSED = Answer(400, {"code": 400, "message": "shards is 0;\nit must be at least 1."})
 OUTDATED = Answer(412, {"code": 412, "message": "rejecting job because it is outdated"})
@@ -143,6 +145,12 @@ BUSY = Answer(503, {"code": 503, "message": "the database is busy"})
             "The job type mocap-assist-fix of the Flamenco Manager at {} is of another version"
             f" of Mocap Assist. Copy {SCRIPT} into its folder scripts.",
         ),
+        (
+            TYPE,
+            ODD_TYPE,
+            "The job type mocap-assist-fix of the Flamenco Manager at {} is of another version"
+            f" of Mocap Assist. Copy {SCRIPT} into its folder scripts.",
+        ),
         (TYPE, HTML, "{} answers, but not as a Flamenco Manager. Correct the address."),
         (
             JOBS,
@@ -168,8 +176,9 @@ BUSY = Answer(503, {"code": 503, "message": "the database is busy"})
             " jobs before you try again.",
         ),
         (JOBS, HTML, "{} answers, but not as a Flamenco Manager. Correct the address."),
+        (JOBS, ODD_ID, "{} answers, but not as a Flamenco Manager. Correct the address."),
     ],
-    ids=range(13),
+    ids=range(15),
 )
 def test_each_failure_is_one_sentence(submit, manager, monkeypatch, path, answer, sentence):
     manager.changed[TYPE] = manager.answer(f"{TYPE}mocap-assist-fix")
@@ -216,6 +225,13 @@ def test_invalid_address_is_one_sentence(submit, manager, address):
 
     assert (status, err.count("\n"), manager.requests) == (2, 1, [])
     assert "is not the address of a Flamenco Manager. Enter one such as" in err
+
+
+def test_verb_without_a_manifest_cannot_be_submitted(call, manager, leg_file):
+    status, _, err = call("index", "walks.clips", leg_file, "--flamenco", manager.address)
+
+    assert (status, manager.requests) == (2, [])
+    assert err.startswith("Unrecognized arguments: --flamenco")
 
 
 @pytest.mark.parametrize(
