@@ -126,7 +126,7 @@ def test_process_killed_at_the_last_moment_is_replaced(waiting, job, monkeypatch
     assert job(Expression(OWN_PID)).result() != 0
 
 
-def test_process_that_another_thread_takes_is_not_missed(waiting, job, monkeypatch):
+def test_process_that_another_thread_takes_is_not_missed(waiting, monkeypatch):
     """Threads start solves: the first one may take it while the second looks at it."""
     waiting.keep_waiting()
     child = waiting._waiting[0]

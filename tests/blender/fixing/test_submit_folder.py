@@ -1,13 +1,12 @@
 """Submit Folder: a farm fixes the takes of a folder, and the scene stays as it is."""
 
 import json
-import time
 from pathlib import Path
 
 import bpy
 import pytest
 from clusters.flamenco_stub import JOB_ID, JOBS, TYPE, VERSION, flamenco_stub
-from modal_events import event
+from modal_events import event, wait
 
 OFFLINE = "Blender's online access is off. Allow it in Preferences > System to submit jobs"
 
@@ -91,12 +90,12 @@ def test_window_goes_on_until_the_manager_answers(press, manager, folder, window
     (folder / "day2" / "c.fbx").write_bytes(b"Kaydara FBX Binary")
     (folder / "d.usda").write_text("#usda 1.0")
     button = press()
-    while (status := button.modal(window.context, event("TIMER"))) == {"RUNNING_MODAL"}:
-        time.sleep(0.01)
+    status = wait(button, window)
 
     page = f"{manager.address}/app/jobs/{JOB_ID}"
     message = f"Submitted 3 takes of shoot to {page}. 2 files need Blender and were left out."
     assert (status, window.reports) == ({"FINISHED"}, [({"INFO"}, message)])
+    assert not any("Starting 100" in shown for shown in window.status if shown)
 
 
 def test_failure_of_the_manager_is_reported(blank, manager, folder):
@@ -112,9 +111,7 @@ def test_failure_of_the_manager_is_reported(blank, manager, folder):
 def test_cancelled_job_that_was_sent_is_not_taken_back(press, manager, window):
     manager.changed = {TYPE: manager.answer(f"{TYPE}mocap-assist-fix"), JOBS: None}
     button = press()
-    while not any(each[1] == JOBS for each in manager.requests):
-        assert button.modal(window.context, event("TIMER")) == {"RUNNING_MODAL"}
-        time.sleep(0.01)
+    assert wait(button, window, lambda: manager.requests[2:]) is None
 
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
     ((_, message),) = window.reports
@@ -124,9 +121,7 @@ def test_cancelled_job_that_was_sent_is_not_taken_back(press, manager, window):
 def test_cancelled_job_that_was_not_sent(press, manager, window):
     manager.changed[VERSION] = None  # no answer
     button = press()
-    while not manager.requests:
-        assert button.modal(window.context, event("TIMER")) == {"RUNNING_MODAL"}
-        time.sleep(0.01)
+    assert wait(button, window, lambda: manager.requests) is None
 
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
     assert window.reports == [({"INFO"}, "Cancelled.")]
