@@ -235,7 +235,7 @@ GUARDS: dict[str, Guard] = {
         0.0,
         "feet/test_hands_and_knees.py::test_hands_of_a_body_that_lies_are_free",
     ),
-    "feet/live_contacts.MAX_GAP_S": Guard(
+    "feet/live_planting.MAX_GAP_S": Guard(
         inf,
         "feet/test_live_planting.py::test_after_a_gap_nothing_is_held",
     ),
