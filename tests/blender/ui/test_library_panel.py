@@ -1,5 +1,7 @@
 """The panel Library."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -54,6 +56,17 @@ def test_panel_shows_matches_with_previews_and_buttons(draw, matched, blank):
     for button in ("load_match", "link_match", "learn_from_matches", "mark_asset"):
         assert f"mocap_assist.{button}" in shown
     assert "frames 0–9 of 20" in " ".join(shown) and "calm" in " ".join(shown)
+
+
+def test_browsed_clips_are_no_best_matches(draw, matched, load, blank):
+    browsed = dataclasses.replace(matched.finding, first=0)
+    search = load("mocap_assist.search.searches").keep("all", (1.0, 1.0), 1.0, browsed)
+    load("mocap_assist.search.finding").fill_list(blank.context, search)
+
+    shown = draw("MOCAP_PT_library")
+
+    assert "Clips of the library" in shown and "mocap_assist.mark_asset" in shown
+    assert not {"mocap_assist.learn_from_matches", "mocap_assist.use_matches"} & set(shown)
 
 
 def test_click_in_the_grid_selects_a_clip(draw, matched, blank):
