@@ -112,11 +112,12 @@ def _path_of_list(problem: Submission, text: str) -> Path:
 
 def _write_list(path: Path, text: str) -> None:
     """Write a list of takes."""
+    output_folder = path.parent
     try:
-        path.parent.mkdir(exist_ok=True)
+        output_folder.mkdir(exist_ok=True)
     except OSError as error:
         raise InvalidFileError(
-            f"The folder {path.parent} cannot be made: {reason_of(error)}."
+            f"The folder {output_folder} cannot be made: {reason_of(error)}."
         ) from None
     with write_atomically(path) as part:
         part.write_text(text, encoding="utf-8")
