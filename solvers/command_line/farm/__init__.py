@@ -1,14 +1,13 @@
 """Run batches on many machines: workers of a Dask cluster, and jobs for render farms."""
 
+from .batch_jobs import add_flamenco_options, job_of_batch
 from .cluster import cluster_workers
 from .flamenco_jobs import (
     COMMAND,
     FlamencoJob,
     FlamencoSettings,
     SubmittedJob,
-    add_flamenco_options,
     check_job,
-    job_of_batch,
 )
 from .job_types import texts_of_settings
 
