@@ -139,6 +139,20 @@ def test_only_chosen_bones_change_and_the_source_stays(
     assert changed <= {'pose.bones["Head"].rotation_euler', 'pose.bones["Head"].location'}
 
 
+def test_failed_write_leaves_no_action(
+    make_armature, animate, rewrite, scene_io, blank, monkeypatch
+):
+    armature = make_armature(mode="QUATERNION")
+    animate(armature)
+    before = len(blank.data.actions)
+    monkeypatch.setattr(scene_io.writing, "animated_curves", {}.__getitem__)
+
+    with pytest.raises(TypeError):
+        rewrite(armature)
+
+    assert len(blank.data.actions) == before
+
+
 def test_the_slot_of_another_actor_is_copied_and_not_read(
     make_armature, animate, keys_of, rewrite, scene_io
 ):
