@@ -18,9 +18,9 @@ from ..motion_fitting.goals import (
     flexion_in_reserve,
     knee_limit,
 )
-from .foot_contact import FootContact
 from .limb_goals import LimbContact, limb_goals, limb_tolerances
 from .plant_settings import PlantSettings
+from .sole_contact import FootContact
 
 ROOT_M = 0.01
 """Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand: x0.5 costs 1.4 %, x2

@@ -13,11 +13,11 @@ from ..motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
 from ..motion_fitting import FittedMotion, fit_in_pieces, fit_motion
 from ..progress import Progress, Remark, collect_remarks, unwatched, within
 from .body_supports import SUPPORTS, detect_supports
-from .foot_contact import FootContact, find_foot_contact
 from .foot_goals import planting_goals
 from .legs import SIDES, LegJoints, find_legs
 from .limb_goals import LimbContact, find_limb_contacts, limb_tolerances
 from .plant_settings import PlantSettings
+from .sole_contact import FootContact, find_foot_contact
 from .standing_feet import detect_standing_feet
 
 DEFAULT_SETTINGS = PlantSettings()

@@ -7,8 +7,8 @@ from time import perf_counter
 import numpy as np
 
 from solvers.arrays import Array, Flags
-from solvers.feet.foot_contact import find_foot_contact
 from solvers.feet.legs import SIDES, LegJoints, find_legs
+from solvers.feet.sole_contact import find_foot_contact
 from solvers.feet.standing_feet import detect_standing_feet
 from solvers.motion import Motion, find_humanoid_map, forward_kinematics
 

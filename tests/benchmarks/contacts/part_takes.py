@@ -8,8 +8,8 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from solvers.arrays import Array, Flags
-from solvers.feet.foot_contact import find_foot_contact
 from solvers.feet.legs import SIDES, LegJoints, find_legs
+from solvers.feet.sole_contact import find_foot_contact
 from solvers.feet.standing_feet import detect_standing_feet
 from solvers.motion import Motion, find_humanoid_map, forward_kinematics
 from solvers.rotations import angle_between
