@@ -52,6 +52,6 @@ def _rotation_vectors(array: Array) -> Array:
 
 
 def _is_known(matrices: Array) -> Flags:
-    """Return which matrices are there; programs write zeros where nobody was detected."""
+    """Return which matrices are there; programs write zeros where they detected no person."""
     known: Flags = np.isfinite(matrices).all(axis=(1, 2)) & matrices.any(axis=(1, 2))
     return known
