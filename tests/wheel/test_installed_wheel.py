@@ -101,7 +101,7 @@ def test_wheel_holds_one_package_with_all_its_files(wheel):
     }
 
     assert packaged == ours
-    assert {path.suffix for path in packaged} == {".py", ".npz", ".html", ".typed"}
+    assert {path.suffix for path in packaged} == {".py", ".npz", ".html", ".js", ".typed"}
 
 
 def test_every_package_and_public_name_can_be_imported(installed):

@@ -18,8 +18,7 @@ from .gap_patterns import find_gap_patterns, find_long_gaps
 from .smoothness import fit_smoothness
 
 MAX_ITERATIONS = 30
-"""Iterations after which the estimate ends unconverged. Chosen by hand; `make sensitivity`
-varies it."""
+"""Iterations after which the estimate ends unconverged. It bounds the run time."""
 N_ADAPTATIONS = 5
 """Iterations in which the prior still adapts to the take. Chosen by hand; `make sensitivity`
 varies it."""

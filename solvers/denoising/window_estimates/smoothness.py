@@ -9,7 +9,7 @@ CORRELATION_TIMES_S = (0.08, 0.16, 0.32, 0.64, 1.28)
 """Correlation times, seconds, of the smooth movements whose sum is a channel. Chosen by hand;
 `make sensitivity` varies it."""
 N_UPDATES = 30
-"""Multiplicative updates of the weights. Chosen by hand; `make sensitivity` varies it."""
+"""Multiplicative updates of the weights. It bounds the run time."""
 POOLED_WINDOWS = 1.0
 """Weight, in windows, of the assumption that a channel moves like the take's average channel.
 Chosen by hand; `make sensitivity` varies it."""

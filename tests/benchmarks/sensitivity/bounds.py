@@ -3,6 +3,8 @@
 BOUNDS: dict[str, tuple[str, ...]] = {
     "bounds the delay of live contacts in noise": ("feet/live_contacts.MAX_LINE_S",),
     "bounds the run time, not the result": (
+        "denoising/window_estimates/estimate_channels.MAX_ITERATIONS",
+        "denoising/window_estimates/smoothness.N_UPDATES",
         "depth_scene/actor.*SAMPLES*",
         "depth_scene/bodies.MAX_FULL_PIXELS",
         "depth_scene/bodies.POINT_STEP",

@@ -25,6 +25,7 @@ WITHOUT: dict[str, Any] = {
     "denoising/outliers/outlier_runs.SPIKE_PRIOR_PSEUDOCOUNT": 1e3,
     "denoising/window_estimates/estimate_channels.MAX_LEVERAGE": 1.0 - 1e-9,
     "denoising/window_estimates/prior_selection.N_TRIAL_ITERATIONS": 1,
+    "denoising/window_estimates/smoothness.POOLED_WINDOWS": 0.0,
     "markers/pair_swaps.FRAME_WEIGHT": 0.0,
     "retargeting/key_curves.END_WEIGHT": 1.0,
     "markers/solve_skeleton.MAX_ERROR_FACTOR": inf,

@@ -4,12 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solvers.arrays import Flags
 from solvers.denoising import (
+    Denoised,
     denoise,
     learn_filter_bases,
     learn_joint_limits,
 )
-from solvers.motion import Motion, Tracks
+from solvers.motion import Motion, Skeleton, Tracks
 from solvers.rotations.representations import angle_between
 from solvers.samples import CorruptionSettings, corrupt
 
@@ -47,11 +49,13 @@ def prepare() -> dict[str, object]:
     squat = pruned(hdm05("squat1Reps"))
     punch = pruned(variety("02_05")).slice(700, 820)
     fine = pruned(walk("07_11", 2)).slice(20, 90)
+    arms = _above_the_trunk(kick)
     cases = {
         "walk, 3 deg, spikes": Case(short, _noisy(short, 3.0, 0.15), True, limits=True),
         "squat, clean": Case(squat, squat),
         "walk, gaps": Case(other, _gaps(other, 0.3, "LeftArm", "RightLeg"), True),
         "kick, gaps, no examples": Case(kick, _gaps(kick, 1.0, "lhumerus", "rtibia")),
+        "arms, gaps": Case(arms, _gaps(arms, 1.0, "lhumerus", "rradius")),
         "kick, swaps, no examples": Case(kick, _swapped(kick)),
         "punch 120 Hz, spikes": Case(punch, _noisy(punch, 0.3, 0.01)),
         "walk 60 Hz, 1 deg": Case(fine, _noisy(fine, 1.0, 0.0)),
@@ -81,6 +85,8 @@ def measure(
         assert isinstance(result.recording, Motion)
         hidden = None if case.given.observed.all() else ~case.given.observed
         figures[f"{name}: deg"] = angle_error(result.recording, case.truth, hidden)
+        if hidden is not None:
+            figures[f"{name}: confidence"] = _calibration_error(result, case.truth, hidden)
         if "3 deg" in name or "60 Hz" in name:
             figures[f"{name}: root cm"] = root_error(result.recording, case.truth)
         if "spikes" in name:
@@ -93,6 +99,14 @@ def measure(
     return figures
 
 
+def _calibration_error(result: Denoised, truth: Motion, hidden: Flags) -> float:
+    """Return how far the mean confidence is from the fraction within 5 degrees, %, plus 1."""
+    assert isinstance(result.recording, Motion)
+    angles = np.degrees(angle_between(result.recording.rotations, truth.rotations))
+    is_right = angles[hidden] < 5.0
+    return 1.0 + 100.0 * abs(float(result.confidence[hidden].mean() - is_right.mean()))
+
+
 def _noisy(motion: Motion, jitter: float, spikes: float) -> Motion:
     settings = CorruptionSettings(
         jitter=jitter, spikes=spikes, root_jitter=0.005 * jitter, seed=3
@@ -103,6 +117,19 @@ def _noisy(motion: Motion, jitter: float, spikes: float) -> Motion:
 def _gaps(motion: Motion, jitter: float, long: str, short: str) -> Motion:
     missing = {long: range(10, 10 + motion.n_frames // 3), short: range(30, 36)}
     return corrupt(motion, CorruptionSettings(jitter=jitter), missing=missing)
+
+
+def _above_the_trunk(motion: Motion) -> Motion:
+    """Return the arms and the head alone: no body, so that no other people's movement helps."""
+    skeleton = motion.skeleton
+    kept = np.array(skeleton.subtree(skeleton.index("thorax")))
+    parents = [int(np.flatnonzero(kept == skeleton.parents[joint])[0]) for joint in kept[1:]]
+    above = Skeleton(
+        tuple(skeleton.names[joint] for joint in kept), (-1, *parents), skeleton.offsets[kept]
+    )
+    return Motion(
+        above, motion.rotations[:, kept], np.zeros((motion.n_frames, 3)), motion.frame_rate
+    )
 
 
 def _swapped(motion: Motion) -> Motion:
