@@ -113,12 +113,9 @@ def share(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:
 def record_end(finished: FinishedTask) -> FinishedTask:
     """Record a task that failed before or after its work, such as a crashed one.
 
-    While another process holds its claim, there is no record.
+    While another process holds its claim there is no record, and the other's end is returned.
     """
-    if finished.outcome is not None:
-        return finished
-    shared = share(finished.task, lambda: finished)
-    return finished if shared.is_held else shared
+    return share(finished.task, lambda: finished)
 
 
 def _share(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:

@@ -50,11 +50,16 @@ def run_tasks(
         for number, task in enumerate(tasks, start=1):
             screen.title = f"[{number}/{len(tasks)}] {task.source.name}"
             yield attempt_task(verb, task, screen.progress, prepared)
-        return
-    shared = workers.share(prepared)
+    else:
+        yield from _run_on_workers(verb, tasks, workers.share(prepared), workers, screen)
+
+
+def _run_on_workers(
+    verb: Verb, tasks: Sequence[Task], shared: Any, workers: Workers, screen: Screen
+) -> Iterator[FinishedTask]:
     crashes: Counter[tuple[Any, ...]] = Counter()
-    remaining = [*tasks]
-    while remaining:
+    remaining, lost = [*tasks], list[FinishedTask]()
+    while remaining or lost:
         again: list[Task] = []
         n_held = 0
         for group in _groups(remaining, crashes, workers.max_crashes):
@@ -62,13 +67,19 @@ def run_tasks(
                 key = finished.task.key
                 crashes[key] += finished.crashed
                 n_held += finished.is_held
-                has_failed = crashes[key] == workers.max_crashes
-                if finished.is_held or (finished.crashed and not has_failed):
+                if finished.crashed and crashes[key] == workers.max_crashes:
+                    lost.append(finished)
+                elif finished.crashed or finished.is_held:
                     again.append(finished.task)
                 else:
-                    yield _recorded(finished, workers.batch)
-        if n_held:
-            screen.note(f"Waiting for takes that lost workers have claimed: {n_held}.")
+                    yield finished
+        recorded = [_recorded(finished, workers.batch) for finished in lost]
+        yield from (finished for finished in recorded if not finished.is_held)
+        lost = [each for each, end in zip(lost, recorded, strict=True) if end.is_held]
+        if n_held + len(lost):
+            screen.note(
+                f"Waiting for takes that lost workers have claimed: {n_held + len(lost)}."
+            )
             sleep(RENEWAL_INTERVAL_S)
         remaining = again
 
@@ -97,12 +108,14 @@ def until_released(
         remaining = taken
 
 
-def _recorded(finished: FinishedTask, batch: str) -> FinishedTask:
-    """Record a crash; the claim of a lost worker is that of this batch."""
-    if not finished.crashed:
-        return finished
-    task = finished.task
-    return record_end(finished._replace(task=task._replace(batch=batch)))._replace(task=task)
+def _recorded(crashed: FinishedTask, batch: str) -> FinishedTask:
+    """Record a crash; the claim of a lost worker is that of this batch, and may hold still.
+
+    A process that was killed holds its claim until the system has removed it, and one that the
+    cluster only believes dead until it ends.
+    """
+    task = crashed.task
+    return record_end(crashed._replace(task=task._replace(batch=batch)))._replace(task=task)
 
 
 def _groups(

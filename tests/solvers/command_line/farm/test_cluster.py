@@ -4,7 +4,7 @@ import json
 import os
 import sys
 from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
 from importlib.util import find_spec
 
@@ -210,16 +210,30 @@ class OneThread:
         return value
 
 
-@pytest.mark.parametrize("batch", ["batch", "another"])
-def test_take_of_a_lost_worker_waits_for_its_claim(
-    call, leg_file, tmp_path, monkeypatch, batch
-):
-    """A worker on another machine was killed; its claim ends after five minutes."""
-    out = tmp_path / "out"
-    Records(out).prepare()
-    claim = Records(out).claim("leg.bvh")
+class DeadThread(OneThread):
+    """A worker that has died of each take."""
+
+    @contextmanager
+    def open(self, n_tasks):
+        yield self
+
+    def submit(self, *arguments):
+        raise BrokenExecutor
+
+    def shutdown(self, **options):
+        """End at once."""
+
+
+@pytest.fixture
+def lost_claim(leg_file, tmp_path, monkeypatch):
+    """A claim on a take, of a worker on another machine that was killed; what the batch waits.
+
+    Each wait ages it by 200 s.
+    """
+    records = Records(tmp_path / "out")
+    records.prepare()
+    claim = records.claim("leg.bvh")
     claim = claim.with_name(f"{claim.name}.1.claim")
-    claim.write_text(json.dumps({"host": "farm", "machine": "farm", "pid": 1, "batch": batch}))
     waited = []
 
     def age(seconds):
@@ -227,14 +241,54 @@ def test_take_of_a_lost_worker_waits_for_its_claim(
         now = claim.stat().st_mtime
         os.utime(claim, (now - 200.0, now - 200.0))
 
-    monkeypatch.setattr(parallel, "sleep", age)
-    monkeypatch.setattr(parallel, "workers_for", lambda tasks: nullcontext(OneThread()))
-    monkeypatch.setattr("solvers.command_line.run.workers_for", parallel.workers_for)
+    def write(batch):
+        claim.write_text(
+            json.dumps({"host": "farm", "machine": "farm", "pid": 1, "batch": batch})
+        )
+        return waited
 
-    status, printed, _ = call("convert", leg_file, "--output-folder", out)
+    monkeypatch.setattr(parallel, "sleep", age)
+    return write
+
+
+@pytest.fixture
+def use_workers(monkeypatch):
+    """Run batches on these workers."""
+
+    def use(workers):
+        monkeypatch.setattr(
+            "solvers.command_line.run.workers_for", lambda tasks: nullcontext(workers)
+        )
+
+    return use
+
+
+@pytest.mark.parametrize("batch", ["batch", "another"])
+def test_take_of_a_lost_worker_waits_for_its_claim(
+    call, leg_file, tmp_path, lost_claim, use_workers, batch
+):
+    """The claim ends after five minutes."""
+    waited = lost_claim(batch)
+    use_workers(OneThread())
+
+    status, printed, _ = call("convert", leg_file, "--output-folder", tmp_path / "out")
 
     assert status == 0
     if batch == "batch":
         assert ("120 frames" in printed, len(waited)) == (True, 2)
     else:
         assert (printed, waited) == ("Skipped: taken by farm.\n", [])
+
+
+def test_crash_is_recorded_once_the_claim_of_the_lost_worker_ends(
+    call, leg_file, tmp_path, lost_claim, use_workers, records_in
+):
+    """A killed process holds its claim for a moment more, on a busy machine for longer."""
+    waited = lost_claim("batch")
+    use_workers(DeadThread())
+
+    status, _, err = call("convert", leg_file, "--output-folder", tmp_path / "out")
+
+    assert (status, len(waited)) == (2, 2)
+    assert "leg.bvh: its process crashed" in err
+    assert "its process crashed" in records_in(tmp_path / "out")["leg.bvh"]["error"]
