@@ -38,10 +38,11 @@ test: environments  ## every check and test below, on Blender 4.5 and 5.2, two a
 	@if [ -e .venv-5.2/ready ]; then echo "All is well, on Blender 4.5 and 5.2."; \
 	else echo "$(NO_5.2)"; echo "All is well, on Blender 4.5."; fi
 
-lint: .venv-4.5/ready $(TYPED)  ## ruff, and mypy on all that ships
+lint: .venv-4.5/ready $(TYPED)  ## ruff, mypy on all that ships, and the calls of benchmarks
 	$(PYTHON_4.5) -m ruff check .
 	$(PYTHON_4.5) -m ruff format --check .
 	$(PYTHON_4.5) -m mypy
+	$(PYTHON_4.5) -m mypy --config-file tests/types.ini tests/benchmarks tests/training
 
 # The extension as one package, which is what its parts import each other from.
 $(TYPED):

@@ -55,8 +55,8 @@ def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabeledFr
     with np.load(DATA / "depth" / "truth" / f"{take}.npz") as archive:
         truth = {name: np.array(archive[name]) for name in archive.files}
     n_rows, n_columns = truth["depth"].shape[1:]
-    focal = [float(truth[name]) for name in ("fx", "fy", "cx", "cy")]
-    camera = Camera(*focal, n_columns, n_rows).every(step)
+    fx, fy, cx, cy = (float(truth[name]) for name in ("fx", "fy", "cx", "cy"))
+    camera = Camera(fx, fy, cx, cy, n_columns, n_rows).every(step)
     for frame, vertices in laid:
         depth = (truth["depth"][frame, ::step, ::step] / MM_PER_M).astype(np.float32)
         joints = truth["joints"][frame].astype(float)

@@ -64,10 +64,10 @@ def sequence(name: str, folder: Path = TRUTH) -> Sequence:
     """Read one of data/depth/truth."""
     with np.load(folder / f"{name}.npz") as archive:
         depth, rate = archive["depth"], float(archive["frame_rate"])
-        focal = [float(archive[key]) for key in ("fx", "fy", "cx", "cy")]
+        fx, fy, cx, cy = (float(archive[key]) for key in ("fx", "fy", "cx", "cy"))
         names = list(archive["joint_names"])
         joints = archive["joints"].astype(np.float64)
-    camera = Camera(*focal, depth.shape[2], depth.shape[1])
+    camera = Camera(fx, fy, cx, cy, depth.shape[2], depth.shape[1])
     indices = [names.index(CMU_NAMES[role]) for role in JOINTS]
     recording = DepthRecording(
         camera, len(depth), rate, lambda i: depth[i].astype(np.float32) / np.float32(1000.0)

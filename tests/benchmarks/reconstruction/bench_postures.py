@@ -118,8 +118,8 @@ def _query(body: BodyPostures, random: np.random.Generator) -> PostureQuery:
     reliability = random.uniform(0.5, 1.0, size=body.positions.shape[:2])
     for frame, limb in enumerate(random.integers(5, size=len(reliability))):
         reliability[frame, 4 + 4 * limb : 8 + 4 * limb] = 0.0
-    wide = (each.astype(np.float64) for each in (body.positions, body.speeds))
-    return PostureQuery(*wide, reliability, 0.2)
+    positions, speeds = body.positions.astype(np.float64), body.speeds.astype(np.float64)
+    return PostureQuery(positions, speeds, reliability, 0.2)
 
 
 def _report_done(what: str) -> None:

@@ -7,8 +7,7 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from solvers.denoising import learn_joint_limits, limit_excess
-from solvers.denoising.quality.foot_slide import measure_foot_slide
-from solvers.feet.legs import SIDES, find_foot_joints
+from solvers.denoising.quality.foot_slide import measure_foot_slide, sole_paths
 from solvers.motion import Motion, forward_kinematics, warp
 from solvers.motion.humanoid.foot_contacts import detect_contacts
 from solvers.rotations.representations import inverse, multiply, rotation_vector_from_quaternion
@@ -146,11 +145,11 @@ def contact_figures(motions: Sequence[Motion]) -> tuple[float, float]:
     """
     slides, stands = [], []
     for motion in motions:
-        contacts, joints = detect_contacts(motion), find_foot_joints(motion)
-        positions = forward_kinematics(motion).positions[:, joints]
+        contacts = detect_contacts(motion)
+        soles = sole_paths(motion, forward_kinematics(motion))
         feet = [
-            measure_foot_slide(side, "", positions[:, row], contacts[:, row], motion.frame_rate)
-            for row, side in enumerate(SIDES)
+            measure_foot_slide(sole, contacts[:, side], motion.frame_rate)
+            for side, sole in enumerate(soles)
         ]
         speeds = np.concatenate([foot.speed for foot in feet])
         if np.isfinite(speeds).any():

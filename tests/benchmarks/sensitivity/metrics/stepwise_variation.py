@@ -24,7 +24,7 @@ def measure(sets: dict[str, list[Motion]], limits: dict[str, JointLimits]) -> di
     """Compare the variants with the examples, as `variation` does."""
     figures = {}
     for name, examples in sets.items():
-        model = learn_variation_model(examples, settings=SETTINGS, planting=None)
+        model = learn_variation_model(examples, settings=SETTINGS)
         variants = draw_variants(model, N_VARIANTS, settings=SETTINGS, planting=None)
         found = variant_figures([each.motion for each in variants], examples, limits[name])
         figures |= {f"{name}: {key}": what for key, what in found.items()}
