@@ -43,7 +43,7 @@ def unregister() -> None:
     from .depth import depth_preview
     from .library import auto_update, background
     from .live import listening
-    from .panels import solver_ready
+    from .panel_parts import solver_ready
     from .runtime import watch
     from .search import gallery_drawing, ghost_drawing, previews, properties
     from .track import body_overlay

@@ -10,7 +10,7 @@ from .blender.compat import stored_properties
 
 @handlers.persistent
 def read_former_names(*_: object) -> None:
-    """Give each setting of the opened file its present name."""
+    """Rename the settings of the opened file to their current names."""
     for scene in bpy.data.scenes:
         stored = scene.mocap_assist
         for item in stored.bl_rna.properties:

@@ -253,7 +253,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take the properties away again."""
+    """Remove the properties."""
     manager = bpy.types.WindowManager
     del manager.mocap_assist_fix_details, manager.mocap_assist_all_panels
     del manager.mocap_assist_job

@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.blender.act_operator import ActOperator
-from ..mocap_assist.panels.fix_card import accept, why_not_accept
+from ..mocap_assist.panel_parts.fix_card import accept, why_not_accept
 
 
 class MOCAP_OT_accept_fix(ActOperator, bpy.types.Operator):

@@ -111,7 +111,7 @@ def write_take(
 
 
 def identify_played(armature: bpy.types.Object) -> tuple[int, int] | None:
-    """Return what identifies the action of an armature and its slot."""
+    """Return an identifier of the action of an armature and its slot."""
     animation = armature.animation_data
     if animation is None or animation.action is None:
         return None
@@ -137,7 +137,7 @@ class _BoneWriter(NamedTuple):
         number: int,
         key_types: KeyTypes,
     ) -> "_BoneWriter":
-        """Look up a bone and its curves; raise InvalidMotionError if it is there no more."""
+        """Look up a bone and its curves; raise InvalidMotionError if it was deleted."""
         name = take.rig.bones[number]
         bone = armature.pose.bones.get(name)
         if bone is None:

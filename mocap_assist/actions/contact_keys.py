@@ -116,7 +116,7 @@ def write_contacts(
 
 
 def register() -> None:
-    """Give the properties back to overrides when a file is loaded."""
+    """Restore the properties of overrides when a file is loaded."""
     handlers.load_post.append(_give_back)
 
 

@@ -27,7 +27,7 @@ def act_on_keys(curve: bpy.types.FCurve) -> bool:
 
 
 def keep_outside(curve: bpy.types.FCurve, written: Written) -> None:
-    """Let the modifiers act on the kept keys alone: the new ones have their effect in them.
+    """Restrict the modifiers to the kept keys: the values of the new ones include their effect.
 
     Each ends at the last kept key before the new ones, and begins again at the first after
     them; from there to the new keys its influence fades. Where no keys are kept it goes.
@@ -71,7 +71,7 @@ def _pieces(settings: dict[str, Any], written: Written) -> Iterator[dict[str, An
 
 
 def _steps(settings: dict[str, Any], written: Written) -> Iterator[dict[str, Any]]:
-    """Do the same for Stepped, which has a range of its own, and nothing to fade."""
+    """Restrict a Stepped modifier, which has a range of its own and no fade."""
     start = settings["frame_start"] if settings["use_frame_start"] else -LAST_FRAME
     stop = settings["frame_end"] if settings["use_frame_end"] else LAST_FRAME
     for low, high in (

@@ -39,7 +39,7 @@ class UnchangedSamples:
         self.find_again()
 
     def find_again(self) -> None:
-        """Look the recorded curves up: pointers are stale after a time slice."""
+        """Look up the recorded curves again: pointers are stale after a time slice."""
         self._curves = animated_curves(*self._source.find())
 
     def rotations(self, bone: bpy.types.PoseBone, index: int, values: Array) -> Array:

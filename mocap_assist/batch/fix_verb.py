@@ -25,7 +25,7 @@ def perform_fix(
     arguments: argparse.Namespace,
     progress: Progress,
 ) -> tuple[str, dict[str, Any]]:
-    """Fix what an armature or markers play."""
+    """Fix the action that an armature or markers play."""
     settings = bundle_from_arguments(arguments, FixBundle)
     fixed = solve_in_subprocess(read_fixing(scene, subject, settings), arguments, progress)
     sentence = write_fixed(scene, subject, settings, fixed)

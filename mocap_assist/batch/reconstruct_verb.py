@@ -39,7 +39,7 @@ def perform_reconstruct(
     arguments: argparse.Namespace,
     progress: Progress,
 ) -> tuple[str, dict[str, Any]]:
-    """Rebuild what the armature plays."""
+    """Reconstruct the action that the armature plays."""
     settings = bundle_from_arguments(arguments, ReconstructBundle)
     if arguments.train:
         choices = replace(

@@ -31,7 +31,7 @@ def add_retarget_options(parser: argparse.ArgumentParser) -> None:
 
 
 def retarget_target(arguments: argparse.Namespace) -> str:
-    """Name the armature that is to make the motions, which is no source."""
+    """Return the name of the target armature, which is not a source."""
     return str(getattr(arguments, "target", ""))  # only what was given is there
 
 
@@ -41,7 +41,7 @@ def perform_retarget(
     arguments: argparse.Namespace,
     progress: Progress,
 ) -> VerbResult:
-    """Give the armature's motions to the target."""
+    """Retarget the armature's motions to the target."""
     settings = RetargetBundle(
         settings_from_arguments(arguments, RetargetChoices),
         settings_from_arguments(arguments, RetargetSettings),
@@ -68,7 +68,7 @@ def perform_unbake(
     arguments: argparse.Namespace,
     progress: Progress,
 ) -> VerbResult:
-    """Thin out the keys of what the armature plays."""
+    """Reduce the keys of the action that the armature plays."""
     settings = UnbakeBundle(
         UnbakeChoices(tolerance=CENTIMETER * arguments.tolerance),
         settings_from_arguments(arguments, UnbakeSettings),

@@ -16,7 +16,7 @@ STDOUT = Path("-")
 
 
 def add_output_options(parser: argparse.ArgumentParser, *, saves: bool) -> None:
-    """Add the options that say where results go."""
+    """Add the options for the location of results."""
     parser.add_argument(
         "--json",
         nargs="?",

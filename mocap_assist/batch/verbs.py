@@ -47,7 +47,7 @@ def check_nothing(arguments: argparse.Namespace, armatures: Sequence[bpy.types.O
 
 
 def no_armature(arguments: argparse.Namespace) -> str:
-    """Name no armature."""
+    """Return no name of an armature."""
     return ""
 
 

@@ -13,7 +13,7 @@ BINARY = re.compile(rb"S\x02\0\0\0OPL.{8}L(.{8})S\x03\0\0\0d\|([XYZ])", re.DOTAL
 
 
 def loses_curves(path: str) -> bool:
-    """Whether this Blender drops animation of a binary FBX file without a word.
+    """Whether this Blender drops animation of a binary FBX file silently.
 
     The importer of Blender 4.5 drops a location, rotation or scale without a curve for X,
     such as that of a knee that turns about Z only. Another importer reads binary files.
@@ -22,7 +22,7 @@ def loses_curves(path: str) -> bool:
 
 
 def describe_lost_curves(path: str) -> str:
-    """Say that this Blender drops animation of an FBX file of text; empty if it does not.
+    """Return a message that this Blender drops animation of a text FBX file; empty if not.
 
     Text has no other importer.
     """

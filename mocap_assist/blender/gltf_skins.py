@@ -15,9 +15,10 @@ from ...solvers.recordings.conventions import MIN_BODY_JOINTS
 
 GLB_MAGIC, GLB_VERSION, GLB_JSON = 0x46546C67, 2, 0x4E4F534A
 HEADER_BYTES = 20
-"""Of the file and of its first chunk."""
+"""Bytes of the headers of the file and of its first chunk."""
 MAX_SCALE_ERROR = 0.05
-"""Of a joint; a node of another scale is an object that holds joints."""
+"""Deviation of a joint's scale from 1, a ratio; a node of another scale is an object that holds
+joints."""
 
 
 def find_joint_trees(content: Mapping[str, Any]) -> list[list[int]]:
@@ -120,7 +121,7 @@ def _children(node: Mapping[str, Any], n_nodes: int) -> list[int]:
 
 
 def _found_from_elsewhere(buffer: Any, folder: Path) -> Any:
-    """Return a buffer whose file is found from another folder too."""
+    """Return a buffer whose file can be found from another folder, too."""
     uri = dict_of(buffer).get("uri")
     if not isinstance(uri, str) or uri.startswith("data:"):
         return buffer

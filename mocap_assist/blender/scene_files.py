@@ -96,7 +96,7 @@ def _damaged(path: str) -> InvalidFileError:
 
 
 def _open_usd(path: str, meshes: bool) -> None:
-    """Import USD; its times are frames, at a rate that the importer does not take over."""
+    """Import USD; its times are frames, at a rate that the importer ignores."""
     _run(path, bpy.ops.wm.usd_import, **USD_OPTIONS, import_meshes=meshes)
     if 0.0 < (rate := read_stage(path).frame_rate) < MAX_FRAME_RATE_HZ:
         render = bpy.context.scene.render
@@ -162,7 +162,7 @@ def _gltf_content(path: str) -> dict[str, Any]:
 
 
 def _refuse_other_files(path: str, content: dict[str, Any]) -> None:
-    """Raise InvalidFileError where a file wants another read that is not in its folder.
+    """Raise InvalidFileError if a file refers to another one outside its folder.
 
     It is a stranger's: it may name devices, pipes, private files or those of a server.
     """
@@ -206,7 +206,7 @@ def _gltf_rate(content: dict[str, Any]) -> float:
 
 
 def _key_rate(accessor: dict[str, Any]) -> list[float]:
-    """Return the rate of evenly spaced keys, or nothing where the file does not say it."""
+    """Return the rate of evenly spaced keys, or None if the file does not state it."""
     count, first, last = (accessor.get(name) for name in ("count", "min", "max"))
     if not isinstance(count, int):
         return []

@@ -25,7 +25,7 @@ from .solve_checking import Checked, check
 def read_checking(
     scene: bpy.types.Scene, subject: bpy.types.Object, settings: CheckBundle
 ) -> "Steps[partial[Checked]]":
-    """Read what a subject plays; return the picklable solve."""
+    """Read the action that a subject plays; return the picklable solve."""
     here = Subject.of(scene, subject)
     take = yield from read_played.steps(scene, subject)
     scene, subject = here.find()
@@ -69,7 +69,7 @@ def list_issues(
     issues: Sequence[Issue],
     report: str,
 ) -> None:
-    """List the issues of what a subject plays in the scene; `frames` are those of its take."""
+    """List the issues of a subject's action in the scene; `frames` are those of its take."""
     shown = scene.mocap_assist
     shown.issues.clear()
     shown.active_issue = 0

@@ -4,10 +4,10 @@ import bpy
 
 from ..actions.delta_layer import delta_strip
 from ..blender.mixins import PanelMixin
-from ..drawing.overlay_switch import draw_overlay_switches
 from ..exporting.export_menu import EXPORT, draw_export
 from ..languages import translated
-from ..panels.drawing import exists
+from ..overlays.overlay_switch import draw_overlay_switches
+from ..panel_parts.panel_layout import exists
 from ..runtime.selection import played_result, selected_subject
 from ..scene import history
 from .key_map import key_text

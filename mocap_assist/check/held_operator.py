@@ -12,8 +12,8 @@ PASSED = {
     "MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "NDOF_MOTION", "WHEELUPMOUSE", "WHEELDOWNMOUSE",
     "TRACKPADPAN", "TRACKPADZOOM",
 }  # fmt: skip
-"""Events that other operators get meanwhile: they move the view and change no data. What waits
-for a button to be released, as orbiting does, would take the release of the key."""
+"""Events that other operators get meanwhile: they move the view and change no data. Operators
+that wait for the release of a button, such as orbiting, would take the release of the key."""
 NOT_HELD = {"LEFTMOUSE", "RIGHTMOUSE", "MIDDLEMOUSE", "RET", "NUMPAD_ENTER"}
 """Events that choose an entry of a menu: there is no key to release then."""
 HELD = "{action}: release {key} for the result"

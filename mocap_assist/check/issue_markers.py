@@ -30,7 +30,7 @@ def remove_issue_markers(scene: bpy.types.Scene) -> str:
 
 
 def why_not_mark(context: bpy.types.Context) -> str:
-    """Return why there is nothing to mark or to remove, or an empty text."""
+    """Return why no markers can be added or removed, or an empty text."""
     scene = context.scene
     if scene.mocap_assist.issues or has_issue_markers(scene):
         return ""

@@ -7,8 +7,8 @@ from mathutils import Vector
 
 from ..actions.frames import FrameRange
 from ..actions.markers import markers_of, point_names
-from ..drawing.strip_drag import working_range
-from ..drawing.view_control import show_point
+from ..overlays.strip_drag import working_range
+from ..overlays.view_control import show_point
 from ..runtime.selection import selected_subject
 
 VIEW, RANGE = "mocap_assist_issue_view", "mocap_assist_issue_range"
@@ -97,7 +97,7 @@ def _point_of(context: bpy.types.Context, name: str) -> Vector | None:
 
 
 def _range_switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    """Set the preview range to the selected issue, or give back the animator's own."""
+    """Set the preview range to the selected issue, or restore the animator's own."""
     shown = context.scene.mocap_assist
     if not getattr(self, RANGE):
         for scene in bpy.data.scenes:

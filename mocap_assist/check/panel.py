@@ -6,12 +6,12 @@ import bpy
 
 from ...solvers.errors import InvalidMotionError
 from ..blender.mixins import PanelMixin
-from ..drawing.strip_switch import draw_strip_switch
 from ..languages import translated
-from ..panels.drawing import draw_job, draw_sentence, exists, is_wide
-from ..panels.figure_rows import figure_rows, frames_text
-from ..panels.fix_card import shown_card
-from ..panels.visibility import shows_take
+from ..overlays.strip_switch import draw_strip_switch
+from ..panel_parts.figure_rows import figure_rows, frames_text
+from ..panel_parts.fix_card import shown_card
+from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, is_wide
+from ..panel_parts.visibility import shows_take
 from ..runtime.selection import played_result, played_source, selected_subject
 from ..scene import history
 from .issue_markers import has_issue_markers
@@ -124,7 +124,7 @@ def _draw_issues(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
 
 
 def _draw_markers(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
-    """Offer to mark the issues, and to remove the markers that are there."""
+    """Draw buttons that mark the issues and remove existing markers."""
     if not has_issue_markers(scene):
         if scene.mocap_assist.issues:
             layout.operator(MARK, icon="MARKER_HLT")

@@ -55,12 +55,12 @@ def renew() -> None:
 
 
 def register() -> None:
-    """Follow all results."""
+    """Check again after each result from now on."""
     after_result.listeners.append(renew_later)
 
 
 def unregister() -> None:
-    """Stop it."""
+    """Stop checking after results."""
     after_result.listeners.remove(renew_later)
     if bpy.app.timers.is_registered(renew):
         bpy.app.timers.unregister(renew)

@@ -32,7 +32,7 @@ from .solve_cleaning import Cleaned, Recordings, names_of
 
 
 class ArmatureReading(NamedTuple):
-    """An armature and what it plays."""
+    """An armature and the action that it plays."""
 
     scene: bpy.types.Scene
     armature: bpy.types.Object
@@ -56,7 +56,7 @@ class ArmatureReading(NamedTuple):
 
     @classmethod
     def _found(cls, references: Played, raw: ArmatureTake) -> "ArmatureReading":
-        """Look everything up: pointers to Blender's data are stale after a time slice."""
+        """Look up all data again: pointers are stale after a time slice."""
         scene, armature, played = references.find()
         return cls(scene, armature, history.cleaned_from(played), played, raw, references)
 

@@ -108,7 +108,7 @@ def key_types(
 def _read(
     here: Subject, choices: CleanChoices
 ) -> Steps[tuple[ExampleSource, ArmatureReading | MarkerReading]]:
-    """Read what is to be learned from, and then what is to be cleaned."""
+    """Read the examples, and then the take to clean."""
     scene, subject = here.find()
     if choices.prior is Prior.LIBRARY:
         examples = ExampleSource(library=library_prior(scene, subject))

@@ -47,7 +47,7 @@ class ExampleSource:
     blender: BackgroundBlender | None = None
 
     def read(self, progress: Progress = unwatched) -> Examples:
-        """Return the motions and what is in the files.
+        """Return the motions, and those in the files.
 
         Raises InvalidFileError if a file that was named cannot be read, or if none has motion.
         """

@@ -6,8 +6,8 @@ import bpy
 
 from ..actions.contact_keys import FOOT_PROPERTIES, PROPERTIES
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_sentence, exists
-from ..panels.visibility import shows_armature
+from ..panel_parts.panel_layout import draw_sentence, exists
+from ..panel_parts.visibility import shows_armature
 from ..runtime.selection import selected_armature
 
 PLANT = "mocap_assist.plant_feet"

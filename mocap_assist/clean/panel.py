@@ -4,9 +4,9 @@ import bpy
 
 from ...solvers.denoising import PART_STRENGTHS, DenoiseSettings, PlantSettings
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_sentence, exists, folded, settings_column
-from ..panels.presets import draw_presets
-from ..panels.visibility import shows_take
+from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
+from ..panel_parts.presets import draw_presets
+from ..panel_parts.visibility import shows_take
 from ..runtime.selection import selected_subject, why_not_clean
 from .button_settings import Prior
 from .example_list import draw_examples

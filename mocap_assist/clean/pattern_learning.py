@@ -63,7 +63,7 @@ def write_learned(
 
 
 def target_of(settings: LearnBundle) -> Path:
-    """Return the file to write, after looking whether it can be written."""
+    """Return the file to write, after a check that it can be written."""
     if not settings.choices.learned_file:
         raise InvalidFileError("Choose a file to write the motion model to.")
     target = file_to_write(settings.choices.learned_file, ENDING)

@@ -28,7 +28,7 @@ class FeetBundle(NamedTuple):
 def read_planting(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: FeetBundle
 ) -> "Steps[partial[Replanted]]":
-    """Read what an armature plays; return the picklable solve."""
+    """Read the action that an armature plays; return the picklable solve."""
     check_writable(armature)
     here = Subject.of(scene, armature)
     take = yield from read_take.steps(armature, scene, source=played_source(armature))

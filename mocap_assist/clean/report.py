@@ -34,7 +34,7 @@ def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0
 
 
 def entry_of(operation: str, settings: CleanBundle, cleaned: Cleaned) -> dict[str, Any]:
-    """Return what the action's history keeps, JSON-ready."""
+    """Return the entry for the action's history, JSON-ready."""
     body = cleaned.solution.denoised[0]
     return {
         "operation": operation,

@@ -124,7 +124,7 @@ def names_of(recording: Motion | Tracks) -> tuple[str, ...]:
 
 
 def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
-    """Denoise the body by what the examples teach, and all else by what the take teaches."""
+    """Denoise the body with the examples' patterns, and all else with the take's own."""
     body, *other_trees = problem.recordings
     unswapped = None
     if problem.unswap and isinstance(body, Tracks):
@@ -196,7 +196,7 @@ def clean(
 
 
 def _low_confidence_of_legs(body: Motion | Tracks, finish: Finish) -> str:
-    """Return what is uncertain about legs whose feet are to be planted, found or not."""
+    """Return remarks on the low confidence of the legs whose feet are planted."""
     if isinstance(body, Tracks) or finish.planting is None:
         return ""
     if find_legs(body.skeleton) and not _chosen_legs(body, finish):
@@ -208,7 +208,7 @@ def _low_confidence_of_legs(body: Motion | Tracks, finish: Finish) -> str:
 
 
 def _planted(body: Motion, finish: Finish, progress: Progress) -> Planted | None:
-    """Plant the feet of what has legs, and its hands, if the limbs were chosen."""
+    """Plant the feet and hands of a body whose limbs were chosen."""
     planting = finish.planting
     if planting is None or not _chosen_legs(body, finish):
         return None

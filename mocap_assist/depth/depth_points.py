@@ -4,7 +4,7 @@ import bpy
 
 NAME = "Depth Points"
 MADE = "mocap_assist_depth_points"
-"""Custom property of the node group, whatever it is called meanwhile."""
+"""Custom property that marks the node group, even if it was renamed."""
 RADIUS = 0.006  # meters
 OBSERVED = "seen"
 """Attribute of a point: whether the camera measured a depth there."""

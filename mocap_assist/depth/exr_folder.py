@@ -94,7 +94,7 @@ def as_archive(
 
 
 def remove_old_copies(archives: Path, n_copies: int, n_bytes: int) -> None:
-    """Remove the copies that were used longest ago, until so many, and so many bytes, are left.
+    """Remove the copies used longest ago, until the limits of number and bytes are met.
 
     Each is a folder of its own, named by its digest. Those that the open file shows stay.
     """

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..panels.drawing import draw_job, exists
+from ..panel_parts.panel_layout import draw_job, exists
 
 EXPORT = "mocap_assist.export_take"
 ENTRY = "Motion Capture Take (.fbx, .glb, .bvh)"

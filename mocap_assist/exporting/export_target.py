@@ -19,7 +19,7 @@ ENDINGS = {each.ending: each for each in FileFormat}
 
 
 def format_of(path: Path, choices: ExportChoices) -> FileFormat:
-    """Return the format that the name of a file says, or the chosen one."""
+    """Return the format that a file's ending names, or the chosen one."""
     return ENDINGS.get(path.suffix.lower(), choices.file_format)
 
 

@@ -163,7 +163,7 @@ def _as_blend(
 
 @contextmanager
 def _local(objects: tuple[bpy.types.Object, ...]) -> Iterator[tuple[bpy.types.Object, ...]]:
-    """Yield the objects, with copies of linked ones for a while: a file cannot hold those."""
+    """Yield the objects, with temporary copies of linked ones, which a file cannot hold."""
     copies = {each: each.copy() for each in objects if each.library is not None}
     try:
         for copy in copies.values():

@@ -78,7 +78,7 @@ def exported_tree(
 
 
 def _stand_in(name: str, index: dict[str, int]) -> str:
-    """Return the exported bone that a bone is, or that stands for it; empty for none."""
+    """Return the exported bone that represents a bone; empty for none."""
     deforming = f"{DEFORMING}{name.removeprefix(ORIGINAL)}"
     return name if name in index else deforming if deforming in index else ""
 

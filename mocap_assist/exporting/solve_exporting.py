@@ -85,7 +85,7 @@ def export_take(problem: ExportProblem, *, progress: Progress = unwatched) -> Ex
 
 
 def _write_here(folder: str, request: ExportRequest, *, progress: Progress) -> WrittenTake:
-    """Write in this Blender: the writer can be imported only there."""
+    """Write in this Blender: only it can import the writer."""
     writer: Any = importlib.import_module(f"{EXTENSION}.{WRITER}")
     written: WrittenTake = writer.write_take(Path(folder), request, progress)
     return written

@@ -96,7 +96,7 @@ def submit_takes(problem: Submission, progress: Progress, show: Show = no_previe
 
 
 def _count_left_out(problem: Submission) -> int:
-    """Return the number of files that only Blender reads, but for those among the results."""
+    """Return the number of files that only Blender reads, except those among the results."""
     excluded = real_path(problem.output_folder)
     return sum(
         is_scene_file(path) and excluded not in real_path(path).parents

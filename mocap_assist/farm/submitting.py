@@ -6,7 +6,7 @@ import bpy
 
 from ...solvers.errors import InvalidSettingError
 from ..jobs.protocol import PreviewSolve
-from ..panels.preference_values import preferred
+from ..panel_parts.preference_values import preferred
 from .button_settings import FarmBundle
 from .solve_submitting import Submission, Submitted, submit_takes
 

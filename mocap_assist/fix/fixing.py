@@ -32,7 +32,7 @@ from ..clean.solve_cleaning import Cleaned
 from ..depth.depth_preview import Shown, recording_of, shows_depth
 from ..jobs.protocol import PreviewSolve
 from ..markers.solving import SolveBundle, read_solving, write_solved
-from ..panels.fix_card import keep_card
+from ..panel_parts.fix_card import keep_card
 from ..reconstruct.button_settings import ReconstructBundle, ReconstructChoices
 from ..reconstruct.reconstructing import read_reconstructing, write_reconstructed
 from ..reconstruct.solve_reconstructing import Rebuilt
@@ -175,7 +175,7 @@ def push_undo(name: str) -> None:
 
 
 def fixed_subject(subject: bpy.types.Object, fixed: Fixed) -> bpy.types.Object:
-    """Return what plays the result: the subject, or the new armature made of it."""
+    """Return the object that plays the result: the subject, or a new armature."""
     if not isinstance(fixed.written, MarkerMotion | FixedDepth):
         return subject
     armature = selected_armature(bpy.context)

@@ -8,10 +8,10 @@ from ...solvers.workflows import TakeOrigin, figure_texts
 from ..blender.mixins import PanelMixin
 from ..check.reverting import why_not_revert
 from ..languages import translated
-from ..panels.drawing import draw_job, draw_sentence, exists, split_column
-from ..panels.fix_card import shown_card
-from ..panels.preference_values import preferred
-from ..panels.visibility import shows_take
+from ..panel_parts.fix_card import shown_card
+from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, split_column
+from ..panel_parts.preference_values import preferred
+from ..panel_parts.visibility import shows_take
 from ..track.tracking import selected_preview
 from .fixing import why_not_fix
 from .queue import Status, selected_takes, shown_queue
@@ -102,7 +102,7 @@ def _draw_queue(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def _draw_last_steps(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw what else the button can do, folded: feet, physics and another armature."""
+    """Draw the optional last steps, folded: feet, physics and retargeting."""
     header, body = layout.panel("mocap_assist_fix_last_steps", default_closed=True)
     header.label(text="Last Steps")
     if body is None:

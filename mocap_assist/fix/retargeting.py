@@ -15,7 +15,7 @@ POINTS = "Not retargeted: points have no skeleton, so there is no pose to transf
 
 
 def retargeted(here: Subject, rig: str, report: dict[str, Any]) -> Steps[dict[str, Any]]:
-    """Retarget what the subject plays to an armature; return the report with what was done.
+    """Retarget the subject's action to an armature; return the extended report.
 
     What cannot be retargeted is still fixed; the report then says why.
     """

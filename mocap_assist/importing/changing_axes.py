@@ -60,7 +60,7 @@ def imported_object(context: bpy.types.Context) -> bpy.types.Object | None:
 
 
 def why_fixed(context: bpy.types.Context) -> str:
-    """Say why the button is gray; nothing if it is not."""
+    """Return why the button is gray, or an empty text."""
     found = imported_object(context)
     if found is None:
         return "Select an armature or markers that Mocap Assist imported"
@@ -82,7 +82,7 @@ def noted_change(owner: bpy.types.Object) -> AxesChange:
 
 
 def change_axes(context: bpy.types.Context, owner: bpy.types.Object, change: AxesChange) -> str:
-    """Turn and scale an imported object as if its file had other axes; return a message.
+    """Rotate and scale an imported object as if its file had other axes; return a message.
 
     Only the object is turned: its actions, raw and cleaned, stay as they are.
 

@@ -21,7 +21,7 @@ FOR_KINDS: dict[str, set[str]] = {
     "focal_length": {DEPTH}, "focal_length_y": {DEPTH}, "center_x": {DEPTH},
     "center_y": {DEPTH}, "held": {DEPTH}, "mirrored": {DEPTH},
 }  # fmt: skip
-"""Kinds of recordings that a setting means something for; others are for all."""
+"""Kinds of recordings that a setting applies to; settings not listed apply to all kinds."""
 
 
 def kinds_of(paths: Iterable[Path]) -> str:

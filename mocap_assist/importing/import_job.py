@@ -1,4 +1,4 @@
-"""Files that are read in a process of its own and then come into the scene one by one."""
+"""Read files in a process of its own, and add them to the scene one by one."""
 
 from collections import deque
 from functools import partial
@@ -19,7 +19,7 @@ from .recording_objects import conversion_from_choices
 from .solve_reading import Read, read_files
 
 BYTES_AT_ONCE = 64_000_000
-"""Of the files that are read before what they hold comes into the scene."""
+"""Bytes of files that are read before their content is added to the scene."""
 
 
 class ImportJob:

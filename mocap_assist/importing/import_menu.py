@@ -3,7 +3,7 @@
 import bpy
 from bpy_extras.io_utils import poll_file_object_drop
 
-from ..panels.drawing import exists
+from ..panel_parts.panel_layout import exists
 from .importing import EXTENSIONS
 
 IMPORT = "mocap_assist.import_recording"

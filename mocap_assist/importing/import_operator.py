@@ -10,7 +10,7 @@ from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import SettingsMixin
 from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
 from ..languages import translated
-from ..panels.drawing import draw_lines
+from ..panel_parts.panel_layout import draw_lines
 from ..runtime.navigation import is_in_status_bar
 from ..runtime.solver_operator import in_background
 from ..runtime.watch import why_busy

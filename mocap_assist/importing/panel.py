@@ -7,10 +7,10 @@ import bpy
 from ..blender.mixins import PanelMixin
 from ..depth.depth_preview import NOT_ALLOWED, problem_of
 from ..languages import translated
-from ..panels.drawing import draw_job, draw_sentence, exists
-from ..panels.manual_page import start_page
-from ..panels.solver_ready import note_drawing
-from ..panels.visibility import ALL_PANELS
+from ..panel_parts.manual_page import start_page
+from ..panel_parts.panel_layout import draw_job, draw_sentence, exists
+from ..panel_parts.solver_ready import note_drawing
+from ..panel_parts.visibility import ALL_PANELS
 from ..runtime.selection import selected_subject
 from ..scene.origin import noted_conventions, origin_of
 from .import_menu import IMPORT

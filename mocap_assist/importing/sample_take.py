@@ -15,7 +15,7 @@ from .show_actor import show_actor
 from .solve_reading import ReadRecording, convert_recording
 
 NAME = Path("Sample Walk")
-"""Stands for the file of the take, which there is not."""
+"""Name that replaces the path of a file: the sample take has no file."""
 
 
 def why_not_load(context: bpy.types.Context) -> str:

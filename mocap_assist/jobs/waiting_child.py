@@ -9,7 +9,7 @@ from ...solvers.errors import MocapAssistError
 from .child_process import ChildProcess
 
 _waiting: list[ChildProcess] = []
-"""None or one."""
+"""The process that waits, if any."""
 _died_unused = [False]
 """Whether the last one ended by itself: none is started then until the next solve."""
 

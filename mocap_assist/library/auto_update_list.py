@@ -1,7 +1,7 @@
-"""Libraries that this user wants to have indexed by itself, on this machine.
+"""Libraries that are indexed automatically for this user on this machine.
 
-A .blend file has no say in this: what it names is indexed when Index is pressed, and by itself
-only after *Keep Current* was pressed for exactly these sources.
+A .blend file cannot add to them: its library is indexed when Index is pressed, and
+automatically only after *Keep Current* was pressed for exactly these sources.
 """
 
 from pathlib import Path

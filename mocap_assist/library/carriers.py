@@ -1,4 +1,5 @@
-"""Objects that carry an armature: a take of another program may be theirs in part."""
+"""Objects that carry an armature: in files of other programs they may hold a part of the
+motion."""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Find what bones of other programs do that a recording of rotations cannot hold."""
+"""Find movement of bones that a recording of rotations cannot hold, such as stretching."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""A library as what Clean and Reconstruct learn from: the clips that are like a take."""
+"""A library as what Clean and Reconstruct learn from: the clips that are similar to a take."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

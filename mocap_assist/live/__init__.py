@@ -1,1 +1,1 @@
-"""Query by performing: an actor before a camera gives commands and shows what to search for."""
+"""Live streams: recorded on a rig, or used to search the library by performing."""

@@ -11,7 +11,7 @@ import bpy
 
 from ...solvers.gestures import Gesture, GestureEvent
 from ...solvers.motion import JointRecording
-from ..drawing.view_control import rotate_views, zoom_views
+from ..overlays.view_control import rotate_views, zoom_views
 from ..search.performing import choose, news, page, search_with, show_all, show_library
 
 STARTED = "Perform what you search for, then clap."

@@ -9,7 +9,7 @@ from ...solvers.recordings.streams import StreamProtocol
 from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import OperatorMixin
 from ..languages import translated
-from ..panels.preference_values import preferred
+from ..panel_parts.preference_values import preferred
 from . import listening
 from .stream_preferences import allowed_addresses, live_port
 

@@ -1,13 +1,13 @@
-"""Panel: search by performing before a camera."""
+"""Panel: search by performing in front of a camera."""
 
 from typing import ClassVar
 
 import bpy
 
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_sentence, exists, settings_column
-from ..panels.preference_values import preferences
-from ..panels.visibility import shows_take
+from ..panel_parts.panel_layout import draw_sentence, exists, settings_column
+from ..panel_parts.preference_values import preferences
+from ..panel_parts.visibility import shows_take
 from ..runtime.selection import selected_armature
 from .listening import current
 from .stream_state import issue_text, sender_text

@@ -1,10 +1,10 @@
-"""What the preferences say of live streams."""
+"""Preferences of live streams."""
 
 import bpy
 
 from ...solvers.errors import InvalidSettingError
 from ...solvers.recordings.streams import PORT
-from ..panels.preference_values import preferences, preferred
+from ..panel_parts.preference_values import preferences, preferred
 
 OFFLINE = (
     "Blender's online access is off. Allow it in Preferences > System to receive from other"

@@ -8,8 +8,8 @@ import bpy
 from ...solvers.markers import SolveSettings
 from ...solvers.workflows import MarkerMotionSettings
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_sentence, exists, settings_column
-from ..panels.visibility import shows_all
+from ..panel_parts.panel_layout import draw_sentence, exists, settings_column
+from ..panel_parts.visibility import shows_all
 from ..runtime.selection import selected_subject
 from .solving import why_not_solve
 

@@ -1,4 +1,4 @@
-"""Panel: let a body with mass and muscles make the motion."""
+"""Panel: let a body with mass and muscles perform the motion."""
 
 from typing import ClassVar
 
@@ -6,9 +6,9 @@ import bpy
 
 from ...solvers.physics import Ground, SimulateSettings
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_sentence, exists, folded, settings_column
-from ..panels.presets import draw_presets
-from ..panels.visibility import shows_armature
+from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
+from ..panel_parts.presets import draw_presets
+from ..panel_parts.visibility import shows_armature
 from ..runtime.selection import why_not_change
 
 SIMULATE = "mocap_assist.simulate"

@@ -30,7 +30,7 @@ class SimulateBundle(NamedTuple):
 def read_simulating(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: SimulateBundle
 ) -> "Steps[partial[Resimulated]]":
-    """Read what an armature plays; return the picklable solve."""
+    """Read the action that an armature plays; return the picklable solve."""
     check_writable(armature)
     read = yield from read_take.steps(armature, scene, source=played_source(armature))
     take = take_of(read.parts[0].motion, settings.simulating)

@@ -36,7 +36,7 @@ def simulate_take(
     *,
     progress: Progress = unwatched,
 ) -> Resimulated:
-    """Simulate a take, unless that was done already, and take over so much of it."""
+    """Simulate a take, unless that was done already, and blend by the strength."""
     if simulated is None:
         simulated = simulate(take.body, settings=take.settings, progress=progress)
     body = apply_strength(take.body, simulated, strength)

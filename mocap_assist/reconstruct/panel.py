@@ -8,10 +8,10 @@ from ...solvers.denoising import PlantSettings
 from ...solvers.reconstruction import ReconstructSettings
 from ..blender.mixins import PanelMixin
 from ..clean.example_list import RECONSTRUCT, draw_examples
-from ..drawing.confidence_switch import draw_confidence_switch
-from ..panels.drawing import draw_sentence, exists, folded, settings_column
-from ..panels.presets import draw_presets
-from ..panels.visibility import shows_all
+from ..overlays.confidence_switch import draw_confidence_switch
+from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
+from ..panel_parts.presets import draw_presets
+from ..panel_parts.visibility import shows_all
 from ..runtime.selection import selected_armature
 from ..scene.origin import origin_of, was_tracked
 from .button_settings import Postures

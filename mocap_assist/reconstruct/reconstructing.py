@@ -133,7 +133,7 @@ def write_reconstructed(
 def _read(
     here: Subject, settings: ReconstructBundle
 ) -> Steps[tuple[_ReconstructScene, RebuildProblem]]:
-    """Read what is to be learned from, and then what was recorded."""
+    """Read the pose library's sources, and then the recording."""
     examples, choices = None, settings.choices
     if choices.postures is Postures.EXAMPLES:
         examples = yield from read_examples.steps(*here.find(), choices.examples)
@@ -202,7 +202,7 @@ def _key_types(names: tuple[str, ...], rebuilt: Rebuilt) -> dict[str, NDArray[np
 
 
 def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
-    """Return what the action's history keeps, JSON-ready."""
+    """Return the entry for the action's history, JSON-ready."""
     return {
         "operation": "reconstruct",
         "settings": history.plain(*settings),
@@ -215,7 +215,7 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
 
 
 def _message_of(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
-    """Return what a status bar has room for, and what the animator must know."""
+    """Return the message for the status bar, with warnings."""
     percent = 100 * rebuilt.solution.rebuilt_fraction
     short = f"{name}: rebuilt {percent:.1f} % of joint samples"
     if planted := rebuilt.planted:

@@ -6,9 +6,9 @@ import bpy
 import numpy as np
 
 from ...solvers.arrays import Single
-from ..drawing.overlay_drawing import Color, draw_lines
-from ..drawing.view_drawing import ViewDrawing, redraw
-from ..panels.preference_values import preferred
+from ..overlays.overlay_drawing import Color, draw_lines
+from ..overlays.view_drawing import ViewDrawing, redraw
+from ..panel_parts.preference_values import preferred
 from ..runtime.selection import select_only_bone
 from .bone_map import SIDES, listed_armature
 

@@ -12,10 +12,10 @@ from ...solvers.motion import read_humanoid_map, write_humanoid_map
 from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import OperatorMixin
 from ..blender.path_properties import absolute, path_property
-from ..drawing.color_icons import BARS, bars_icon, square_icon
-from ..drawing.strip_ranges import MARKS, Mark, StripRow, confidence_mark
 from ..languages import translated
-from ..panels.drawing import draw_sentence, is_wide
+from ..overlays.color_icons import BARS, bars_icon, square_icon
+from ..overlays.strip_ranges import MARKS, Mark, StripRow, confidence_mark
+from ..panel_parts.panel_layout import draw_sentence, is_wide
 from ..runtime.selection import selected_armature, why_not_retarget
 from .bone_highlight import COLOR, SWITCH, why_certain
 from .bone_map import (
@@ -231,7 +231,7 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def _draw_legend(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw what the bars mean, and the switch of the highlight."""
+    """Draw the legend of the bars, and the switch of the highlight."""
     row = layout.row(align=True)
     for mark in MARKS[StripRow.CONFIDENCE]:
         row.label(text=mark.value, icon_value=bars_icon(mark))
@@ -242,7 +242,7 @@ def _draw_legend(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
 def _draw_reasons(
     layout: bpy.types.UILayout, context: bpy.types.Context, row: bpy.types.PropertyGroup
 ) -> None:
-    """Draw how certain both bones of a row are, and why."""
+    """Draw the confidence in both bones of a row, and the reasons."""
     for side in SIDES:
         if text := why_certain(row, side):
             icon = "ERROR" if has_low_confidence(row, side) else "CHECKMARK"

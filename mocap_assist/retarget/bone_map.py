@@ -25,7 +25,7 @@ class BoneMaps(NamedTuple):
 
 
 def find_maps(source: bpy.types.Object, target: bpy.types.Object) -> BoneMaps:
-    """Find out by names and structure which bones play which part."""
+    """Find the role of each bone by name and structure."""
     return BoneMaps(find_roles(source), find_roles(target))
 
 
@@ -107,7 +107,7 @@ def listed_armature(listed: bpy.types.PropertyGroup, side: str) -> bpy.types.Obj
 
 
 def explain_edited(side: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
-    """Return what to do after a bone of this side was edited.
+    """Return the callback for edits of a bone on this side.
 
     All rows are explained again, because the roles of a limb depend on each other, and the
     heading follows.

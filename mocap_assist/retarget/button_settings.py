@@ -18,7 +18,7 @@ class Takes(Choice):
 
 @dataclass(frozen=True, kw_only=True)
 class RetargetChoices(Settings):
-    """Who gets the motion, which motions, and how limbs are keyed."""
+    """The target, the motions, and how limbs are keyed."""
 
     target: str = setting("", "Armature that receives the motion")
     takes: Takes = setting(

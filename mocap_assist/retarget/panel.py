@@ -1,4 +1,4 @@
-"""Panel: let another armature make the motion, and thin out keys."""
+"""Panel: transfer the motion to another armature, and reduce keys."""
 
 from typing import ClassVar
 
@@ -9,9 +9,9 @@ from ...solvers.retargeting import RetargetSettings, RootMotion
 from ..blender.mixins import PanelMixin
 from ..blender.name_lists import SEPARATOR, join_names, split_names
 from ..languages import translated
-from ..panels.drawing import draw_sentence, exists, folded, settings_column
-from ..panels.presets import draw_presets
-from ..panels.visibility import shows_armature
+from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
+from ..panel_parts.presets import draw_presets
+from ..panel_parts.visibility import shows_armature
 from ..rigs.rigify import is_rigify
 from ..runtime.selection import selected_armature, why_not_read, why_not_retarget
 from .bone_list import draw_bones
@@ -26,7 +26,7 @@ MAX_LISTED = 30
 
 
 class RetargetPanel(PanelMixin):
-    """Who makes the motion, which motions, how, and the button."""
+    """Target, motions, settings and the button of Retarget."""
 
     bl_label = "Retarget"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}

@@ -6,9 +6,9 @@ import bpy
 import numpy as np
 
 from ...solvers.arrays import Array
-from ..drawing.color_icons import square_icon
-from ..drawing.confidence_colors import UNKNOWN
-from ..drawing.pixel_drawing import (
+from ..overlays.color_icons import square_icon
+from ..overlays.confidence_colors import UNKNOWN
+from ..overlays.pixel_drawing import (
     TEXT_COLOR,
     Box,
     draw_boxes,
@@ -16,9 +16,9 @@ from ..drawing.pixel_drawing import (
     free_space,
     write,
 )
-from ..drawing.strip_ranges import COLORS, Color, confidence_mark
-from ..drawing.view_drawing import ViewDrawing, redraw
-from ..panels.preference_values import preferred
+from ..overlays.strip_ranges import COLORS, Color, confidence_mark
+from ..overlays.view_drawing import ViewDrawing, redraw
+from ..panel_parts.preference_values import preferred
 from .bone_highlight import COLOR as HIGHLIGHT
 from .bone_map import SIDES, listed_armature
 

@@ -229,7 +229,7 @@ def _read(here: Subject, settings: RetargetBundle) -> Steps[RetargetScene]:
 def _read_clip(
     here: Subject, action: SourceReference, choices: RetargetChoices
 ) -> Steps[ArmatureTake]:
-    """Read an action; of a control rig what its body does."""
+    """Read an action; of a control rig, the motion of its body."""
     scene, source = here.find()
     take = yield from read_take.steps(source, scene, source=action.find())
     scene, source = here.find()
@@ -277,7 +277,7 @@ def _known(roles: HumanoidMap, source: bpy.types.Object) -> HumanoidMap:
 def _entry(
     source: bpy.types.Object, found: RetargetScene, settings: RetargetBundle
 ) -> dict[str, object]:
-    """Return what the action remembers of how it was made."""
+    """Return the entry for the action's history."""
     return {
         "operation": "retarget",
         "source_armature": source.name,

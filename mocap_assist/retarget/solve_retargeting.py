@@ -75,14 +75,14 @@ class ReportedRetargeting(NamedTuple):
 def retarget_and_report(
     problem: RetargetProblem, *, progress: Progress = unwatched
 ) -> ReportedRetargeting:
-    """Give each clip to the target, and collect the solver's remarks."""
+    """Retarget each clip to the target, and collect the solver's remarks."""
     remarks: list[Remark] = []
     clips = retarget_clips(problem, progress=collect_remarks(progress, remarks))
     return ReportedRetargeting(clips, tuple(remarks))
 
 
 def retarget_clips(problem: RetargetProblem, *, progress: Progress = unwatched) -> Retargeted:
-    """Give each clip to the target, one after the other."""
+    """Retarget each clip to the target, one after the other."""
     retargeted, n_clips = [], len(problem.clips)
     for index, clip in enumerate(problem.clips):
         clip_progress = within(progress, index / n_clips, (index + 1) / n_clips)
@@ -139,7 +139,7 @@ def _started(motion: Motion, roles: HumanoidMap, start: Start) -> Motion:
 
 
 def _travel(motion: Motion, target: TargetRig, settings: RetargetSettings) -> Carried:
-    """Return how a bone on the ground moves that carries the body along."""
+    """Return the motion of the bone on the ground that carries the body."""
     path = ground_path(
         motion, target.humanoid, settings.travel_smoothing, follow_heading=settings.turn_root
     )

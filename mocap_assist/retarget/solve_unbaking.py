@@ -33,9 +33,9 @@ hand: 0.06 degrees for 1 cm."""
 MIN_KEYS = 2
 """Number of keys without which nothing moves. By definition."""
 TIGHTENING_FACTOR, N_TRIES = 0.6, 6
-"""Axes and angles do not go between keys as quaternions do: where that brings an end too far
-away, the keys are chosen for less than the tolerance, by this factor, so many times at most.
-The second bounds the run time."""
+"""Euler angles and axis-angles are interpolated differently from quaternions. Where that moves
+an end too far, the keys are chosen again, for the tolerance times this factor, at most this
+often. The second bounds the run time."""
 AXIS_ANGLE, QUATERNION = "AXIS_ANGLE", "QUATERNION"
 
 
@@ -91,7 +91,7 @@ class Unbaked:
 
 
 def unbake(problem: UnbakeProblem, *, progress: Progress = unwatched) -> Unbaked:
-    """Thin out the keys of each tree of bones."""
+    """Reduce the keys of each tree of bones."""
     keys: dict[str, SparseKeys] = {}
     error, n_trees = 0.0, len(problem.trees)
     for index, tree in enumerate(problem.trees):

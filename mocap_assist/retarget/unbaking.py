@@ -25,7 +25,7 @@ from .sparse_write import count_keys, write_sparse
 def read_unbaking(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: UnbakeBundle
 ) -> "Steps[partial[Unbaked]]":
-    """Read what an armature plays; return the picklable solve."""
+    """Read the action that an armature plays; return the picklable solve."""
     check_writable(armature)
     take = yield from read_take.steps(armature, scene, source=played_source(armature))
     problem = yield from in_thread.steps(partial(_problem, take, settings))

@@ -128,7 +128,7 @@ def _pose_at(
 def _played(
     scene: bpy.types.Scene, armature: bpy.types.Object, source: Source
 ) -> Iterator[None]:
-    """Let the armature play an action for a while; go back to its own and the same frame."""
+    """Let the armature play an action temporarily, then restore its own and the frame."""
     before = scene.frame_current, scene.frame_subframe
     animation = armature.animation_data
     played = animation.action, animation.action_slot
@@ -144,7 +144,7 @@ def _played(
 
 
 def _parent(role: str, ordered: list[str]) -> int:
-    """Return the index of the nearest part above that there is; -1 for the hips."""
+    """Return the index of the nearest existing part above; -1 for the hips."""
     while (above := _above(role)) and above not in ordered:
         role = above
     return ordered.index(above) if above else -1

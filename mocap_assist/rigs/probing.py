@@ -64,7 +64,7 @@ def find_carriers(
 
 
 def _same(carried: Array, moved: Mapping[str, Array], name: str, height: float) -> str | None:
-    """Return whose movement it is; places count only where the height is finite."""
+    """Return which controls move together; positions count only if the height is finite."""
     for other, movement in moved.items():
         difference = np.abs(carried - movement)
         if (
@@ -113,7 +113,7 @@ def _carried_and_moved(
     seed: int,
     height: float,
 ) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Return how each control's carrier has moved from rest, and how it has itself."""
+    """Return how far each control's carrier and the control itself moved from rest."""
     rng = np.random.default_rng(seed)
     for name in names:
         rotation = (

@@ -26,7 +26,7 @@ def is_rigify(bones: Collection[str]) -> bool:
 
 
 def rigify_roles(bones: Collection[str]) -> dict[str, str]:
-    """Return controls by role; all of the spine's have one, whichever way they turn it."""
+    """Return controls by role; all controls of the spine have one."""
     controls = [bone for bone in bones if not bone.startswith(HELPERS)]
     roles = roles_by_name(controls)
     spine = sorted(bone for bone in controls if SPINE.match(bone))
@@ -81,7 +81,7 @@ def _parts(limb: str) -> tuple[str, str, str]:
 
 
 def original_of(control: str, bones: Collection[str]) -> str:
-    """Return the bone that shows where a control's part of the body really is."""
+    """Return the bone at the true position of a control's body part."""
     named = {"torso": "ORG-spine", "hips": "ORG-spine"}
     original = named.get(control, "ORG-" + control.replace("_fk", ""))
     return original if original in bones else control

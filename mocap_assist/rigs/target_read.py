@@ -1,4 +1,4 @@
-"""Read a rig that is to be given a motion."""
+"""Read the target rig of a retargeted motion."""
 
 from collections.abc import Collection, Mapping
 
@@ -40,7 +40,7 @@ def find_roles(armature: bpy.types.Object) -> HumanoidMap:
 
 
 def stage_of(armature: bpy.types.Object) -> tuple[Placement, Array]:
-    """Return where the armature's own space lies in its stage, and the stage's turn.
+    """Return the position of the armature's space on its stage, and the stage's rotation.
 
     The stage is upright, with the armature's rotation about the vertical.
     """
@@ -64,7 +64,7 @@ def read_target(
     limbs: Limbs,
     on_root: bool,
 ) -> tuple[TargetRig, Mapping[tuple[str, str], float]]:
-    """Read the rest pose of a rig and what carries what; it is not changed.
+    """Read the rest pose of a rig and the carriers of its controls; it is not changed.
 
     Parameters
     ----------

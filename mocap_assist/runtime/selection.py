@@ -31,7 +31,7 @@ def selected_subject(context: bpy.types.Context) -> bpy.types.Object | None:
 
 
 def why_not_read(context: bpy.types.Context) -> str:
-    """Return why there is no motion to read, or an empty text."""
+    """Return why no motion can be read, or an empty text."""
     subject = selected_subject(context)
     if subject is None:
         return "Select an animated armature or marker set."

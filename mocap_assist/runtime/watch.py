@@ -5,8 +5,8 @@ from time import monotonic
 
 import bpy
 
-from ..drawing.view_drawing import redraw
 from ..languages import translated
+from ..overlays.view_drawing import redraw
 from .file_change_handlers import ends_with_file
 
 TIMER_INTERVAL_S = 0.05
@@ -65,7 +65,7 @@ class Watch:
         return self in _on
 
     def show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
-        """Show the progress; a solve that is looked at often is shown less often."""
+        """Show the progress, at limited intervals."""
         if monotonic() - self._shown_at < self._display_s:
             return
         self._shown_at = monotonic()

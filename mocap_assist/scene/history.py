@@ -75,7 +75,7 @@ def raw_of(action: bpy.types.Action, slot: bpy.types.ActionSlot | None = None) -
 
 
 def cleaned_from(played: Source) -> Source:
-    """Return what Clean starts from: the recorded action, or what made another motion of it.
+    """Return the source of Clean: the recorded action, or the result that replaced its motion.
 
     Cleaning again starts from the same action; what Reconstruct or Simulate made is kept.
     """

@@ -1,4 +1,4 @@
-"""Actions and armatures of another .blend file, linked for as long as they are looked at."""
+"""Actions and armatures of another .blend file, linked only while they are read."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -21,7 +21,7 @@ class Linked(NamedTuple):
 
 
 def is_blend(path: Path) -> bool:
-    """Whether a file is called as Blender's own."""
+    """Whether the name of a file is that of a .blend file."""
     return path.suffix.lower() == ENDING
 
 
@@ -29,7 +29,7 @@ def is_blend(path: Path) -> bool:
 def linked_clips(
     path: Path, actions: Sequence[str] | None = None, objects: Sequence[str] | None = None
 ) -> Iterator[Linked]:
-    """Link what a file holds; afterwards all is as it was.
+    """Link the content of a file, and remove it again at the end.
 
     Parameters
     ----------

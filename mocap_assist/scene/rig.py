@@ -72,7 +72,7 @@ class Placement:
     scale: float
 
     def in_unit(self, meters: float) -> "Placement":
-        """Return the placement with its meters interpreted as units of so many meters."""
+        """Return the placement with its meters interpreted as units of this length."""
         return Placement(self.rotations, meters * self.origins, meters * self.scale)
 
     def points(self, points: Array) -> Array:

@@ -33,7 +33,7 @@ def add_quietly(context: bpy.types.Context, made: bpy.types.Object) -> None:
 
 
 def collection_for_new(context: bpy.types.Context) -> bpy.types.Collection:
-    """Return the active collection if it is seen and not linked, else that of the scene."""
+    """Return the active collection if it is visible and local, otherwise the scene's."""
     active = context.view_layer.active_layer_collection
     hidden = active.exclude or active.hide_viewport or active.collection.hide_viewport
     usable = not hidden and active.is_visible and active.collection.is_editable
@@ -65,12 +65,12 @@ def choose(
 
 
 def present() -> Numbers:
-    """Return the numbers of all data of the kinds that are made here."""
+    """Return the session numbers of all data of the kinds that this module makes."""
     return {kind: {each.session_uid for each in getattr(bpy.data, kind)} for kind in KINDS}
 
 
 def remove(numbers: Numbers) -> None:
-    """Remove data by their numbers, as far as they are there."""
+    """Remove the data with these session numbers that still exist."""
     for kind, unwanted in numbers.items():
         data = getattr(bpy.data, kind)
         bpy.data.batch_remove([each for each in data if each.session_uid in unwanted])
@@ -78,7 +78,7 @@ def remove(numbers: Numbers) -> None:
 
 @contextmanager
 def undo_on_error(context: bpy.types.Context) -> Iterator[Numbers]:
-    """Leave the scene as it was if it ends with an error; else fill what it yields."""
+    """Restore the scene after an error; otherwise fill the yielded list."""
     state, before = SceneState.of(context), present()
     made: Numbers = {}
     try:

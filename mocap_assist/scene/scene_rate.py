@@ -1,4 +1,4 @@
-"""On which scene frames the samples of a recording come to lie."""
+"""Assign the samples of a recording to scene frames."""
 
 from math import ceil
 from typing import NamedTuple
@@ -51,13 +51,13 @@ def scene_rate(scene: bpy.types.Scene) -> float:
 
 
 def set_scene_rate(scene: bpy.types.Scene, frame_rate: float) -> None:
-    """Let the scene play so many frames per second; fractional rates too."""
+    """Set the frame rate of the scene, which may be fractional."""
     scene.render.fps = max(round(frame_rate), 1)
     scene.render.fps_base = scene.render.fps / frame_rate
 
 
 def timing(scene: bpy.types.Scene, choice: FrameRate, frame_rate: float, start: int) -> Timing:
-    """Return where samples of `frame_rate` come to lie; the scene is not changed."""
+    """Return the scene frames of samples at `frame_rate`; the scene is not changed."""
     step = scene_rate(scene) / frame_rate
     if choice in {FrameRate.UPDATE, FrameRate.ONE} or is_same_rate(step, 1.0):
         step = 1.0

@@ -6,7 +6,7 @@ import bpy
 
 
 class SceneState(NamedTuple):
-    """By numbers, since undo replaces what Blender's own pointers mean."""
+    """The selection and time of a scene, by session numbers: undo invalidates pointers."""
 
     active: int | None
     mode: str
@@ -20,7 +20,7 @@ class SceneState(NamedTuple):
 
     @classmethod
     def of(cls, context: bpy.types.Context) -> "SceneState":
-        """Remember it."""
+        """Store the state of a scene."""
         objects, scene = context.view_layer.objects, context.scene
         active = objects.active
         return cls(
@@ -35,7 +35,7 @@ class SceneState(NamedTuple):
         )
 
     def restore(self, context: bpy.types.Context) -> None:
-        """Bring it back, as far as the objects are still there."""
+        """Restore the state, for the objects that still exist."""
         scene, objects = context.scene, context.view_layer.objects
         scene.render.fps, scene.render.fps_base = self.fps, self.fps_base
         scene.frame_start, scene.frame_end = self.frame_start, self.frame_end

@@ -38,7 +38,7 @@ def learn_from_best(context: bpy.types.Context, group: str, n_best: int) -> str:
 
 
 def _example(context: bpy.types.Context, found: Found) -> str:
-    """Return what the list of examples calls a match; nothing if it cannot serve."""
+    """Return the entry of a match for the list of examples; nothing if it is unsuitable."""
     origin = found.entry.origin
     if origin is None or SEPARATOR in origin.path or not Path(origin.path).is_file():
         return ""

@@ -57,7 +57,7 @@ def read_query(
 def read_finding(
     scene: bpy.types.Scene, subject: bpy.types.Object, settings: FindBundle
 ) -> "Steps[partial[Finding]]":
-    """Read what is looked for; return the picklable solve."""
+    """Read the query; return the picklable solve."""
     problem, _ = yield from _problem(Subject.of(scene, subject), settings)
     return partial(find_clips, problem)
 
@@ -70,7 +70,7 @@ def list_found(
     finding: Finding,
     solved_digest: str | None = None,
 ) -> Steps[str]:
-    """List what was found; return a sentence about it."""
+    """List the matches; return a sentence about them."""
     here = Subject.of(scene, subject)
     problem, query = yield from _problem(here, settings)
     scene, subject = here.find()
@@ -95,7 +95,7 @@ def list_found(
 
 
 def fill_list(context: bpy.types.Context, search: searches.Search) -> None:
-    """Show in the sidebar what was found."""
+    """Show the matches in the sidebar."""
     listed = context.window_manager.mocap_assist_matches
     listed.rows.clear()
     for found in search.finding.found:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from ...solvers.arrays import Array
 from ...solvers.motion.humanoid import POSTURE_JOINTS
 from ...solvers.pictures import ViewDirection, project_to_view
-from ..drawing.pixel_drawing import Box
+from ..overlays.pixel_drawing import Box
 from .ghost import BONES
 from .solve_finding import Found
 

@@ -9,7 +9,8 @@ import numpy as np
 from bpy.app import handlers
 
 from ...solvers.arrays import Array
-from ..drawing.pixel_drawing import (
+from ..languages import translated
+from ..overlays.pixel_drawing import (
     TEXT_COLOR,
     TEXT_PX,
     WEAK_COLOR,
@@ -20,9 +21,8 @@ from ..drawing.pixel_drawing import (
     window_region,
     write,
 )
-from ..drawing.strip_ranges import Color
-from ..drawing.view_drawing import redraw
-from ..languages import translated
+from ..overlays.strip_ranges import Color
+from ..overlays.view_drawing import redraw
 from .gallery import GAP_PX, LABEL_PX, cell_at, cells_in, figure_lines, posture_row
 from .ghost_drawing import COLOR
 from .match_grid import GOOD_SCORE

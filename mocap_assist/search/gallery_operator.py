@@ -6,8 +6,8 @@ import bpy
 
 from ..blender.last_press import note_press
 from ..blender.mixins import OperatorMixin
-from ..drawing.pixel_drawing import window_region
 from ..languages import translated
+from ..overlays.pixel_drawing import window_region
 from ..runtime.watch import why_busy
 from . import searches
 from .gallery_drawing import Gallery
@@ -17,7 +17,7 @@ PASSED = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE"}
 
 
 def why_not_browse(context: bpy.types.Context) -> str:
-    """Return why there is nothing to show, or an empty text."""
+    """Return why no matches can be shown, or an empty text."""
     search = searches.listed(context)
     if search is None or not search.finding.found:
         return "No matches are listed. Press Find Similar first."

@@ -11,7 +11,8 @@ BONES = np.array([(parent, joint) for joint, parent in enumerate(PARENTS) if par
 
 
 def ghost_lines(stage: QueryPath, found: Found, query_frame: float) -> Array:
-    """Return what the clip does when the query is at a frame: where it is, with its build.
+    """Return the lines of the clip's posture at a frame of the query, at the query's position
+    and size.
 
     Parameters
     ----------

@@ -5,8 +5,8 @@ from mathutils import Matrix
 
 from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
-from ..drawing.overlay_drawing import Color, draw_lines
-from ..drawing.view_drawing import ViewDrawing, redraw
+from ..overlays.overlay_drawing import Color, draw_lines
+from ..overlays.view_drawing import ViewDrawing, redraw
 from . import searches
 from .ghost import ghost_lines
 

@@ -1,4 +1,4 @@
-"""The action itself that a match is of, linked from its .blend file or copied out of it."""
+"""Link or append the original action of a match from its .blend file."""
 
 from pathlib import Path
 
@@ -92,7 +92,7 @@ def _named(actions: list[bpy.types.Action], item: str, path: Path) -> bpy.types.
 
 
 def _name_in(names: list[str], item: str, path: Path) -> str:
-    """Return the action's name: that of the item, or what comes before that of its slot."""
+    """Return the action's name: the item's name, without that of the slot."""
     for name in (item, item.rpartition(":")[0]):
         if name in names:
             return name

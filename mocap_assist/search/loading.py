@@ -32,7 +32,7 @@ CLIP = "mocap_assist_clip"
 
 
 def why_not_load(context: bpy.types.Context) -> str:
-    """Return why no clip can be given to an armature, or an empty text."""
+    """Return why no clip can be appended to an armature, or an empty text."""
     armature = selected_armature(context)
     if armature is None:
         return "Select the armature that receives the motion of the clip."
@@ -80,7 +80,7 @@ def write_loaded(
 
 
 def note_clip(action: bpy.types.Action, found: Found) -> None:
-    """Keep on an action which clip it was made of."""
+    """Store in an action the clip that it was made from."""
     origin, frames = found.entry.origin, found.match.frames
     noted = {
         "clip": found.entry.name,
@@ -113,7 +113,7 @@ def problem_of(
     search: Search,
     found: Found,
 ) -> tuple[FetchProblem, dict[tuple[str, str], float]]:
-    """Return what is to be solved to give a match to an armature, and the rig's switches."""
+    """Return the solve that retargets a match to an armature, and the rig's switches."""
     if found.entry.origin is None:
         raise InvalidMotionError(
             f"The source file of {found.entry.name} is unknown. Build the library again."

@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..blender.mixins import OperatorMixin
-from ..panels.drawing import draw_sentence, is_wide
+from ..panel_parts.panel_layout import draw_sentence, is_wide
 from .previews import icon_of
 from .searches import Search
 

@@ -10,7 +10,7 @@ def add_strip(
     frame: int,
     scale: float,
 ) -> bpy.types.NlaStrip:
-    """Put an action on a track of its own at a frame, played so many times as long.
+    """Put an action on a track of its own at a frame, stretched in time by a factor.
 
     What the armature plays is pushed down first: an active action would hide the strip.
     """

@@ -1,4 +1,4 @@
-"""Panel: a library of clips, what in it is like the action, and what to do with that."""
+"""Panel: a library of clips, the matches of a search, and what to do with them."""
 
 from typing import Any, ClassVar
 
@@ -6,12 +6,12 @@ import bpy
 
 from ...solvers.retrieval import FindSettings
 from ..blender.mixins import PanelMixin
-from ..drawing.color_icons import square_icon
 from ..languages import translated
 from ..library.auto_update_list import choices_are_kept
-from ..panels.drawing import draw_sentence, exists, folded, is_wide, settings_column
-from ..panels.figure_rows import frames_text
-from ..panels.visibility import shows_take
+from ..overlays.color_icons import square_icon
+from ..panel_parts.figure_rows import frames_text
+from ..panel_parts.panel_layout import draw_sentence, exists, folded, is_wide, settings_column
+from ..panel_parts.visibility import shows_take
 from ..runtime.selection import Bones
 from . import searches
 from .finding import why_not_find
@@ -32,7 +32,7 @@ ROW, LARGE = 1.6, 7.0  # sizes of the pictures
 
 
 class MOCAP_UL_matches(bpy.types.UIList):
-    """Clips that are like the query, the best first."""
+    """Clips that are similar to the query, best first."""
 
     def draw_item(
         self,

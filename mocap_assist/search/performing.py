@@ -15,10 +15,10 @@ from bpy.app import timers
 from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion import JointRecording, Tracks
 from ...solvers.motion.humanoid import POSTURE_JOINTS
-from ..drawing.view_drawing import redraw
 from ..jobs.job import Job, run
 from ..library.solve_prior import Own
 from ..library.sources import library_path
+from ..overlays.view_drawing import redraw
 from ..runtime.solver_operator import in_background
 from ..scene.units import unit_of
 from . import searches
@@ -57,7 +57,7 @@ def show_library(context: bpy.types.Context) -> str:
 
 
 def show_all(context: bpy.types.Context, first: int = 0, is_last_chosen: bool = False) -> str:
-    """List clips of the library from a place in it on, and choose the first or last of them."""
+    """List clips of the library from an index on, and choose the first or last of them."""
     library = _library()
     if library is None:
         return NO_LIBRARY
@@ -67,7 +67,7 @@ def show_all(context: bpy.types.Context, first: int = 0, is_last_chosen: bool = 
 
 
 def page(context: bpy.types.Context, step: int) -> str:
-    """Choose the next match, or the one before; from the last one on to the first.
+    """Choose the next or previous match; the first follows the last.
 
     In a library with more clips than are listed, the next ones follow.
     """
@@ -125,7 +125,7 @@ def news() -> str:
 
 
 def chosen_sentence() -> str:
-    """Say which match is chosen."""
+    """Return a sentence that names the chosen match."""
     listed = bpy.context.window_manager.mocap_assist_matches
     if not listed.rows:
         return "No search yet."
@@ -143,7 +143,7 @@ def _library() -> Path | None:
 
 
 def _next_first(finding: Finding, step: int) -> int:
-    """Return the place of the first clip to list after, or before, those that are listed."""
+    """Return the index of the first clip to list after, or before, the listed ones."""
     assert finding.first is not None
     last_page = (finding.n_clips - 1) // MAX_MATCHES
     page_number = finding.first // MAX_MATCHES + step
@@ -151,7 +151,7 @@ def _next_first(finding: Finding, step: int) -> int:
 
 
 def _list_later(solve: Callable[..., Finding], listing: "_Listing", waiting: str) -> str:
-    """List what a solve finds, once it has ended; return a sentence for the meantime.
+    """List the result of a solve after its end; return a sentence for the meantime.
 
     A solve that has not ended yet is cancelled.
     """
@@ -172,7 +172,7 @@ def _list_later(solve: Callable[..., Finding], listing: "_Listing", waiting: str
 
 
 class _Listing(NamedTuple):
-    """What a list of clips belongs to."""
+    """The scene and query that a list of clips belongs to."""
 
     query: str
     grid: tuple[float, float]
@@ -187,7 +187,7 @@ class _Listing(NamedTuple):
         return cls(query, (float(scene.frame_current), step), unit_of(scene), is_last_chosen)
 
     def fill(self, finding: Finding) -> str:
-        """List the clips; say which is chosen."""
+        """List the clips; return a sentence that names the chosen one."""
         fill_list(bpy.context, searches.keep(self.query, self.grid, self.meters, finding))
         if self.is_last_chosen:
             last = max(len(finding.found) - 1, 0)

@@ -4,7 +4,7 @@ import bpy
 
 
 class MOCAP_PG_match(bpy.types.PropertyGroup):
-    """A clip that is like the query; `name` is the clip's."""
+    """A clip that is similar to the query; `name` is the clip's."""
 
     score: bpy.props.FloatProperty(name="Score", subtype="FACTOR", min=0.0, max=1.0)
     start: bpy.props.IntProperty(name="First Frame", description="Frame of the clip")
@@ -45,7 +45,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take them away again."""
+    """Remove the properties."""
     del bpy.types.WindowManager.mocap_assist_indexing
     del bpy.types.WindowManager.mocap_assist_matches
     for each in reversed(CLASSES):

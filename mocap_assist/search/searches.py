@@ -39,7 +39,7 @@ _last: list[int] = [0]
 
 
 def keep(query: str, grid: tuple[float, float], meters: float, finding: Finding) -> Search:
-    """Keep what was found; what was found long before is forgotten."""
+    """Store a search; old ones are removed."""
     _last[0] += 1
     search = Search(_last[0], query, *grid, meters, finding)
     _cache[search.number] = search
@@ -69,7 +69,7 @@ def chosen(context: bpy.types.Context) -> tuple[Search, Found]:
 
 
 def ranked(context: bpy.types.Context) -> Search:
-    """Return the search whose matches are listed, the best first.
+    """Return the search whose matches are listed, best first.
 
     Raises InvalidMotionError where none is chosen, or where the clips were not searched for.
     """

@@ -91,7 +91,7 @@ class Finding:
 
 
 def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Finding:
-    """Search a library, and draw what is found.
+    """Search a library, and draw the matches.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Findi
 
 
 def list_clips(library: str, first: int, *, progress: Progress = unwatched) -> Finding:
-    """Show some clips of a library, unranked, from a place in it on.
+    """List some clips of a library, unranked, from an index on.
 
     Beyond its last clip, as it may have shrunk, those from the first one on are shown.
 

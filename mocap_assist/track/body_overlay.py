@@ -8,9 +8,9 @@ import numpy as np
 from ...solvers.depth_tracking.body import CAPSULE_SEGMENTS, SEGMENTS, capsule_surface
 from ...solvers.errors import MocapAssistError
 from ..actions.reliability_curves import reliability_at
-from ..drawing.body_drawing import Solid, draw_solid, solid
-from ..drawing.confidence_colors import color_from_reliability, reliability_source
-from ..drawing.view_drawing import ViewDrawing, redraw, visible_active
+from ..overlays.body_drawing import Solid, draw_solid, solid
+from ..overlays.confidence_colors import color_from_reliability, reliability_source
+from ..overlays.view_drawing import ViewDrawing, redraw, visible_active
 from .tracked_body import TrackedBody, bones_of, is_tracked, posed_frames
 
 NEUTRAL_COLOR = np.array([0.62, 0.72, 0.85, 1.0])

@@ -11,9 +11,9 @@ from ...solvers.arrays import Array
 from ...solvers.depth_tracking.body import CAPSULE_SEGMENTS, capsule_surface, segment_frames
 from ...solvers.depth_tracking.tracking import PosePreview
 from ..depth.depth_preview import Shown, shown_by
-from ..drawing.body_drawing import Solid, draw_solid, solid
-from ..drawing.confidence_colors import color_from_reliability
-from ..drawing.view_drawing import ViewDrawing
+from ..overlays.body_drawing import Solid, draw_solid, solid
+from ..overlays.confidence_colors import color_from_reliability
+from ..overlays.view_drawing import ViewDrawing
 from .pose_previews import PosePreviewReceiver
 
 OPACITY = 0.9

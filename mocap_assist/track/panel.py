@@ -6,8 +6,8 @@ import bpy
 
 from ...solvers.depth_scene import ForegroundMethod
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_job, draw_sentence, exists, split_column
-from ..panels.visibility import shows_all
+from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, split_column
+from ..panel_parts.visibility import shows_all
 from .retracking import why_not_retrack
 from .tracked_body import is_tracked
 from .tracking import selected_preview, why_not_track

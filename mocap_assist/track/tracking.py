@@ -81,7 +81,7 @@ class TrackBundle(NamedTuple):
 
 
 class FixedMotion(NamedTuple):
-    """A motion made of the tracked one, and what its action remembers of how."""
+    """A motion made from the tracked one, and its entry for the action's history."""
 
     motion: Motion
     entry: dict[str, Any]

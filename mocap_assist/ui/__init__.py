@@ -1,18 +1,18 @@
-"""User interface: panels in the sidebar, menus, preferences and the overlay."""
+"""The sidebar tab, menus, preferences, the workspace and the manual."""
 
 from .. import languages
 from ..check import issue_views, key_map, renewing
 from ..clean import example_list
-from ..drawing import (
+from ..exporting import export_menu
+from ..importing import import_menu
+from ..overlays import (
     color_icons,
     confidence_switch,
     overlay_switch,
     raw_curves_switch,
     strip_switch,
 )
-from ..exporting import export_menu
-from ..importing import import_menu
-from ..panels import presets
+from ..panel_parts import presets
 from ..retarget import bone_highlight, bone_list, rest_preview
 from ..retarget import panel as retarget_panel
 from ..search import match_grid, source_list
@@ -51,12 +51,12 @@ PARTS = (
 
 
 def register() -> None:
-    """Show everything."""
+    """Register everything."""
     for part in PARTS:
         part.register()
 
 
 def unregister() -> None:
-    """Take everything away again."""
+    """Unregister everything."""
     for part in reversed(PARTS):
         part.unregister()

@@ -13,7 +13,7 @@ from ...solvers.version import version
 from ..blender.last_press import changed_values, last_press
 from ..blender.mixins import OperatorMixin
 from ..languages import translated
-from ..panels.preference_values import EXTENSION, preferences
+from ..panel_parts.preference_values import EXTENSION, preferences
 
 COPY = "mocap_assist.copy_diagnostics"
 LIBRARIES = ("numpy", "scipy", "pillow", "mujoco")
@@ -112,5 +112,5 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take it away."""
+    """Remove the button."""
     bpy.utils.unregister_class(MOCAP_OT_copy_diagnostics)

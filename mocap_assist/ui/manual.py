@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..panels.manual_page import MANUAL
+from ..panel_parts.manual_page import MANUAL
 
 CHAPTERS = {
     "bpy.ops.mocap_assist.import_*": "import",

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..panels.drawing import exists
+from ..panel_parts.panel_layout import exists
 
 BUTTONS = (
     "mocap_assist.import_recording",

@@ -10,12 +10,12 @@ from ...solvers.errors import MocapAssistError
 from ...solvers.recordings.streams import PORT
 from ..actions.armature_write import Output
 from ..check.key_map import draw_keys
-from ..drawing import overlay_drawing
 from ..languages import translated
 from ..library.auto_update_list import auto_updated_libraries, stop_keeping
-from ..panels.drawing import draw_sentence
-from ..panels.manual_page import start_page
-from ..panels.preference_values import EXTENSION, preferences, preferred
+from ..overlays import overlay_drawing
+from ..panel_parts.manual_page import start_page
+from ..panel_parts.panel_layout import draw_sentence
+from ..panel_parts.preference_values import EXTENSION, preferences, preferred
 from .diagnostics import COPY
 
 NETWORK_WARNING = (
@@ -159,7 +159,7 @@ def _draw_network(
 
 
 def _draw_kept(layout: bpy.types.UILayout) -> None:
-    """Draw the libraries that are kept current, each with a button that ends it."""
+    """Draw the libraries that are kept current, each with a button that stops this."""
     kept = auto_updated_libraries()
     if kept:
         layout.label(text="Auto-Updated Libraries")
@@ -212,14 +212,14 @@ class MOCAP_OT_reset_preferences(bpy.types.Operator):
 
 @bpy.app.handlers.persistent
 def _give_default(*_: object) -> None:
-    """Let scenes that do not say where results go, do as the preferences say."""
+    """Set the output of scenes without a choice of their own to that of the preferences."""
     for scene in bpy.data.scenes:
         _give_scene_default(scene)
 
 
 @bpy.app.handlers.persistent
 def _give_scene_default(scene: bpy.types.Scene, *_: object) -> None:
-    """Do so for one scene, such as one that was just added."""
+    """Set the output of one scene, such as one that was just added."""
     wanted, clean = preferred("result_as"), scene.mocap_assist.clean
     if wanted != Output.ACTION.name and not clean.is_property_set("result_as"):
         clean.result_as = wanted
@@ -239,7 +239,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take them away; Blender keeps the values while it runs."""
+    """Remove the preferences; Blender keeps the values while it runs."""
     if bpy.app.timers.is_registered(_give_default):
         bpy.app.timers.unregister(_give_default)
     bpy.app.handlers.depsgraph_update_post.remove(_give_scene_default)

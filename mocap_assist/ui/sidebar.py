@@ -10,7 +10,7 @@ from ..fix.panel import FixPanel, MOCAP_UL_takes
 from ..importing.panel import ImportPanel
 from ..live.panel import PerformPanel
 from ..markers.panel import MarkersPanel
-from ..panels.preference_values import preferred
+from ..panel_parts.preference_values import preferred
 from ..physics.panel import PhysicsPanel
 from ..reconstruct.panel import ReconstructPanel
 from ..retarget.panel import RetargetPanel
@@ -72,7 +72,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take the panels away."""
+    """Remove the panels."""
     for panel in reversed(PANELS):
         bpy.utils.unregister_class(panel)
     for each in LISTS:

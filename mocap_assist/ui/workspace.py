@@ -25,7 +25,8 @@ def why_no_workspace(context: bpy.types.Context) -> str:
 
 
 def add_workspace(context: bpy.types.Context) -> str:
-    """Show the workspace, after it was made of a copy of the current one; return a message."""
+    """Show the workspace, made from a copy of the current one if necessary; return a
+    message."""
     window, known = context.window, bpy.data.workspaces.get(NAME)
     if known is not None:
         window.workspace = known

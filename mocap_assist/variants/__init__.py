@@ -1,1 +1,1 @@
-"""Many actions of a few: made by Vary, listed, picked from, and given to a crowd."""
+"""The button Vary: many actions made from a few, listed, picked, and assigned to a crowd."""

@@ -25,7 +25,7 @@ class VaryChoices(Settings):
 
 
 class VaryBundle(NamedTuple):
-    """All that the button Vary offers."""
+    """Settings of the button Vary."""
 
     choices: VaryChoices
     varying: VarySettings
@@ -55,6 +55,6 @@ class CrowdChoices(Settings):
 
 
 class CrowdBundle(NamedTuple):
-    """All that the button Assign to Selected offers."""
+    """Settings of the button Assign to Selected."""
 
     choices: CrowdChoices

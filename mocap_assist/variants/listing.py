@@ -55,7 +55,7 @@ def chosen(scene: bpy.types.Scene) -> list[bpy.types.Action]:
 
 
 def why_none(context: bpy.types.Context) -> str:
-    """Return why there are no variants, or an empty text."""
+    """Return why no variants are listed, or an empty text."""
     if not chosen(context.scene):
         return "There are no variants yet. Press Vary."
     return ""

@@ -1,4 +1,4 @@
-"""Panel: many new actions of a few, and what to do with them."""
+"""Panel: make many new actions from a few, and use them."""
 
 from typing import Any, ClassVar
 
@@ -8,9 +8,9 @@ from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
 from ..blender.mixins import PanelMixin
 from ..blender.name_lists import split_names
-from ..panels.drawing import draw_sentence, exists, folded, settings_column
-from ..panels.presets import draw_presets
-from ..panels.visibility import shows_armature
+from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
+from ..panel_parts.presets import draw_presets
+from ..panel_parts.visibility import shows_armature
 from ..retarget.panel import TICK
 from ..runtime.selection import selected_armature
 from ..search import searches
@@ -61,7 +61,7 @@ class MOCAP_UL_variants(bpy.types.UIList):
 
 
 class VaryPanel(PanelMixin):
-    """Of what, how strongly and how many, the button, and the variants."""
+    """Examples, settings, the button Vary, and the list of variants."""
 
     bl_label = "Vary"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}
@@ -89,7 +89,7 @@ class VaryPanel(PanelMixin):
 
 
 def picture_of(action: bpy.types.Action) -> int:
-    """Return the number of the icon that shows what an action does."""
+    """Return the number of the icon with the picture of an action."""
     return int(action.preview.icon_id) if action.preview is not None else 0
 
 

@@ -61,7 +61,7 @@ def why_not_vary(context: bpy.types.Context) -> str:
 
 
 def chosen_sources(armature: bpy.types.Object, choices: VaryChoices) -> tuple[Source, ...]:
-    """Return the chosen actions and their slots; without any what the armature plays.
+    """Return the chosen actions and their slots, by default what the armature plays.
 
     Where that is a variant, what it was made of is meant.
     """
@@ -96,7 +96,7 @@ def read_varying(
 def read(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: VaryBundle
 ) -> Steps[VaryScene]:
-    """Read the chosen actions; of a control rig what its body does."""
+    """Read the chosen actions; of control rigs, the motion of their bodies."""
     here = Subject.of(scene, armature)
     lasting = [SourceReference.of(each) for each in chosen_sources(armature, settings.choices)]
     takes = []
@@ -165,7 +165,7 @@ def _body_shown(
 def read_controls(
     scene: bpy.types.Scene, armature: bpy.types.Object, take: ArmatureTake
 ) -> tuple[Controls, Switches]:
-    """Read how a control rig is keyed, as the panel Retarget says."""
+    """Read how a control rig is keyed, with the settings of the panel Retarget."""
     chosen = scene.mocap_assist.retarget.settings()
     on_root = chosen.retargeting.root_motion is RootMotion.ROOT_BONE
     rig, switches = read_target(

@@ -122,7 +122,7 @@ class _Writer(NamedTuple):
         return action, slot
 
     def _entry(self, number: int) -> dict[str, object]:
-        """Return what the action remembers of how it was made."""
+        """Return the entry for the action's history."""
         return {
             "operation": "vary",
             "settings": history.plain(*self.settings),
@@ -131,7 +131,7 @@ class _Writer(NamedTuple):
         }
 
     def message(self) -> str:
-        """Return a sentence about all of them."""
+        """Return a sentence about all variants."""
         n_variants, n_examples = len(self.names), len(self.examples)
         made = self.names[0] if n_variants == 1 else f"{n_variants} variants"
         of = self.examples[0] if n_examples == 1 else f"{n_examples} actions"

@@ -1,4 +1,4 @@
-"""Find poses of a single limb that do not belong to the movement after or before them."""
+"""Find poses at the ends of a take in which one limb does not belong to the movement."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple

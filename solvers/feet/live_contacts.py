@@ -1,4 +1,4 @@
-"""Decide foot contacts while an actor moves, from what was seen so far."""
+"""Decide foot contacts while an actor moves, from the frames so far."""
 
 from collections import deque
 

@@ -1,4 +1,4 @@
-"""When and where a foot bears on the floor: what of its sole must not move."""
+"""When a foot bears on the floor, and which points of its sole must stay in place."""
 
 from dataclasses import dataclass, replace
 from typing import Self

@@ -1,4 +1,4 @@
-"""Find out which feet stand: of captured legs, while the hips are off the floor."""
+"""Find the feet that stand: those of captured legs, while the hips are off the floor."""
 
 from collections.abc import Sequence
 

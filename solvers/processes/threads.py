@@ -1,7 +1,7 @@
 """Number of threads of linear algebra: one, so that the bytes are the same everywhere.
 
-On matrices of this size two threads were seen to take thirty times as long, and to round
-sums in another order. NumPy and SciPy read these variables once, when they are imported.
+On matrices of this size two threads took thirty times as long, and they round sums in another
+order. NumPy and SciPy read these variables once, when they are imported.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Read the arrays of NumPy's files, which say little but their shape."""
+"""Read the arrays of NumPy files, which state little but their shape."""
 
 from pathlib import Path
 

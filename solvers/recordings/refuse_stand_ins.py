@@ -1,4 +1,4 @@
-"""Files that are recognized but are no recordings, each with a sentence that names a way."""
+"""Refuse files that are recognized but hold no recording, and report what to do instead."""
 
 import re
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Give motions to other rigs.
+"""Retarget motions to other rigs.
 
 >>> from solvers.motion import Skeleton, find_humanoid_map
 >>> from solvers.retargeting import retarget

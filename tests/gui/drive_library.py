@@ -123,7 +123,7 @@ def browse():
     view = bgui.area()
     cells = import_module(f"{PACKAGE}.mocap_assist.search.gallery_drawing")
     layout = import_module(f"{PACKAGE}.mocap_assist.search.gallery")
-    pixels = import_module(f"{PACKAGE}.mocap_assist.drawing.pixel_drawing")
+    pixels = import_module(f"{PACKAGE}.mocap_assist.overlays.pixel_drawing")
     space = pixels.free_space(view)
     scale = bpy.context.preferences.system.ui_scale
     below = space._replace(height=space.height - cells.HEAD_PX * scale)

@@ -96,7 +96,7 @@ def time_of_a_redraw(armature):
     """Return the time to build the body, without that of the graphics card."""
     package = "bl_ext.user_default.mocap_assist.mocap_assist"
     overlay = importlib.import_module(f"{package}.track.body_overlay")
-    drawing = importlib.import_module(f"{package}.drawing.body_drawing")
+    drawing = importlib.import_module(f"{package}.overlays.body_drawing")
     view = bgui.area().spaces.active.region_3d
     began = perf_counter()
     for _ in range(20):

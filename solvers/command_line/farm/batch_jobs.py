@@ -1,4 +1,4 @@
-"""Jobs for a Flamenco Manager from command lines."""
+"""Build jobs for a Flamenco Manager from command lines."""
 
 import argparse
 from collections.abc import Callable, Mapping

@@ -1,6 +1,7 @@
 """Talk to a Flamenco Manager through its HTTP interface, which Flamenco documents as OpenAPI.
 
-This is the only module that opens a connection of HTTP: to the address that the user gives.
+This is the only module that opens an HTTP connection, and only to the address that the user
+gives.
 """
 
 import json

@@ -1,6 +1,6 @@
 """Average the estimate with smoothers, joint by joint, by their expected error (stacking).
 
-The windows' prior is stationary: it smooths a take's fast moments like its still ones. A joint
+The windows' prior is stationary: it smooths fast and still intervals of a take equally. A joint
 is therefore the weighted mean of the estimate and of two smoothers.
 """
 

@@ -1,4 +1,4 @@
-"""Estimate the noise of a take by what the best estimate of it leaves."""
+"""Estimate the noise of a take from the remainder of its best estimate."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Adapt the relation of a body's joints to a take, by hiding a limb where it is known."""
+"""Adapt the relation of a body's joints to a take, by hiding limbs where they are observed."""
 
 from typing import NamedTuple
 

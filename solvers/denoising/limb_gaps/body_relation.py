@@ -1,4 +1,4 @@
-"""Covariance of the joints of people across gaps: learned, shipped."""
+"""The covariance of people's joints across gaps, which is learned and shipped."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

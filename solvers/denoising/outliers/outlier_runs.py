@@ -1,4 +1,4 @@
-"""Separate errors that last some frames from fast movement, by what people's joints do.
+"""Separate errors that last several frames from fast movement, with the motion mixture.
 
 A kick and a tracking error both leave a joint's path for a few frames and come back. Given the
 frames around it, the motion mixture explains the kick; an error is more likely to be a constant

@@ -1,4 +1,4 @@
-"""Say how certain each role of a humanoid map is, and why."""
+"""Measure the confidence of each role of a humanoid map, with reasons."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Joints of body trackers that name more of them than the cameras of Microsoft.
+"""Joints of body trackers that name more joints than Microsoft's cameras.
 
 Sources: the enumerations BODY_18_PARTS, BODY_34_PARTS and BODY_38_PARTS of the ZED SDK 4, and
 JointType of Nuitrack; joints that the Azure Kinect has too are called as there. JOINT_NAMES of

@@ -1,4 +1,4 @@
-"""What a fitted motion is to meet, one kind of goal in each file."""
+"""The goals of a fitted motion, one kind in each file."""
 
 from .bone_rotations import FollowRotation, StayStill
 from .contact_points import (

@@ -1,4 +1,4 @@
-"""Whether a joint followed its own path across a gap, judged where it was observed."""
+"""Estimate whether a joint keeps to its own path across a gap, from where it was observed."""
 
 import numpy as np
 from numpy.typing import NDArray

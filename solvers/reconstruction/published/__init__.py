@@ -1,7 +1,7 @@
 """Reconstruction as published: [SHJT13] for missing joints, [ZH14] for sensor errors.
 
 Both are methods of `reconstruct` and baselines of `make bench-reconstruct`. They stay as the
-papers print them; the default improves on them next door.
+papers print them; the default in the other folders improves on them.
 """
 
 from .posture_reconstruction import reconstruct_published_postures

@@ -1,4 +1,4 @@
-"""Put bodies of cameras upright whose files do not state their axes."""
+"""Rotate bodies upright if the file of their camera does not state its axes."""
 
 from collections.abc import Sequence
 from typing import cast

@@ -1,4 +1,4 @@
-"""Read arrays of the joints of one body, which say nothing but their shape."""
+"""Read arrays of the joints of one body, which state nothing but their shape."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

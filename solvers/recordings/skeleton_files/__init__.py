@@ -8,11 +8,10 @@ from .kimodo import is_kimodo, open_kimodo
 from .motion_x import is_motion_x, read_motion_x
 from .mvnx import is_mvnx, open_mvnx
 from .segment_recordings import recording_from_segments
-from .smpl import NAMES_OF_BODY, is_smpl, open_smpl
+from .smpl import is_smpl, open_smpl
 from .vrma import is_vrma, read_vrma
 
 __all__ = [
-    "NAMES_OF_BODY",
     "find_skeleton",
     "is_kimodo",
     "is_motion_x",

@@ -55,8 +55,6 @@ READ = (
 )  # fmt: skip
 OF_SMPL = frozenset((*POSITIONS, "betas"))
 """Names of which one is next to a `pose` of SMPL."""
-NAMES_OF_BODY = tuple(name for name, _, _ in BODY)
-"""The 22 joints that all models share."""
 N_BODY = len(BODY)
 N_HAND = 9 * len(FINGERS)
 """Numbers of one hand: three joints of each finger, with an axis and angle each."""

@@ -1,4 +1,4 @@
-"""What a live take gives, frame after frame, and its settings."""
+"""The output of a live take, frame by frame, and its settings."""
 
 from dataclasses import dataclass
 from typing import NamedTuple

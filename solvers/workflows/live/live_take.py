@@ -1,4 +1,4 @@
-"""Turn a live stream of joints into poses of a skeleton, and keep what was shown."""
+"""Turn a live stream of joints into poses of a skeleton, and record them."""
 
 from collections.abc import Iterable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Take a live stream of posed skeletons as it is, frame after frame."""
+"""Use a live stream of posed skeletons unchanged, frame by frame."""
 
 from collections.abc import Iterable
 

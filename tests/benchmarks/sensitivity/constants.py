@@ -89,7 +89,7 @@ UNMEASURED: dict[str, tuple[str, ...]] = {
     ),
     "mocap_assist": tuple(
         f"mocap_assist/{folder}"
-        for folder in ("actions", "clean", "drawing", "retarget", "rigs", "scene", "track")
+        for folder in ("actions", "clean", "overlays", "retarget", "rigs", "scene", "track")
     ),
 }  # fmt: skip
 """Modules without a metric, whose tuned constants have a unit and a source nevertheless."""

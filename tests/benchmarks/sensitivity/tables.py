@@ -80,13 +80,6 @@ class Row:
             if failure and failure != "no smaller whole number"
         }
 
-    @property
-    def cpu_change(self) -> float:
-        """Largest change of the time, percent."""
-        times = [each.cpu_s for each in (self.half, self.twice) if not each.failure]
-        changes = [100.0 * (each / self.baseline.cpu_s - 1.0) for each in times]
-        return max(changes, key=abs, default=0.0)
-
     def _each(self, outcome: Outcome) -> dict[str, float]:
         return {
             name: 100.0 * ((figure + TINY) / (self.baseline.figures[name] + TINY) - 1.0)

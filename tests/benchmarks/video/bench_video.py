@@ -42,7 +42,6 @@ REAL = (
     "corpus/bvh/smpl_template/template.bvh",
 )
 OURS = "Clean, Plant Feet"
-SINGLE_CLIPS = 6
 WHOLE = {
     "A model that sees one frame at a time": PER_FRAME,
     "A model that sees the whole video": TEMPORAL,

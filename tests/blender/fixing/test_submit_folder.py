@@ -16,7 +16,7 @@ def manager(load):
     """A Flamenco Manager that the preferences name, and Blender may reach."""
     system = bpy.context.preferences.system
     with flamenco_stub() as stub:
-        preferences = load("mocap_assist.panels.preference_values").preferences()
+        preferences = load("mocap_assist.panel_parts.preference_values").preferences()
         preferences.flamenco_manager = stub.address
         preferences.flamenco_command = "mocap-assist"
         system.use_online_access = True
@@ -164,7 +164,7 @@ def test_button_is_gray_without_a_manager_or_online_access(
     bpy.context.preferences.system.use_online_access = False
     assert why_gray().startswith(OFFLINE)
 
-    load("mocap_assist.panels.preference_values").preferences().flamenco_manager = ""
+    load("mocap_assist.panel_parts.preference_values").preferences().flamenco_manager = ""
 
     assert why_gray().startswith("Enter the address of your Flamenco Manager")
     assert "mocap_assist.submit_folder" not in draw("MOCAP_PT_fix")

@@ -179,7 +179,7 @@ def test_figure_stands_on_the_ground_at_the_origin(listen, act, load):
 
 
 def test_missing_and_unreliable_bones_are_not_drawn(load):
-    figure = load("mocap_assist.drawing.live_figure").LiveFigure((1, 1, 1, 1), 2.0)
+    figure = load("mocap_assist.overlays.live_figure").LiveFigure((1, 1, 1, 1), 2.0)
     frames, motion = load("solvers.recordings.streams"), load("solvers.motion")
     names = motion.SENSOR_JOINTS[motion.Sensor.KINECT_V1]
     positions, confidence = np.ones((20, 3)), np.ones(20)
@@ -194,7 +194,7 @@ def test_missing_and_unreliable_bones_are_not_drawn(load):
 
 
 def test_view_rotates_about_the_vertical_and_zoom_is_limited(load, view):
-    control = load("mocap_assist.drawing.view_control")
+    control = load("mocap_assist.overlays.view_control")
     area = SimpleNamespace(
         type="VIEW_3D",
         spaces=SimpleNamespace(active=SimpleNamespace(region_3d=view)),

@@ -9,7 +9,7 @@ INSIDE = OCCLUDED_FRAMES.start + 15
 
 @pytest.fixture
 def colors(load):
-    return load("mocap_assist.drawing.confidence_colors")
+    return load("mocap_assist.overlays.confidence_colors")
 
 
 def of_bone(armature, shown, name):

@@ -15,7 +15,7 @@ def curves(load):
 
 @pytest.fixture
 def colors(load):
-    return load("mocap_assist.drawing.confidence_colors")
+    return load("mocap_assist.overlays.confidence_colors")
 
 
 @pytest.fixture

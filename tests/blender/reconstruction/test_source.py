@@ -107,7 +107,7 @@ def test_segment_of_a_take_is_found_in_its_file(
     )
     offsets = mine - theirs[first - 1 : last]
     assert np.allclose(offsets, [0.0, 0.0, offsets[0, 2]], atol=1e-4)  # on the floor
-    terms = load("mocap_assist.drawing.confidence_colors").available_terms(walk)
+    terms = load("mocap_assist.overlays.confidence_colors").available_terms(walk)
     assert "KINEMATICS" in {term.name for term in terms}
 
 
@@ -132,5 +132,5 @@ def test_hips_never_tracked_are_between_the_legs(
     assert "with hips added between the legs" in message
     assert "HipCenter" in armature.pose.bones
     assert result.name == "walk.reconstructed"
-    terms = load("mocap_assist.drawing.confidence_colors").available_terms(armature)
+    terms = load("mocap_assist.overlays.confidence_colors").available_terms(armature)
     assert "KINEMATICS" in {term.name for term in terms}

@@ -105,7 +105,7 @@ def test_damaged_body_is_not_drawn(tracked, body, load):
 
 
 def test_confidence_is_shown_for_tracked_armatures(tracked, load):
-    colors = load("mocap_assist.drawing.confidence_colors")
+    colors = load("mocap_assist.overlays.confidence_colors")
     shown = colors.colored_bones_at(tracked, 3)
     assert shown is not None and len(shown.ends) == len(tracked.pose.bones)
     assert len(np.unique(shown.colors.reshape(-1, 4), axis=0)) > 3

@@ -51,7 +51,7 @@ def test_diagnostics_of_an_unexpected_error_have_its_place(blank, load, copied):
 
 
 def test_diagnostics_name_versions_and_changed_preferences(blank, copied, load):
-    ours = load("mocap_assist.panels.preference_values").preferences()
+    ours = load("mocap_assist.panel_parts.preference_values").preferences()
     ours.tab, ours.show_research = SECRET, True
     try:
         text = copied()

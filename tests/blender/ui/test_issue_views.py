@@ -102,7 +102,7 @@ def test_view_moves_only_to_a_point_that_it_does_not_show(load, x, is_moved):
     window = SimpleNamespace(screen=SimpleNamespace(areas=[area]))
     point = Vector((x, 0.0, 0.0))
 
-    load("mocap_assist.drawing.view_control").show_point(
+    load("mocap_assist.overlays.view_control").show_point(
         SimpleNamespace(windows=[window]), point
     )
 
@@ -112,7 +112,7 @@ def test_view_moves_only_to_a_point_that_it_does_not_show(load, x, is_moved):
 def test_point_behind_a_view_is_not_shown(load):
     behind = Matrix(((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, -1, 0)))
 
-    assert not load("mocap_assist.drawing.view_control").shows(behind, Vector((0, 0, 1)))
+    assert not load("mocap_assist.overlays.view_control").shows(behind, Vector((0, 0, 1)))
 
 
 def test_jump_shows_the_bone_in_the_scene(blank, switches, issue, actor, load, monkeypatch):
@@ -209,7 +209,7 @@ def test_list_and_strip_name_the_kind_of_an_issue(blank, draw, actor, issue, loa
     assert {"mocap_assist_issue_view", "mocap_assist_issue_range"} <= set(
         draw("MOCAP_PT_check")
     )
-    strip = load("mocap_assist.drawing.strip_reading").strip_of(blank.context)
+    strip = load("mocap_assist.overlays.strip_reading").strip_of(blank.context)
     assert [row.value for row in strip.rows] == ["Gaps"]
 
 

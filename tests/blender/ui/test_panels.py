@@ -192,7 +192,7 @@ def test_sidebar_has_the_defaults_of_the_solvers(blank, load, group):
 
 
 def test_figures_compare_the_raw_take_with_the_last_result(load):
-    rows = load("mocap_assist.panels.figure_rows").figure_rows([
+    rows = load("mocap_assist.panel_parts.figure_rows").figure_rows([
         {"before": {"spikes": 7, "missing_share": 0.013}, "after": {"spikes": 2}},
         {"operation": "other"},
         {"before": {"spikes": 2}, "after": {"spikes": 0, "missing_share": 0.0}},
@@ -202,7 +202,7 @@ def test_figures_compare_the_raw_take_with_the_last_result(load):
 
 
 def test_unknown_figure_is_a_dash(load):
-    rows = load("mocap_assist.panels.figure_rows").figure_rows([
+    rows = load("mocap_assist.panel_parts.figure_rows").figure_rows([
         {"before": {"longest_foot_slide_cm": None}, "after": {"longest_foot_slide_cm": 1.25}}
     ])
 
@@ -212,7 +212,7 @@ def test_unknown_figure_is_a_dash(load):
 @pytest.mark.parametrize(("degrees", "unit"), [(2.5, "°"), (None, "mm")])
 def test_jitter_of_joints_is_in_degrees_and_that_of_markers_in_millimeters(load, degrees, unit):
     figures = {"mean_rotation_noise_deg": degrees, "mean_position_noise_mm": 4.25}
-    rows = load("mocap_assist.panels.figure_rows").figure_rows([
+    rows = load("mocap_assist.panel_parts.figure_rows").figure_rows([
         {"before": figures, "after": figures}
     ])
 
@@ -220,14 +220,14 @@ def test_jitter_of_joints_is_in_degrees_and_that_of_markers_in_millimeters(load,
 
 
 def test_frame_ranges_are_formatted_as_text(load):
-    frames_text = load("mocap_assist.panels.figure_rows").frames_text
+    frames_text = load("mocap_assist.panel_parts.figure_rows").frames_text
 
     assert frames_text(12.0, 12.0) == "12"
     assert frames_text(12.0, 15.5) == "12 – 15.5"
 
 
 def test_long_sentence_is_wrapped_to_the_sidebar(load):
-    lines = load("mocap_assist.panels.drawing").column_lines
+    lines = load("mocap_assist.panel_parts.panel_layout").column_lines
     sentence = "Select an animated armature."
 
     assert len(lines(sentence, 200)) > len(lines(sentence, 400)) == 1

@@ -156,7 +156,7 @@ def test_tooltips_have_no_period():
 
 
 def test_manual_button_opens_the_pages_of_the_zip(load):
-    page = load("mocap_assist.panels.manual_page").start_page()
+    page = load("mocap_assist.panel_parts.manual_page").start_page()
 
     assert page.name == "README.html"
     assert "Fix My Take" in page.read_text(encoding="utf-8")

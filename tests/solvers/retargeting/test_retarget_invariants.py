@@ -21,7 +21,6 @@ from solvers.samples import GaitSettings, walking_gait
 
 WALK = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
 LIMBS = ("UpperArm", "LowerArm", "UpperLeg", "LowerLeg")
-ARM_ENDS = ("LowerArm", "Hand")
 AS_EVER = RetargetSettings()
 
 

@@ -1,6 +1,7 @@
 """Landmarks of MediaPipe, a frame of JSON in each line.
 
-There is no standard: read is what the reader of files reads, 33 world landmarks of a body.
+There is no standard. The decoder accepts what the reader of files does: 33 world landmarks of a
+body.
 """
 
 import json

@@ -1,7 +1,7 @@
 """The network stream of Xsens MVN [1]_: big-endian datagrams of segments in the world.
 
-Read is the pose with quaternions (type 02, Z up). Datagrams of other types are left out: an
-MVN that streams several types is read by this one.
+The decoder reads the pose with quaternions (type 02, Z up). It ignores datagrams of other
+types, so an MVN may stream several types at once.
 
 References
 ----------

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..panels.preference_values import preferences, preferred
+from ..panel_parts.preference_values import preferences, preferred
 from . import overlay_drawing
 from .onion_skin import Onion
 from .raw_curves_switch import SWITCH as RAW_CURVES

@@ -8,7 +8,7 @@ import gpu
 from bpy.types import SpaceGraphEditor
 
 from ...solvers.errors import InvalidMotionError
-from ..panels.preference_values import preferred
+from ..panel_parts.preference_values import preferred
 from .raw_curves import CurvePair, curve_lines, displayed_values, shown_pairs
 from .view_drawing import redraw
 

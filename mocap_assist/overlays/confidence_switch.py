@@ -7,8 +7,8 @@ import gpu
 import numpy as np
 
 from ..actions.reliability_curves import Term
-from ..panels.drawing import draw_sentence
-from ..panels.preference_values import preferred
+from ..panel_parts.panel_layout import draw_sentence
+from ..panel_parts.preference_values import preferred
 from .color_icons import draw_marks
 from .confidence_colors import ColoredBones, available_terms, colored_bones_at
 from .strip_ranges import MARKS, StripRow

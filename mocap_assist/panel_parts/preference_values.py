@@ -17,7 +17,7 @@ def preferences() -> bpy.types.AddonPreferences | None:
 
 
 def preferred(name: str) -> Any:
-    """Return one preference, or what it is at first."""
+    """Return one preference, or its default."""
     ours = preferences()
     if ours is not None:
         return getattr(ours, name)

@@ -92,7 +92,7 @@ class PresetMenu(PresetPanel):
 
 
 class OwnPreset(AddPresetBase):
-    """Save the settings of a panel as a preset of one's own, or remove it."""
+    """Save the settings of a panel as the animator's own preset, or remove it."""
 
     group: ClassVar[str]
 

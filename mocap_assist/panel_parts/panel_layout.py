@@ -1,4 +1,4 @@
-"""Pieces that several panels draw."""
+"""Wrapped sentences, progress bars and columns of settings for panels."""
 
 from collections.abc import Container
 from dataclasses import fields
@@ -64,7 +64,7 @@ def sidebar_width(context: bpy.types.Context) -> float:
 
 
 def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, *owners: str) -> bool:
-    """Draw how far the running solve is, if it is one of these owners'.
+    """Draw the progress of the running solve, if it is one of these owners'.
 
     Return whether any runs: settings can wait until it has ended.
     """

@@ -5,7 +5,7 @@ from typing import Any
 import bpy
 from bpy.types import SpaceDopeSheetEditor, SpaceGraphEditor
 
-from ..panels.drawing import draw_sentence
+from ..panel_parts.panel_layout import draw_sentence
 from .color_icons import draw_marks
 from .strip_drawing import EDITORS, draw_strip
 from .strip_ranges import MARKS, StripRow

@@ -1,0 +1,1 @@
+"""Parts that the panels of several features share: layout, presets, cards, visibility."""

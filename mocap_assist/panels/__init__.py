@@ -1,1 +1,0 @@
-"""Drawing code that several panels share."""
