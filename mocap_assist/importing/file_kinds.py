@@ -32,7 +32,7 @@ def kinds_of(paths: Iterable[Path]) -> str:
 
 
 def fitting(names: Iterable[str], kinds: Collection[str]) -> list[str]:
-    """Return the settings that mean something for these kinds; all if no kind is known."""
+    """Return the settings that apply to these kinds; all if no kind is known."""
     return [name for name in names if not kinds or FOR_KINDS.get(name, {*kinds}) & {*kinds}]
 
 

@@ -23,7 +23,7 @@ BYTES_AT_ONCE = 64_000_000
 
 
 class ImportJob:
-    """One import; `step` is called now and then, and never works for long.
+    """One import; `step` is called repeatedly, and each call works briefly.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class ImportJob:
         self._show(context)
 
     def step(self, context: bpy.types.Context) -> bool:
-        """Do a little; return whether all is done, and nothing is shown any more."""
+        """Work briefly; return whether the import and its display have ended."""
         if self._read:
             self._bring_in(context, *self._read.popleft())
             self._n_in += 1
@@ -73,7 +73,8 @@ class ImportJob:
     def _readable(
         self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
     ) -> list[Path]:
-        """Return what another process can read, and refuse the rest; raise if it is all."""
+        """Return the files that another process can read; refuse the rest, and raise if none is
+        left."""
         found = [attempt(path, readable, context, path, choices) for path in paths]
         failed = [each for each in found if isinstance(each, Failure)]
         if len(failed) == len(paths):

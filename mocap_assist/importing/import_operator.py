@@ -63,7 +63,7 @@ class FilesOperator(SettingsMixin):
         return self.end(context, imported)
 
     def end(self, context: bpy.types.Context, imported: Imported) -> set[str]:
-        """Report what became of the files."""
+        """Report the result for each file."""
         self.note = imported.note
         note_press(self, sentence="".join(imported.failed[:1]))
         self.report({"ERROR"} if imported.failed else {"INFO"}, translated(imported.sentence))
@@ -102,7 +102,7 @@ class FilesOperator(SettingsMixin):
 
 
 class WaitingImport(FilesOperator):
-    """Mix in likewise: the window swallows all input but Esc until everything has come in."""
+    """Mix in likewise: the window ignores all input but Esc until everything is imported."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         paths = chosen_paths(self)
@@ -138,7 +138,7 @@ class WaitingImport(FilesOperator):
         return self.end(context, job.transaction.end(context)) if ended else {"RUNNING_MODAL"}
 
     def end(self, context: bpy.types.Context, imported: Imported) -> set[str]:
-        """Show the actor as well: it was an animator who imported, not a script."""
+        """Show the actor as well: an animator imported it, not a script."""
         if imported.made and not in_background():
             show_actor(context)
         return super().end(context, imported)

@@ -133,7 +133,7 @@ class ImportTransaction:
         self._state.restore(context)
 
     def end(self, context: bpy.types.Context) -> Imported:
-        """Select what came in; return it."""
+        """Select the imported objects; return the result."""
         objects = {each.session_uid: each for each in context.view_layer.objects}
         tops = tuple(objects[number] for number in self._tops if number in objects)
         if tops:

@@ -61,7 +61,7 @@ class ImportPanel(PanelMixin):
 
 
 def _draw_first_steps(layout: bpy.types.UILayout) -> None:
-    """Draw what a newcomer needs who has no take yet."""
+    """Draw the first steps for an animator without a take."""
     if exists(SAMPLE):
         layout.operator(SAMPLE, icon="ARMATURE_DATA")
     layout.operator("wm.url_open", text="Open Manual", icon="HELP").url = start_page().as_uri()

@@ -41,7 +41,7 @@ def bodies_of(path: Path) -> tuple[Body, ...]:
 
 
 def reading_of(conversion: Conversion) -> Reading:
-    """Return what a file is read by, of all that is done to it."""
+    """Return the settings that affect how a file is read."""
     return conversion.reading, conversion.floor, conversion.body, conversion.meshes
 
 
@@ -56,7 +56,7 @@ def remember(path: Path, state: State, takes: list[ReadRecording], reading: Read
 
 
 def state_of(path: Path) -> State:
-    """When and how long the file, and the skeleton that it needs, were written last."""
+    """Date and size of the file, and of the skeleton file that it needs."""
     try:
         needed = [path, find_skeleton(path)] if path.suffix.lower() == ".amc" else [path]
         states = [(each, each.stat()) for each in needed]

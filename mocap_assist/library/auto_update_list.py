@@ -18,7 +18,7 @@ from .sources import index_problem, library_path, listed_sources
 
 
 def auto_updated_libraries() -> list[IndexProblem]:
-    """Return what is to be kept current."""
+    """Return the libraries that are kept current."""
     stored = permissions.entries(permissions.LIBRARIES)
     return [kept for each in stored if (kept := _problem(each)) is not None]
 

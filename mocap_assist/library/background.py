@@ -28,7 +28,7 @@ class Indexing:
         return self in _on
 
     def show(self, context: bpy.types.Context) -> None:
-        """Say how far it is."""
+        """Show the progress."""
         state = context.window_manager.mocap_assist_indexing
         fraction, message = self.job.progress()
         changed = (state.running, state.fraction, state.message) != (True, fraction, message)
@@ -37,7 +37,7 @@ class Indexing:
             redraw(context)
 
     def end(self, context: bpy.types.Context, message: str) -> None:
-        """Show nothing more but what it has done."""
+        """Replace the progress by the result."""
         _on.remove(self)
         state = context.window_manager.mocap_assist_indexing
         state.running, state.report = False, message

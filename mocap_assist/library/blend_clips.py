@@ -201,7 +201,7 @@ def _with_one_root(clips: list[BlendClip], stated: FileConventions) -> list[Blen
 
 
 def _without_motion(path: str) -> str:
-    """Say what a file of another program lacks."""
+    """Return what a file of another program lacks."""
     if not any(each.type == "ARMATURE" for each in bpy.data.objects):
         return f"{path} has no skeleton, so there is no body to import."
     if not bpy.data.actions:
@@ -220,7 +220,8 @@ def _mark_invented_tails() -> None:
 def _read_action(
     path: str, action: bpy.types.Action, items: Sequence[str], stated: FileConventions | None
 ) -> BlendRead:
-    """Read what an action does with armatures; `stated` is what another program's file says."""
+    """Read the motion of armatures by an action; `stated` is what another program's file
+    says."""
     clips, refused = [], []
     tags = _tags(action, path)
     for item, (armature, source) in sources_of(action).items():

@@ -49,7 +49,7 @@ class FindChoices(Settings):
 
 
 class FindBundle(NamedTuple):
-    """All that the button Find Similar offers."""
+    """Settings of the button Find Similar."""
 
     choices: FindChoices
     finding: FindSettings
@@ -89,7 +89,7 @@ class UseChoices(Settings):
 
 
 class UseBundle(NamedTuple):
-    """All that the button Use as Examples offers."""
+    """Settings of the button Use as Examples."""
 
     choices: UseChoices
 

@@ -112,7 +112,8 @@ def _play(carrier: bpy.types.Object, armature: bpy.types.Object, source: Source)
 def _part_of(
     carrier: bpy.types.Object, armature: bpy.types.Object, action: bpy.types.Action
 ) -> Source | None:
-    """Return the carrier's slot of an action, or what is called as the take of the armature."""
+    """Return the carrier's slot of an action, or the action with the name of the armature's
+    take."""
     own = next((slot for slot in action.slots if slot.identifier == f"OB{carrier.name}"), None)
     if own is not None:
         return action, own

@@ -193,7 +193,7 @@ class _ClipAdder:
         return known
 
     def _entries(self, blend: _Blend) -> dict[int, ClipEntry]:
-        """Return what the library has of a file, by its numbers."""
+        """Return the library's entries for a file, by number."""
         return {
             number: entry
             for number, entry in self._library.numbered().items()

@@ -35,12 +35,12 @@ class LibraryPrior:
     blender: BackgroundBlender
 
     def bases(self, body: Motion | Tracks, progress: Progress) -> LibraryBases:
-        """Learn filter bases from the clips that are like the body's motion."""
+        """Learn filter bases from the clips that are similar to the body's motion."""
         with self._opened() as (library, reading):
             return bases_from_library(body, library, progress=progress, **reading)
 
     def postures(self, body: Motion, progress: Progress) -> LibraryPostures:
-        """Collect the postures of the clips that are like the body's motion."""
+        """Collect the postures of the clips that are similar to the body's motion."""
         with self._opened() as (library, reading):
             return postures_from_library(body, library, progress=progress, **reading)
 

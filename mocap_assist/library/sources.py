@@ -29,7 +29,7 @@ def asset_folders() -> tuple[str, ...]:
 
 
 def listed_sources(choices: LibraryChoices) -> tuple[Source, ...]:
-    """Return what is to be indexed."""
+    """Return the sources to index."""
     sources = [Source(str(absolute(each))) for each in split_names(choices.sources)]
     if choices.asset_libraries:
         sources += [Source(folder, assets_only=True) for folder in asset_folders()]
@@ -37,7 +37,7 @@ def listed_sources(choices: LibraryChoices) -> tuple[Source, ...]:
 
 
 def index_problem(choices: LibraryChoices) -> IndexProblem:
-    """Return what is to be indexed, for another process.
+    """Return the sources to index and their library, for another process.
 
     Raises
     ------
@@ -55,6 +55,7 @@ def index_problem(choices: LibraryChoices) -> IndexProblem:
 
 
 def background_blender(rig_file: str) -> BackgroundBlender:
-    """Return this Blender as who reads .blend files, with the rig of a file, there or not."""
+    """Return this Blender as the reader of .blend files, with the rig's file, even if it is
+    missing."""
     rig = str(absolute(rig_file)) if rig_file else ""
     return BackgroundBlender(str(bpy.app.binary_path), rig)

@@ -68,7 +68,7 @@ def obey(context: bpy.types.Context, event: GestureEvent) -> str:
 
 
 def obey_all(context: bpy.types.Context, events: Sequence[GestureEvent]) -> str:
-    """Do what gestures ask for, in their order; return the last sentence there is."""
+    """Execute the commands of gestures in order; return the last message."""
     messages = [obey(context, event) for event in events]
     return next((sentence for sentence in reversed(messages) if sentence), "")
 

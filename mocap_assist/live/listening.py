@@ -72,7 +72,7 @@ class Listening:
 
     @property
     def stream_state(self) -> ListenerState:
-        """What is known of the stream."""
+        """State of the stream."""
         return self.listener.state
 
     def state(self) -> str:
@@ -111,7 +111,7 @@ class Listening:
         redraw(context, "VIEW_3D")
 
     def _texts(self) -> list[str]:
-        """Return what the status bar shows."""
+        """Return the texts of the status bar."""
         texts = (self.message, self.state(), issue_text(self.stream_state))
         return [text for text in texts if text]
 
@@ -123,7 +123,7 @@ class Listening:
 
 
 def current() -> Listening | None:
-    """Return what listens now."""
+    """Return the running session, if any."""
     return _on[-1] if _on else None
 
 

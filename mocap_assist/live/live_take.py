@@ -114,7 +114,7 @@ def read_live(
 def watch_live(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: LiveBundle
 ) -> "LivePoses":
-    """Return what lets the rig follow the stream."""
+    """Return the display that lets the rig follow the stream."""
     _, switches = read_target(
         scene, armature, find_roles(armature), settings.choices.live_limbs, False
     )
@@ -124,7 +124,8 @@ def watch_live(
 def keep_on_esc(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: LiveBundle
 ) -> Callable[[list[Any]], RecordedTake]:
-    """Return what makes a recording of the frames so far: Esc is its regular end."""
+    """Return the function that makes a recording of the frames so far: Esc is its regular
+    end."""
     return recorded_take
 
 
@@ -187,7 +188,7 @@ class LivePoses:
         redraw(bpy.context, "VIEW_3D")
 
     def close(self) -> None:
-        """Give the rig its former pose."""
+        """Restore the former pose of the rig."""
         try:
             armature = self._armature.find()
         except InvalidMotionError:  # deleted meanwhile

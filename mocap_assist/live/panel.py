@@ -20,7 +20,7 @@ SETTINGS = (
 
 
 class PerformPanel(PanelMixin):
-    """The buttons Listen and Record Live, the port, and what is stream_state."""
+    """The buttons Listen and Record Live, the port, and the state of the stream."""
 
     bl_label = "Perform"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}

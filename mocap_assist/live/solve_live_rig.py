@@ -21,14 +21,14 @@ from ..scene.controls import BoneKeys, Carried, TargetRig, keys_of
 
 
 class LiveRigChoices(NamedTuple):
-    """What is done to the poses of the target."""
+    """Corrections of the target's poses."""
 
     hold_feet: bool = True
     limits: JointLimits | None = None
 
 
 class LiveBones(NamedTuple):
-    """First preview: what the frames hold."""
+    """First preview: the bones that the frames hold."""
 
     frame_rate: float
     first_frame: float

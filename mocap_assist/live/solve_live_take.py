@@ -154,7 +154,7 @@ class _Recorder:
 
 
 def _take_for(frame: StreamFrame, settings: LiveTakeSettings) -> LiveTake | PoseTake:
-    """Return what takes a stream of such frames."""
+    """Return the live take for a stream of such frames."""
     return PoseTake(settings) if isinstance(frame, PoseFrame) else LiveTake(settings)
 
 

@@ -25,7 +25,7 @@ _drawing: list[ViewDrawing] = []
 
 
 class Look(NamedTuple):
-    """What is drawn of the raw and the clean take, and how."""
+    """The drawn parts of the raw and the clean take, and their style."""
 
     colors: tuple[Color, Color]
     width: float

@@ -13,7 +13,7 @@ SWITCHES = ("overlay", "onion", "wipe")
 
 
 def draw_overlay_switches(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the switches and, while one is on, the colors and what belongs to it."""
+    """Draw the switches and, while one is on, its colors and settings."""
     manager = context.window_manager
     column = layout.column(align=True)
     column.prop(manager, "mocap_assist_overlay", toggle=True, icon="OVERLAY")
@@ -52,7 +52,7 @@ def _changed(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
 
 
 def current_look(manager: bpy.types.WindowManager) -> overlay_drawing.Look:
-    """Return what the switches and preferences choose."""
+    """Return the look that the switches and preferences choose."""
     onion = Onion(manager.mocap_assist_onion_ghosts, manager.mocap_assist_onion_step)
     is_wiped = manager.mocap_assist_wipe
     return overlay_drawing.Look(

@@ -29,7 +29,7 @@ class WorkingRange(NamedTuple):
 
 
 def working_range(scene: bpy.types.Scene) -> WorkingRange:
-    """Return what a drag changes."""
+    """Return the range that a drag changes."""
     choices = tuple(getattr(scene.mocap_assist, group).frame_range for group in GROUPS)
     first, last = scene.frame_preview_start, scene.frame_preview_end
     return WorkingRange(first, last, scene.use_preview_range, choices)

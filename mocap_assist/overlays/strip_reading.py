@@ -37,7 +37,7 @@ keys are 32-bit numbers."""
 
 
 class ActionKeys(NamedTuple):
-    """What an action says about its frames, as plain arrays."""
+    """The frames of an action's keys and issues, as plain arrays."""
 
     first: float
     last: float

@@ -208,7 +208,7 @@ def verb_name(task: Task) -> str:
 
 
 def task_entries(tasks: Sequence[Task]) -> list[Entry]:
-    """Return what a report says of the tasks of a run, on whichever machine they ran."""
+    """Return the report's entries for the tasks of a run, from all machines."""
     return [_task_entry(task, current_record(task)) for task in tasks]
 
 

@@ -31,7 +31,7 @@ $picture</section>
 
 
 class Entry(NamedTuple):
-    """What a report says of one file."""
+    """The entry of a report for one file."""
 
     source: str
     target: str

@@ -78,7 +78,7 @@ class FittedMotion:
         return self.hinges[joint][..., None] if joint in self.hinges else np.eye(3)
 
     def columns(self, joint: int) -> slice:
-        """Return where the variables of a joint are."""
+        """Return the columns of a joint's variables."""
         index = self.joints.index(joint)
         return slice(*self._bounds[index : index + 2])
 

@@ -19,7 +19,7 @@ def _starts(*magic: bytes) -> Detector:
 
 
 def _member(*names: bytes) -> Detector:
-    """Return what detects an archive whose first members have one of these names."""
+    """Return a function that detects an archive whose first members have one of these names."""
     return lambda head: head[:4] == b"PK\x03\x04" and any(name in head[:300] for name in names)
 
 

@@ -92,7 +92,7 @@ def open_as(
 
 
 def settle(recording: Recording, settings: ReadingSettings, floor: FloorPlacement) -> Recording:
-    """Return what was read in the axes of the settings, and on the floor where it has none."""
+    """Return the recording in the axes of the settings, and on the floor where it has none."""
     if settings.up.axis or settings.forward.axis:
         recording = reinterpreted(recording, settings.up.axis, settings.forward.axis)
     if floor is FloorPlacement.AUTO and lacks_floor(recording):

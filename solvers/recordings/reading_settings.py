@@ -46,7 +46,7 @@ class Unit(Choice):
 
     @property
     def metres(self) -> float | None:
-        """Meters in one of these; None for what the file says, or its reader guesses."""
+        """Meters in one of these; None if the file states it or its reader estimates it."""
         return METRES.get(self)
 
 

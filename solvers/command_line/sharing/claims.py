@@ -129,7 +129,7 @@ def _created_empty(file: Path, content: str) -> bool:
 
 
 def _content(file: Path) -> dict[str, Any] | None:
-    """Return what a claim says; None if it does not exist, empty while it is written."""
+    """Return the content of a claim; None if it does not exist, empty while it is written."""
     try:
         found = parse_json(file.read_bytes())
     except FileNotFoundError:

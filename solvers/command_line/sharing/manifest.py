@@ -57,7 +57,7 @@ def read_manifest(path: Path) -> list[Listed]:
 
 
 def _entries(path: Path, text: str) -> Iterator[tuple[str, Any]]:
-    """Yield where each entry stands, and the entry: a path, or what the JSON says."""
+    """Yield the position of each entry, and the entry: a path, or a value of the JSON."""
     if path.suffix.lower() == ".json":
         entries = _parsed(path, text, 1)
         if not isinstance(entries, list):

@@ -71,7 +71,7 @@ class Records:
         (self.folder / FOLDER).mkdir(parents=True, exist_ok=True)
 
     def remove_abandoned_parts(self) -> None:
-        """Remove what processes that were killed left of their claims."""
+        """Remove the files that killed processes left of their claims."""
         remove_abandoned_parts(self.folder / FOLDER)
 
     def read(self, output: str) -> Record | None:
@@ -92,7 +92,7 @@ class Records:
         return sorted(found, key=lambda record: PurePosixPath(record.output))
 
     def former(self) -> Iterator[Record]:
-        """Yield what the one record of earlier versions says."""
+        """Yield the records in the single file of earlier versions."""
         try:
             notes = parse_json((self.folder / FORMER_RECORD).read_bytes())
         except (OSError, ValueError):

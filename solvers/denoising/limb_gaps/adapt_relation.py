@@ -72,7 +72,7 @@ def describe_gap(bridge: Bridge, limb: Array, body: Array) -> Array:
 def try_gaps(
     limb: Array, body: Array, known: NDArray[np.bool_], length: int, frame_rate: float
 ) -> Trials:
-    """Hide the limb where it is known, for as long as it is missing or as there is room.
+    """Hide the limb where it is observed, for as long as it is missing or as there is room.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def try_gaps(
 
 
 def adapt_relation(trials: Trials, general: Array, general_variance: Array) -> AdaptedRelation:
-    """Return the posterior of a Gaussian regression about the general one, and how good it is.
+    """Return the posterior of a Gaussian regression about the general one, and its accuracy.
 
     Each part of the take is predicted from the trials outside it. The weight is that of the
     least squared error; the general relation counts as one more gap that was predicted well.

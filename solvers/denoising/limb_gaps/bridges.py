@@ -64,7 +64,8 @@ class Bridge:
         return np.asarray(values[self.frames] - self.line(values))
 
     def missing_features(self, values: Array) -> Array:
-        """Return what both sides say of missing channels, (n_described, 3, n_channels).
+        """Return the features of missing channels from both sides, (n_described, 3,
+        n_channels).
 
         The deviation of a cubic that continues the velocity before the gap; the same for the
         velocity after it; the distance from the mean pose, to which a joint tends to return.

@@ -99,7 +99,7 @@ def _without_export_numbers(names: Sequence[str]) -> list[str]:
 
 
 def sides_of_names(names: Sequence[str]) -> list[str]:
-    """Return "left", "right" or "" for each joint of a skeleton, as its name says."""
+    """Return "left", "right" or "" for each joint of a skeleton, from its name."""
     spelling = _find_spelling(names)
     return [_side_and_words(name, spelling)[0] for name in names]
 

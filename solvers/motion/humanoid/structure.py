@@ -66,7 +66,7 @@ class Structure(NamedTuple):
 
 
 class _BestLimbs(NamedTuple):
-    """Legs, arms and height that fit best, and how badly."""
+    """Legs, arms and height that fit best, and their misfit."""
 
     legs: MirroredLimbs
     arms: MirroredLimbs | None

@@ -143,7 +143,7 @@ def _links(roles: Mapping[str, int]) -> list[tuple[int, int]]:
 
 
 def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]:
-    """Return what the tree and the lengths say against the role of a joint of a limb.
+    """Return the evidence of tree and lengths against the role of a limb's joint.
 
     Parameters
     ----------

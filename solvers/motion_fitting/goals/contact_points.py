@@ -20,7 +20,7 @@ class BonePoint(NamedTuple):
     """From the joint, in the axes of the rest pose, shape (3,), meters."""
 
     def position(self, poses: WorldPoses) -> Array:
-        """Return where it is in the world, (n_frames, 3)."""
+        """Return its position in the world, (n_frames, 3)."""
         return np.asarray(
             poses.positions[:, self.bone] + rotate(poses.rotations[:, self.bone], self.offset)
         )

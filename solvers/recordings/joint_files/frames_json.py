@@ -44,7 +44,7 @@ HEAD = re.compile(
 
 
 class _Content(NamedTuple):
-    """What a file, or the files of a take, hold."""
+    """Content of a file, or of the files of a take."""
 
     frames: list[BodiesFrame]
     columns: dict[str, dict[str, int]]

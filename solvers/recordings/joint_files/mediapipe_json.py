@@ -42,7 +42,7 @@ VISIBILITY = ("visibility", "presence", "score")
 
 
 class _MediapipeContent(NamedTuple):
-    """What a file, or the files of a take, hold."""
+    """Content of a file, or of the files of a take."""
 
     frames: list[Array]
     """Landmarks of each frame, shape (33, 4)."""
