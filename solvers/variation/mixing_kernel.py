@@ -7,7 +7,7 @@ is k(s, t) times the examples' own covariance. Correlations of the examples, bet
 and in time, are therefore preserved.
 
 Scale and bias are not learned by marginal likelihood. Where samples are not exactly aligned,
-the most likely weights change within .1 s; such variants jerk and resemble no example
+the most likely weights change within 0.1 s; such variants jerk and resemble no example
 (docs/manual/variation.md). The values are the same for all behaviors, chosen on squats and
 hops.
 
