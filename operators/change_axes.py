@@ -14,7 +14,7 @@ from ..mocap_assist.importing.changing_axes import (
     noted_change,
     why_fixed,
 )
-from ..mocap_assist.importing.import_operator import WIDTH
+from ..mocap_assist.importing.import_operator import DIALOG_WIDTH_PX
 from ..solvers.errors import InvalidMotionError
 
 
@@ -29,7 +29,7 @@ class MOCAP_OT_change_axes(SettingsMixin, ActOperator, bpy.types.Operator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.set_properties(noted_change(imported_object(context)))
         status: set[str] = context.window_manager.invoke_props_dialog(
-            self, width=WIDTH, confirm_text="Change"
+            self, width=DIALOG_WIDTH_PX, confirm_text="Change"
         )
         return status
 

@@ -9,7 +9,11 @@ from ..mocap_assist.blender.path_properties import HIDDEN
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.importing.button_settings import ImportBundle
 from ..mocap_assist.importing.file_kinds import kinds_of
-from ..mocap_assist.importing.import_operator import WIDTH, FilesOperator, propose_start
+from ..mocap_assist.importing.import_operator import (
+    DIALOG_WIDTH_PX,
+    FilesOperator,
+    propose_start,
+)
 from ..mocap_assist.importing.importing import FILTER, chosen_paths, preview
 from ..mocap_assist.runtime.solver_operator import in_background
 
@@ -43,6 +47,6 @@ class MOCAP_OT_import_recording(FilesOperator, bpy.types.Operator):
         paths = chosen_paths(self)
         self.note, self.kinds = preview(context, paths), kinds_of(paths)
         status: set[str] = context.window_manager.invoke_props_dialog(
-            self, width=WIDTH, confirm_text="Import"
+            self, width=DIALOG_WIDTH_PX, confirm_text="Import"
         )
         return status

@@ -6,7 +6,7 @@ From an installed wheel the same is `mocap-assist VERB ...`.
 import os
 import sys
 
-from .processes import thread_environment, threads_of_words
+from .processes import thread_environment, threads_from_arguments
 
 
 def console_script() -> int:
@@ -29,12 +29,12 @@ def main(prog: str = f"python -m {__package__}") -> int:
     int
         Exit status.
     """
-    words = sys.argv[1:]
-    os.environ.update(thread_environment(threads_of_words(words)))
+    arguments = sys.argv[1:]
+    os.environ.update(thread_environment(threads_from_arguments(arguments)))
     from .command_line.run import run
     from .command_line.verbs import VERBS
 
-    return run(VERBS, words, prog)
+    return run(VERBS, arguments, prog)
 
 
 if __name__ == "__main__":

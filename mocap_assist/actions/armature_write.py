@@ -174,7 +174,7 @@ def count_modified(source: Source, bones: Collection[str]) -> int:
     return sum(act_on_keys(each.curve) for (path, _), each in curves if path.startswith(owned))
 
 
-def put_to_use(
+def assign_result(
     armature: bpy.types.Object,
     action: bpy.types.Action,
     slot: bpy.types.ActionSlot,
@@ -247,7 +247,7 @@ def new_strip(animation: bpy.types.AnimData, source: Source) -> bpy.types.NlaStr
     return strip
 
 
-def play_in(strip: bpy.types.NlaStrip, source: Source) -> None:
+def assign_to_strip(strip: bpy.types.NlaStrip, source: Source) -> None:
     """Let a strip play an action at the action's own frames."""
     action, slot = source
     strip.action, strip.name = action, action.name

@@ -19,12 +19,12 @@ from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene import history
 from .armature_write import (
     NUMBERED,
+    assign_to_strip,
     check_writable,
     delta_tracks,
     identify_played,
     keep_replaced,
     new_strip,
-    play_in,
     remove_deltas,
 )
 from .bone_channels import Curves, animated_curves, curves_of, sampled
@@ -161,7 +161,7 @@ def _play_again(pair: Sequence[bpy.types.NlaTrack], base: Source, delta: Source)
         return
     for each, source in ((below, base), (strip, delta)):
         each.scale = each.repeat = 1.0
-        play_in(each, source)
+        assign_to_strip(each, source)
 
 
 def _free_influence(strip: bpy.types.NlaStrip, value: float) -> None:

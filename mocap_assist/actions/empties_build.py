@@ -7,7 +7,7 @@ from ...solvers.motion import Tracks
 from ...solvers.progress import Progress, unwatched
 from ..blender import compat
 from ..blender.data_names import fitting_name
-from ..scene.scene_objects import add_object, add_quietly, in_object_mode
+from ..scene.scene_objects import add_object, add_unselected, in_object_mode
 from .new_action import write_channels
 
 POINT = "mocap_assist_point"
@@ -51,7 +51,7 @@ def build_empties(
         empty.parent = holder
         made.append(empty)
         if collection is None:
-            add_quietly(context, empty)
+            add_unselected(context, empty)
         else:
             collection.objects.link(empty)
     if collection is None:

@@ -55,7 +55,7 @@ def read_states(
 ) -> NDArray[np.int8] | None:
     """Return the tracking state of each bone's joint, shape (n_frames, n_bones): 2, 1, 0.
 
-    A bone of which nothing was said counts as tracked; None where nothing was said of any.
+    A bone without a state counts as tracked; None if no bone has a state.
     """
     bag = compat.channelbag(*source)
     if bag is None:

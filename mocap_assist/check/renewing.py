@@ -14,7 +14,7 @@ class CheckOperator(SolverOperator):
     """Mix in before bpy.types.Operator: a check that may be quiet.
 
     The message of the result that it follows stays in the status bar. The animator works on
-    meanwhile: nothing is blocked by a check that was not asked for.
+    meanwhile: a check that was not requested blocks nothing.
     """
 
     is_quiet: bpy.props.BoolProperty(options={"SKIP_SAVE", "HIDDEN"})

@@ -11,9 +11,9 @@ from ...solvers.motion import JointLimits
 from ..actions.armature_read import read_take
 from ..actions.armature_write import (
     Output,
+    assign_result,
     check_writable,
     count_modified,
-    put_to_use,
     write_take,
 )
 from ..actions.contact_keys import animators_contacts, write_contacts
@@ -114,5 +114,5 @@ class ArmatureReading(NamedTuple):
                 now, (action, slot) = self._found(self.references, self.raw), made.find()
             lay_delta(now.armature, now.recorded, delta)
         else:
-            put_to_use(now.armature, action, slot, Output[choices.result_as.name])
+            assign_result(now.armature, action, slot, Output[choices.result_as.name])
         return action.name, n_modified

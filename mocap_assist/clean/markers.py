@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
-from ..actions.armature_write import Output, check_writable, put_to_use
+from ..actions.armature_write import Output, assign_result, check_writable
 from ..actions.marker_take import MarkerTake, read_markers, write_markers
 from ..actions.markers import markers_of
 from ..blender.time_slices import Steps
@@ -73,5 +73,5 @@ class MarkerReading(NamedTuple):
             if source_new[0].name not in names:
                 history.record(source_new[0], source, entry)
             names.add(source_new[0].name)
-            put_to_use(marker, *source_new, Output[choices.result_as.name])
+            assign_result(marker, *source_new, Output[choices.result_as.name])
         return ", ".join(sorted(names)), 0

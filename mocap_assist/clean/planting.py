@@ -7,7 +7,7 @@ import bpy
 
 from ...solvers.denoising import PlantSettings
 from ..actions.armature_read import read_take
-from ..actions.armature_write import Output, check_writable, put_to_use, write_take
+from ..actions.armature_write import Output, assign_result, check_writable, write_take
 from ..actions.contact_keys import animators_contacts, write_contacts
 from ..blender.time_slices import Sliced, Steps
 from ..jobs.job import MAX_SHORT_SOLVE_FRAMES, ShortSolve
@@ -65,7 +65,7 @@ def write_planted(
         "slide_after_cm": 100 * planted.slide_after,
     }
     history.record(action, played, entry)
-    put_to_use(armature, action, slot, Output.ACTION)
+    assign_result(armature, action, slot, Output.ACTION)
     message = (
         f"{action.name}: slide on the floor {100 * planted.slide_before:.1f} →"
         f" {100 * planted.slide_after:.1f} cm, moved {len(result.moved)} bones."

@@ -5,7 +5,7 @@ import bpy
 NAME = "Depth Points"
 MADE = "mocap_assist_depth_points"
 """Custom property that marks the node group, even if it was renamed."""
-RADIUS = 0.006  # meters
+POINT_RADIUS_M = 0.006
 OBSERVED = "seen"
 """Attribute of a point: whether the camera measured a depth there."""
 
@@ -28,7 +28,7 @@ def point_nodes() -> bpy.types.NodeTree:
     attribute = tree.nodes.new("GeometryNodeInputNamedAttribute")
     attribute.data_type = "BOOLEAN"
     attribute.inputs["Name"].default_value = OBSERVED
-    points.inputs["Radius"].default_value = RADIUS
+    points.inputs["Radius"].default_value = POINT_RADIUS_M
     for column, node in enumerate((given, points, made)):
         node.location = (220.0 * column, 0.0)
     attribute.location = (0.0, -140.0)

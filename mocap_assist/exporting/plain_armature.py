@@ -56,7 +56,7 @@ class SampledPoses:
 def exported_tree(
     bones: Sequence[bpy.types.Bone], choice: ExportedBones, *, is_control_rig: bool
 ) -> BoneTree:
-    """Return the bones to export; each hangs on the nearest exported bone above it.
+    """Return the bones to export; the parent of each is the nearest exported bone above it.
 
     Where no bone deforms, all are exported. Rigify hangs deforming bones on those that it
     calls ORG-, which stand for the deforming ones of the same name.

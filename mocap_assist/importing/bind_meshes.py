@@ -12,7 +12,7 @@ from ...solvers.arrays import Array
 from ...solvers.rotations import fit_similarity
 from ..blender.skinned_meshes import FILE
 from ..jobs.in_blender import SkinnedMeshes
-from ..scene.scene_objects import add_quietly
+from ..scene.scene_objects import add_unselected
 
 MAX_MISFIT = 0.02
 """Mean distance between bones of the file and of the scene (fraction of the body's extent) up
@@ -41,7 +41,7 @@ def bind_skinned_meshes(
     for mesh in _append(meshes.content, names):
         mesh.use_fake_user = mesh.data.use_fake_user = False
         mesh.data.transform(placed, shape_keys=True)
-        add_quietly(context, mesh)
+        add_unselected(context, mesh)
         mesh.parent = armature
         mesh.modifiers.new("Armature", "ARMATURE").object = armature
     return (_count(len(names)),)

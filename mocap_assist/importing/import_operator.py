@@ -21,8 +21,8 @@ from .import_transaction import Imported
 from .importing import chosen_paths, import_files, shown_paths
 from .show_actor import show_actor
 
-WIDTH = 400  # of the dialog, pixels at scale 1
-NOTE_WIDTH = 300  # of Adjust Last Operation, whose width Blender chooses
+DIALOG_WIDTH_PX = 400  # pixels at scale 1
+NOTE_WIDTH_PX = 300  # of Adjust Last Operation; Blender chooses its width
 
 
 def propose_start(operator: bpy.types.Operator, context: bpy.types.Context) -> None:
@@ -87,7 +87,7 @@ class FilesOperator(SettingsMixin):
         if bodies_to_choose(shown_paths(self)):
             self.layout.column().prop(self, "body_choice", expand=True)
         if self.note:
-            draw_lines(self.layout, self.note, NOTE_WIDTH)
+            draw_lines(self.layout, self.note, NOTE_WIDTH_PX)
         kinds = self.kinds.split()
         for_depth = fitting(type(self).setting_names, [DEPTH])
         for name in fitting(type(self).setting_names, kinds or MOVING):

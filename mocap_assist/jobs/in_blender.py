@@ -93,7 +93,7 @@ class BlendRead:
     is_empty: bool = False
     """Whether the file has no motion at all, so that it need not be read again."""
     meshes: SkinnedMeshes | None = None
-    """Only if they were asked for."""
+    """Only if they were requested."""
 
 
 def read_blends(

@@ -6,7 +6,7 @@ import bpy
 
 from ..actions.markers import STICKS
 from ..blender.data_names import fitting_name
-from ..scene.scene_objects import add_quietly
+from ..scene.scene_objects import add_unselected
 
 COLUMN, ROW = 220.0, 140.0
 """Distances of nodes in the editor, units of the editor. Any values that keep them apart."""
@@ -37,7 +37,7 @@ def build_sticks(
     sticks[STICKS] = True
     sticks.parent = holder
     sticks.hide_render = True
-    add_quietly(context, sticks)
+    add_unselected(context, sticks)
     tree = _nodes(name, [empties[index] for index in used])
     sticks.modifiers.new("Follow Markers", "NODES").node_group = tree
     return sticks

@@ -24,7 +24,7 @@ def read_keys(source: Source) -> Keys:
 
 
 def curves_near(source: Source, keys: Keys, frames: Array) -> Curves:
-    """Return the F-Curves as they are now, with so many of the keys as the frames ask for."""
+    """Return the F-Curves as they are now, with only the keys that the frames need."""
     curves = animated_curves(*source)
     for name in curves.keys() & keys.keys():
         curves[name].keys = _near(keys[name], frames)

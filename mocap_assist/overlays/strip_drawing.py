@@ -24,7 +24,7 @@ SCROLLER_PX, MARKERS_PX, RULER_PX = 10, 42, 24
 """Height of Blender's scroll bar, of its row of markers, and of its ruler at the top, in pixels
 at scale 1."""
 MIN_WIDTH_PX = 2.0
-"""Width of a range of which many lie in one pixel."""
+"""Minimum width of a range, where many ranges lie in one pixel."""
 ROW_INSET = 0.08
 """Distance between two rows, as a fraction of their height."""
 BACKGROUND = (0.06, 0.06, 0.06, 0.7)

@@ -7,7 +7,7 @@ import bpy
 
 from ...solvers.physics import SimulateSettings
 from ..actions.armature_read import read_take
-from ..actions.armature_write import Output, check_writable, put_to_use, write_take
+from ..actions.armature_write import Output, assign_result, check_writable, write_take
 from ..blender.time_slices import Sliced, Steps
 from ..jobs.job import ShortSolve
 from ..runtime import redo
@@ -63,7 +63,7 @@ def write_simulated(
     )
     _, armature, played = present.find()
     history.record(action, played, _entry(settings, result))
-    put_to_use(armature, action, slot, Output.ACTION)
+    assign_result(armature, action, slot, Output.ACTION)
     return f"{action.name}: {len(result.moved)} bones moved. {result.simulated.message}"
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion, Sensor
 from ..actions.armature_read import read_take
-from ..actions.armature_write import check_writable, count_modified, put_to_use, write_take
+from ..actions.armature_write import assign_result, check_writable, count_modified, write_take
 from ..actions.bone_lengths import has_constant_locations, key_lengths, length_locations
 from ..actions.contact_keys import animators_contacts, write_contacts
 from ..actions.curves import GENERATED, MEASURED
@@ -126,7 +126,7 @@ def write_reconstructed(
         write_contacts(armature, action, slot, take.frames, contacts, detected=detected)
     recorded = history.raw_of(played[0]) or played
     history.record(action, recorded, _entry(settings, rebuilt))
-    put_to_use(armature, action, slot, settings.choices.result_as)
+    assign_result(armature, action, slot, settings.choices.result_as)
     return _message_of(action.name, rebuilt, n_modified)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from ...solvers.motion import Motion
 from ...solvers.rotations import inverse, multiply
 from ..actions.armature_read import read_take
-from ..actions.armature_write import Output, check_writable, put_to_use
+from ..actions.armature_write import Output, assign_result, check_writable
 from ..actions.bone_channels import animated_curves
 from ..actions.take import ArmatureTake, TakePart
 from ..blender.time_slices import Sliced, Steps, in_thread
@@ -56,7 +56,7 @@ def write_unbaked(
         "error_cm": 100 * result.error,
     }
     history.record(action, played, entry)
-    put_to_use(armature, action, slot, Output.ACTION)
+    assign_result(armature, action, slot, Output.ACTION)
     return (
         f"{action.name}: {before} → {after} keys; error of hands, feet and head"
         f" at most {100 * result.error:.2f} cm."

@@ -25,7 +25,7 @@ SIDES = ("left", "right")
 def find_roles(armature: bpy.types.Object) -> HumanoidMap:
     """Find the bone of a rig to key for each role.
 
-    Of rigs by Rigify only the controls are asked.
+    Of rigs by Rigify only the controls are considered.
     """
     rig = read_rig(armature)
     if is_rigify(rig.bones):

@@ -8,7 +8,7 @@ listeners: list[Callable[[bpy.types.Scene], None]] = []
 """Called with the scene after each button that solves, except those without an undo step."""
 
 
-def result_is_written(scene: bpy.types.Scene) -> None:
+def notify_listeners(scene: bpy.types.Scene) -> None:
     """Call all listeners."""
     for listener in listeners:
         listener(scene)

@@ -14,7 +14,7 @@ from ..blender.mixins import SettingsMixin
 from ..blender.time_slices import Work, in_thread
 from ..jobs.job import Job, run, runs_here
 from ..languages import translated
-from .after_result import result_is_written
+from .after_result import notify_listeners
 from .navigation import is_in_status_bar, may_pass
 from .redo import fingerprint
 from .selection import selected_subject
@@ -214,7 +214,7 @@ class SolverOperator(SettingsMixin):
     def _finish(self, message: str) -> set[str]:
         note_press(self)
         if "UNDO" in self.bl_options:
-            result_is_written(bpy.context.scene)
+            notify_listeners(bpy.context.scene)
         self.report({"INFO"}, translated(message))
         return {"FINISHED"}
 

@@ -63,7 +63,7 @@ def was_thinned(action: bpy.types.Action) -> bool:
 def raw_of(action: bpy.types.Action, slot: bpy.types.ActionSlot | None = None) -> Source | None:
     """Return the recorded action and slot that a result was made from, if both still exist.
 
-    A result for many markers has a slot for each; `slot` says whose recording is asked for.
+    A result for many markers has a slot for each; `slot` states whose recording is requested.
     """
     source, entries = action.get(SOURCE), history(action)
     if not isinstance(source, bpy.types.Action) or not entries:

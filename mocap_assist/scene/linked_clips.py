@@ -17,7 +17,7 @@ class Linked(NamedTuple):
 
     actions: tuple[bpy.types.Action, ...]
     armatures: tuple[bpy.types.Object, ...]
-    """In the present scene meanwhile, so that Blender knows where they stand."""
+    """Linked to the current scene meanwhile, so that Blender evaluates their positions."""
 
 
 def is_blend(path: Path) -> bool:

@@ -23,11 +23,11 @@ def in_object_mode(context: bpy.types.Context) -> None:
 
 def add_object(context: bpy.types.Context, made: bpy.types.Object) -> None:
     """Link an object where new ones go, and make it the only one that is selected."""
-    add_quietly(context, made)
+    add_unselected(context, made)
     choose(context, [made], made)
 
 
-def add_quietly(context: bpy.types.Context, made: bpy.types.Object) -> None:
+def add_unselected(context: bpy.types.Context, made: bpy.types.Object) -> None:
     """Link an object where new ones go, without selecting it."""
     collection_for_new(context).objects.link(made)
 

@@ -11,7 +11,7 @@ from . import searches
 from .ghost import ghost_lines
 
 COLOR: Color = (0.45, 0.95, 0.55, 0.95)
-WIDTH = 4.0
+LINE_WIDTH_PX = 4.0
 
 _drawing: list[ViewDrawing] = []
 
@@ -32,7 +32,7 @@ def _draw(context: bpy.types.Context) -> None:
         return
     lines = ghost_now(context)
     if lines is not None:
-        draw_lines(lines, Matrix.Identity(4), COLOR, WIDTH)
+        draw_lines(lines, Matrix.Identity(4), COLOR, LINE_WIDTH_PX)
 
 
 def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:

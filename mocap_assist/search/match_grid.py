@@ -17,7 +17,7 @@ clip of the same kind never less than the second."""
 MAX_CELLS = 6
 """Number of cells that are drawn. It bounds the height of the panel."""
 NARROW_COLUMNS, WIDE_COLUMNS = 2, 3
-PICTURE = 4.5
+PICTURE_BUTTON_HEIGHTS = 4.5
 """Size of a picture, in heights of a button."""
 
 
@@ -56,7 +56,7 @@ def draw_match_grid(
     grid = layout.grid_flow(row_major=True, columns=columns, even_columns=True, align=True)
     for index in range(min(n_good, MAX_CELLS)):
         row, cell = listed.rows[index], grid.column(align=True)
-        cell.template_icon(icon_of(search, index), scale=PICTURE)
+        cell.template_icon(icon_of(search, index), scale=PICTURE_BUTTON_HEIGHTS)
         is_shown = index == listed.active
         text = f"{row.score:.0%} {row.name}" if search.is_ranked else row.name
         cell.operator(CHOOSE, text=text, translate=False, depress=is_shown).index = index

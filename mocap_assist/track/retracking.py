@@ -9,7 +9,7 @@ from ...solvers.arrays import Array
 from ...solvers.depth_tracking import Retracked, RetrackSettings
 from ...solvers.depth_tracking.body import JOINTS, SEGMENTS, scene_from_camera
 from ...solvers.errors import InvalidMotionError, MocapAssistError
-from ..actions.armature_write import Output, check_writable, put_to_use, write_take
+from ..actions.armature_write import Output, assign_result, check_writable, write_take
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps
 from ..depth.depth_preview import open_recording
@@ -140,7 +140,7 @@ def write_retracked(
     ranges = _find_low_confidence(scene, confidence)
     list_low_confidence(scene, source_new[0], take.frames, ranges, report)
     history.record(source_new[0], source, _entry(settings, take, result))
-    put_to_use(armature, *source_new, Output.ACTION)
+    assign_result(armature, *source_new, Output.ACTION)
     return f"{source_new[0].name}: {report}"
 
 

@@ -8,7 +8,12 @@ from .locks import try_lock
 from .machine import host_name, is_running, this_machine
 from .parent import end_with_stdin
 from .scratch import ScratchFolder, lock_for_work_on
-from .threads import add_threads_option, thread_environment, threads_from, threads_of_words
+from .threads import (
+    add_threads_option,
+    thread_environment,
+    threads_from,
+    threads_from_arguments,
+)
 from .workers import worker_pool
 
 __all__ = [
@@ -23,7 +28,7 @@ __all__ = [
     "this_machine",
     "thread_environment",
     "threads_from",
-    "threads_of_words",
+    "threads_from_arguments",
     "try_lock",
     "worker_pool",
 ]

@@ -51,7 +51,7 @@ def threads_from(arguments: argparse.Namespace) -> int:
     return n_threads
 
 
-def threads_of_words(words: Sequence[str]) -> int:
+def threads_from_arguments(words: Sequence[str]) -> int:
     """Return the number of threads that a command line requests, before it is parsed.
 
     An invalid number counts as one: the full parser, which imports numpy, reports it.

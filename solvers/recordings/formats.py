@@ -78,7 +78,7 @@ from .skeleton_files import (
     read_vrma,
 )
 
-HEAD = 4096
+HEAD_BYTES = 4096
 MAX_DIRECTORY_BYTES = 1 << 16
 """Of the end of an archive, where the names of its members are."""
 MAX_JSON_BYTES = 1 << 22
@@ -161,10 +161,10 @@ def detect_format(path: Path | str) -> Format | None:
         return None
     try:
         with open_regular(path) as file:
-            head = file.read(HEAD).removeprefix(BYTE_ORDER_MARK)
+            head = file.read(HEAD_BYTES).removeprefix(BYTE_ORDER_MARK)
             head += file.read(min(json_length(head), MAX_JSON_BYTES))
             if head.startswith(ZIP_MEMBER):
-                file.seek(max(HEAD, file.seek(0, SEEK_END) - MAX_DIRECTORY_BYTES))
+                file.seek(max(HEAD_BYTES, file.seek(0, SEEK_END) - MAX_DIRECTORY_BYTES))
                 head += file.read()
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None

@@ -104,7 +104,7 @@ def settle(recording: Recording, settings: ReadingSettings, floor: FloorPlacemen
 def questions_of(recording: Tracked, floor: FloorPlacement) -> list[str]:
     """Ask whether size, depth and height of an actor are right, where they are odd.
 
-    Heights are not asked about where they are kept on request.
+    Heights are not questioned if the settings keep them.
     """
     found = [question_of_size(recording), question_of_depth(recording)]
     if floor is not FloorPlacement.NEVER:

@@ -7,7 +7,7 @@ from ..progress import Progress, within
 from .capture_recording import CapturedMotion, capture_recording
 from .fix_chains import ChainResult, clean_motion
 
-TRACKED = 0.9
+TRACKED_FRACTION = 0.9
 """Fraction of the time until the actor is tracked. Chosen by hand on 6 images; it only moves
 the progress bar."""
 
@@ -20,10 +20,15 @@ def track_depth(
 ) -> ChainResult:
     """Fit a body to the depth images, track it, clean its motion and plant visible feet."""
     captured = capture_recording(
-        recording, planting=None, on_pose=on_pose, progress=within(progress, 0.0, TRACKED)
+        recording,
+        planting=None,
+        on_pose=on_pose,
+        progress=within(progress, 0.0, TRACKED_FRACTION),
     )
     planting = planting if captured.actor.feet_visible else None
-    cleaned = clean_motion(captured.motion, planting, None, within(progress, TRACKED, 1.0))
+    cleaned = clean_motion(
+        captured.motion, planting, None, within(progress, TRACKED_FRACTION, 1.0)
+    )
     return ChainResult(
         recording=cleaned.recording,
         steps=(

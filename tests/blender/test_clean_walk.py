@@ -38,7 +38,7 @@ def test_cleaned_walk_is_nearer_to_the_truth(walk, blank, load, rng):
     bones = set(truth.rig.bones)
     raw, slot = writing.write_take(walk, reading.action_of(walk), noisy, bones, {})
     raw.name = "walk"
-    writing.put_to_use(walk, raw, slot, writing.Output.ACTION)
+    writing.assign_result(walk, raw, slot, writing.Output.ACTION)
 
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
 

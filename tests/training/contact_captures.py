@@ -22,7 +22,7 @@ from solvers.signals import smooth_gaussian
 
 from ..benchmarks.shared import clips
 
-RATE = 120.0
+RATE_HZ = 120.0
 MAX_FRAMES = 600
 UNLABELED_LANDING_S = 0.06
 """Seconds around a landing of [1]_ that are not used: the ankle swings back before it lands."""
@@ -61,7 +61,7 @@ def _gait_events(motion: Motion, positions: Array) -> tuple[Flags, Flags]:
     farthest behind them.
     """
     root = motion.root_positions[:, :2]
-    velocity = np.gradient(smooth_gaussian(root, 0.3 * RATE), 1.0 / RATE, axis=0)
+    velocity = np.gradient(smooth_gaussian(root, 0.3 * RATE_HZ), 1.0 / RATE_HZ, axis=0)
     speed = np.linalg.norm(velocity, axis=1, keepdims=True)
     ahead = velocity / np.maximum(speed, 1e-9)
     contacts = np.zeros((len(positions), 2), np.bool_)
@@ -69,7 +69,7 @@ def _gait_events(motion: Motion, positions: Array) -> tuple[Flags, Flags]:
     for foot in range(2):
         from_hips = positions[:, foot, :, :2] - root[:, None]
         relative = np.einsum("fpi,fi->fp", from_hips, ahead)
-        options = {"prominence": MIN_SWING_M, "distance": MIN_STRIDE_S * RATE}
+        options = {"prominence": MIN_SWING_M, "distance": MIN_STRIDE_S * RATE_HZ}
         landings, _ = find_peaks(relative[:, 0], **options)
         lifts, _ = find_peaks(-relative[:, 1], **options)
         events = sorted(
@@ -80,7 +80,7 @@ def _gait_events(motion: Motion, positions: Array) -> tuple[Flags, Flags]:
                 contacts[start:stop, foot] = lands
                 known[start:stop, foot] = True
         for landing in landings:
-            width = round(UNLABELED_LANDING_S * RATE)
+            width = round(UNLABELED_LANDING_S * RATE_HZ)
             known[max(landing - width, 0) : landing + width, foot] = False
     return contacts, known & (speed > MIN_WALKING_SPEED)
 

@@ -24,12 +24,12 @@ from solvers.motion.humanoid.foot_contacts import (
 )
 from solvers.signals import smooth_gaussian, two_state_probabilities
 
-from .contact_captures import RATE as CAPTURE_RATE
+from .contact_captures import RATE_HZ as CAPTURE_RATE
 from .contact_captures import labeled_walks
 from .contact_takes import KINDS, made_feet
 from .support_takes import PLANS, made_supports
 
-RATE = 60.0
+RATE_HZ = 60.0
 """Hertz; the model does not depend on it."""
 TAKES_OF_A_KIND = 16
 NOISE_M = (0.0, 0.0, 0.0, 0.003, 0.01, 0.03, 0.06)
@@ -89,7 +89,7 @@ def _model(logs: Array) -> ContactModel:
 def _probabilities(feet: list[FeetInMotion], model: ContactModel) -> Array:
     """Return probabilities, (n_frames, n_takes, 2); evidence after a take's end is 0."""
     evidence = _padded([one.evidence(model) for one in feet])
-    return two_state_probabilities(evidence, RATE, model.landing_rate, model.lift_rate)
+    return two_state_probabilities(evidence, RATE_HZ, model.landing_rate, model.lift_rate)
 
 
 def _padded(arrays: list[Array]) -> Array:
@@ -102,18 +102,18 @@ def _padded(arrays: list[Array]) -> Array:
 def _takes(rng: np.random.Generator) -> Iterator[Weighted]:
     for kind in KINDS:
         for _ in range(TAKES_OF_A_KIND):
-            positions, contacts = made_feet(kind, RATE, rng)
+            positions, contacts = made_feet(kind, RATE_HZ, rng)
             positions = _on_a_real_floor(positions, rng)
             yield _feet(positions, rng), contacts.astype(float), np.ones(contacts.shape)
     for walk in labeled_walks():
-        positions, contacts, known = (part[:: round(CAPTURE_RATE / RATE)] for part in walk)
+        positions, contacts, known = (part[:: round(CAPTURE_RATE / RATE_HZ)] for part in walk)
         yield _feet(positions, rng), contacts.astype(float), WEIGHT_OF_WALKS * known
 
 
 def _supports(rng: np.random.Generator) -> Iterator[Weighted]:
     for kind in PLANS:
         for _ in range(TAKES_OF_A_KIND):
-            positions, contacts = made_supports(kind, RATE, rng)
+            positions, contacts = made_supports(kind, RATE_HZ, rng)
             positions = _on_a_real_floor(positions, rng)
             ground = np.full(len(positions), rng.normal(scale=GROUND_M))
             yield _feet(positions, rng, ground), contacts.astype(float), np.ones(contacts.shape)
@@ -137,11 +137,11 @@ def _feet(
         noise = rng.choice(NOISE_M)
         own = np.sqrt(1.0 - COMMON_NOISE**2) * rng.normal(size=positions.shape)
         error = noise * (COMMON_NOISE * rng.normal(size=common) + own)
-    return measure_feet(positions + error, RATE, ground)
+    return measure_feet(positions + error, RATE_HZ, ground)
 
 
 def _slow(shape: tuple[int, ...], deviation: float, rng: np.random.Generator) -> Array:
-    error = smooth_gaussian(rng.normal(size=shape), SLOW_S * RATE)
+    error = smooth_gaussian(rng.normal(size=shape), SLOW_S * RATE_HZ)
     return deviation * error / error.std()
 
 

@@ -118,7 +118,7 @@ def test_command_lists_every_verb_and_its_version(installed):
     assert installed.run("mocap-assist", "--version") == f"Mocap Assist {VERSION}\n"
 
 
-def test_command_converts(installed):
+def test_command_converts_a_recording(installed):
     installed.run("mocap-assist", "convert", "takes/one.bvh", "copy.bvh")
 
     assert read_bvh(installed.folder / "copy.bvh").n_frames == take().n_frames

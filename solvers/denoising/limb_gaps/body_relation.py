@@ -19,7 +19,7 @@ from .bridges import N_FEATURES, Bridge
 
 SHIPPED = Path(__file__).parent / "bodies.npz"
 RIDGE = 10.0
-"""Square degrees: what other people's movement does not tell of this body's. Chosen by hand on
+"""Square degrees: variance that other people's movement does not explain. Chosen by hand on
 the development takes of the first press: x10 costs 5 %."""
 MIN_EIGENVALUE_RATIO = -1e-6
 """Fraction of the largest moment: rounding in single precision. By definition."""

@@ -13,7 +13,7 @@ errors."""
 def estimate_channel_noise(samples: Array, minimum: float) -> Array:
     """Return the standard deviation of the noise of each channel, shape (n_channels,).
 
-    Channels that stand still say nothing about the others; they get their noise.
+    Channels that stand still do not count for the others; they get the others' noise.
 
     Parameters
     ----------

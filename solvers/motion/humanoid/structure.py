@@ -26,8 +26,9 @@ TRUNK_WEIGHT = 0.25
 """Weight of the trunk's length in the misfit of a body. Chosen by hand on the rigs of
 `tests/solvers/motion`."""
 ROOT_AT_CHEST = 0.5
-"""Added to the misfit, the logarithm of a length, of a body whose legs hang on its chest: more
-often, legs were taken for arms. Chosen by hand on the rigs of `tests/solvers/motion`."""
+"""Added to the misfit, the logarithm of a length, of a body whose legs are children of its
+chest: more often, legs were taken for arms. Chosen by hand on the rigs of
+`tests/solvers/motion`."""
 LEG_PATH_FRACTION = 0.6
 """Of the height, from the hip joint along the bones to the tip of the foot. Chosen by hand on
 the rigs of `tests/solvers/motion`."""

@@ -1,6 +1,6 @@
 """Read container formats and tables: C3D, Matroska, MATLAB, NumPy, JSON and text."""
 
-from .c3d_file import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
+from .c3d_file import BLOCK_BYTES, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
 from .delimited import find_separator, split_cells, stream_cells
 from .folder_scan import check_folder_access, files_below, is_folder
 from .frame_files import (
@@ -36,7 +36,7 @@ from .stored_arrays import (
     read_array,
 )
 from .stored_bytes import (
-    CHUNK,
+    CHUNK_BYTES,
     MAX_CHECKED_BYTES,
     MAX_DEFLATE_RATIO,
     ByteSlice,
@@ -56,11 +56,11 @@ from .text import (
 )
 
 __all__ = [
-    "BLOCK",
+    "BLOCK_BYTES",
     "BYTE_ORDER_MARK",
     "C3D_ID",
     "CHARACTERS",
-    "CHUNK",
+    "CHUNK_BYTES",
     "FLOATS",
     "INTEGERS",
     "MAX_CHECKED_BYTES",

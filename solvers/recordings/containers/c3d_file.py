@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from .text import map_bytes
 
-BLOCK = 512
+BLOCK_BYTES = 512
 C3D_ID = 0x50
 DEC, MIPS = 85, 86
 PROCESSORS = range(83, 88)
@@ -33,8 +33,8 @@ def is_c3d(head: bytes) -> bool:
     """
     if head[1:2] != bytes([C3D_ID]):
         return False
-    starts_plausibly = head[0] in PARAMETER_BLOCKS and b"\0" in head[:BLOCK]
-    return starts_plausibly or _has_parameters(head, BLOCK)
+    starts_plausibly = head[0] in PARAMETER_BLOCKS and b"\0" in head[:BLOCK_BYTES]
+    return starts_plausibly or _has_parameters(head, BLOCK_BYTES)
 
 
 def _has_parameters(content: bytes, start: int) -> bool:
@@ -66,7 +66,7 @@ class C3dFile:
     def __init__(self, path: Path | str) -> None:
         self.path = path
         self.content = map_bytes(path)
-        if len(self.content) < 2 * BLOCK or self.content[1] != C3D_ID:
+        if len(self.content) < 2 * BLOCK_BYTES or self.content[1] != C3D_ID:
             raise InvalidFileError(f"{path} is not a C3D file, or is cut short.")
         start = self._parameter_start()
         self.processor = self.content[start + 3]
@@ -120,7 +120,7 @@ class C3dFile:
 
     def _parameter_start(self) -> int:
         """Return the first byte of the parameters, even if the pointer to it is damaged."""
-        for start in [BLOCK * (self.content[0] - 1), BLOCK]:
+        for start in [BLOCK_BYTES * (self.content[0] - 1), BLOCK_BYTES]:
             if 0 < start <= len(self.content) - 4 and self.content[start + 3] in PROCESSORS:
                 return start
         raise InvalidFileError(f"{self.path} has no C3D parameters: it is damaged.")
@@ -182,9 +182,9 @@ class C3dFile:
 
         If stored counts contradict each other, those that best fill the file are used.
         """
-        start = BLOCK * (int(self._integers(16, 1)[0]) - 1)
+        start = BLOCK_BYTES * (int(self._integers(16, 1)[0]) - 1)
         n_bytes = len(self.content) - start
-        if start < BLOCK or n_bytes <= 0:
+        if start < BLOCK_BYTES or n_bytes <= 0:
             raise InvalidFileError(f"{self.path} is cut short: its data are missing.")
         fits = [
             (n_bytes - n_frames * width * (4 * n_points + n_others), n_frames, n_others)

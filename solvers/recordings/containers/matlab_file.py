@@ -22,7 +22,7 @@ from .stored_bytes import (
     truncation_error,
 )
 
-HEADER = 128
+HEADER_BYTES = 128
 MATRIX, PACKED = 14, 15
 KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8"}
 """NumPy type of each stored type."""
@@ -56,7 +56,7 @@ def matlab_arrays(path: Path) -> list[MatlabArray]:
     """
     try:
         with open_regular(path) as file:
-            order = "<" if file.read(HEADER)[126:128] == b"IM" else ">"
+            order = "<" if file.read(HEADER_BYTES)[126:128] == b"IM" else ">"
         arrays = [_array(content, order) for content in _elements(path, order)]
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
@@ -71,7 +71,7 @@ def matlab_arrays(path: Path) -> list[MatlabArray]:
 
 def _elements(path: Path, order: str) -> Iterator[StoredBytes]:
     """Yield the content of each matrix of the file."""
-    at, end = HEADER, path.stat().st_size
+    at, end = HEADER_BYTES, path.stat().st_size
     while at + 8 <= end:
         kind, size = struct.unpack(f"{order}II", PlainBytes(path, at, 8).read(0, 8))
         at += 8

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Protocol
 from ...errors import InvalidFileError
 from ...files import open_regular, unreadable
 
-CHUNK = 1 << 17
+CHUNK_BYTES = 1 << 17
 """Bytes read from the file, and decompressed, at a time."""
 MIN_CHECKPOINT_SPACING, MAX_CHECKPOINTS = 4_000_000, 400
 """Minimum decompressed bytes between two checkpoints, and maximum number of checkpoints. A
@@ -132,9 +132,9 @@ class PackedBytes:
             while not state.eof:
                 tail = state.unconsumed_tail
                 if not tail:
-                    tail = file.read(min(CHUNK, self.packed - taken))
+                    tail = file.read(min(CHUNK_BYTES, self.packed - taken))
                     taken += len(tail)
-                if not state.decompress(tail, CHUNK) and not tail:
+                if not state.decompress(tail, CHUNK_BYTES) and not tail:
                     raise zlib.error
 
     def _unpack(self, file: Any, checkpoint: _Checkpoint, start: int, count: int) -> bytes:
@@ -144,9 +144,11 @@ class PackedBytes:
         parts = []
         while unpacked < start + count:
             if not tail:
-                tail = file.read(min(CHUNK, self.packed - taken))
+                tail = file.read(min(CHUNK_BYTES, self.packed - taken))
                 taken += len(tail)
-            max_length = min(CHUNK, (start if unpacked < start else start + count) - unpacked)
+            max_length = min(
+                CHUNK_BYTES, (start if unpacked < start else start + count) - unpacked
+            )
             part = state.decompress(tail, max_length)
             if not part and (state.eof or taken >= self.packed or not tail):
                 raise truncation_error(self.path)

@@ -1,4 +1,4 @@
-"""Judge units by the size of the body, and ask where that size is odd."""
+"""Judge units by the size of the body, and question unusual sizes."""
 
 from dataclasses import replace
 
@@ -118,7 +118,7 @@ def stature(recording: Motion | Tracks | JointRecording) -> float | None:
 
 
 def question_of_size(recording: Motion | Tracks | JointRecording) -> str:
-    """Ask whether an actor of an odd size is right; nothing where the size is a person's."""
+    """Return a question if the size of an actor is unusual; otherwise nothing."""
     tall = stature(recording)
     if tall is None or ODD_STATURE_M[0] <= tall <= ODD_STATURE_M[1]:
         return ""

@@ -1,4 +1,4 @@
-"""Ask about takes that a program of 2D poses wrote: nothing in them has any depth."""
+"""Question takes without any depth, which programs of 2D poses write."""
 
 import numpy as np
 

@@ -17,7 +17,7 @@ from .npz import is_depth_npz, read_depth_npz
 from .raw import is_depth_raw, read_depth_raw
 from .settings import DEFAULT_DEPTH_SETTINGS, CameraOrientation, DepthSettings
 
-HEAD = 4096
+HEAD_BYTES = 4096
 
 
 class DepthReader(Protocol):
@@ -112,7 +112,7 @@ def detect_depth_format(path: Path | str) -> DepthFormat | None:
         return FOLDER if detect_layout(path) is not None else None
     try:
         with open_regular(path) as file:
-            head = file.read(HEAD)
+            head = file.read(HEAD_BYTES)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:

@@ -13,7 +13,7 @@ from ...files import open_regular
 from ...npz_members import READABLE, member_header
 from ...progress import Progress, unwatched
 from ..containers import (
-    CHUNK,
+    CHUNK_BYTES,
     MAX_CHECKED_BYTES,
     MAX_DEFLATE_RATIO,
     NUMBERS,
@@ -115,7 +115,7 @@ def _member(path: Path, name: str) -> _Member:
 def _compare_checksum(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
     """Raise BadZipFile if the checksum at the end of a member does not match."""
     with archive.open(member) as file:
-        while file.read(CHUNK):
+        while file.read(CHUNK_BYTES):
             pass
 
 

@@ -14,7 +14,7 @@ from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
 from .stack import MILLIMETER, DepthStack, check_size
 
 KINECT_V1 = Camera(571.26, 571.26, 319.5, 239.5, 640, 480)
-PIXEL = 2
+PIXEL_BYTES = 2
 MAX_DEPTH_MM = 12_000
 """Maximum distance of a Kinect's reading, millimeters. Chosen by hand: x0.5 and x2 fail no test
 of this module."""
@@ -26,7 +26,7 @@ of this module."""
 
 def is_depth_raw(path: Path, head: bytes) -> bool:
     """Return whether a file is raw depth, by its size and by smooth depth across neighbors."""
-    frame = KINECT_V1.width * KINECT_V1.height * PIXEL
+    frame = KINECT_V1.width * KINECT_V1.height * PIXEL_BYTES
     size = path.stat().st_size
     if size == 0 or size % frame:
         return False
@@ -67,7 +67,7 @@ def read_depth_raw(
         size = path.stat().st_size
     except OSError as error:
         raise unreadable(path, error) from None
-    n_frames, rest = divmod(size, camera.width * camera.height * PIXEL)
+    n_frames, rest = divmod(size, camera.width * camera.height * PIXEL_BYTES)
     if rest or not n_frames:
         raise InvalidFileError(
             f"{path} has {size} bytes, which is not a multiple of an image of {camera.width} x"

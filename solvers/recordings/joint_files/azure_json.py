@@ -26,7 +26,7 @@ from .body_json import (
 MICROSECOND = 1e-6
 HEAD = re.compile(rb'\s*\{\s*"(?:[^"]*"[^{}]*")?(k4abt_sdk_version|bone_list|joint_names)"')
 OWN_NAMES = (b"k4abt_sdk_version", b"bone_list", b"SPINE_NAVEL")
-"""Of which a file of the Azure Kinect has one; others list names of joints, too."""
+"""Names in files of the Azure Kinect, one in each; other formats list names of joints, too."""
 
 
 def is_azure_json(head: bytes) -> bool:

@@ -7,7 +7,7 @@ from ...errors import InvalidFileError
 from ...motion import Motion, Tracks
 from ...progress import Progress, unwatched
 from ...rotations import quaternion_from_matrix
-from ..containers import BLOCK, C3dFile, UniqueNames, printable
+from ..containers import BLOCK_BYTES, C3dFile, UniqueNames, printable
 from ..conventions import meters_from_unit_name
 from ..skeleton_files import recording_from_segments
 
@@ -78,7 +78,7 @@ def read_c3d_rotations(
 
 def _read_poses(file: C3dFile) -> tuple[Array, Array]:
     """Return matrices, shape (n_frames, n_segments, 4, 4), and residuals."""
-    start = BLOCK * (int(_number(file, "DATA_START")) - 1)
+    start = BLOCK_BYTES * (int(_number(file, "DATA_START")) - 1)
     n_segments = int(_number(file, "USED"))
     ratio = max(1, int(_number(file, "RATIO")))
     stated = [count * ratio for count in file.frame_counts()]

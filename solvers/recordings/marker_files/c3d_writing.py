@@ -10,7 +10,7 @@ from ...errors import InvalidMotionError
 from ...files import write_atomically
 from ...motion import Tracks
 from ...progress import Progress, unwatched
-from ..containers import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS
+from ..containers import BLOCK_BYTES, C3D_ID, CHARACTERS, FLOATS, INTEGERS
 
 INTEL = 84
 MILLIMETERS_PER_METER = 1000.0
@@ -40,7 +40,7 @@ def write_c3d(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
     SolveCancelled
         Raised by `progress`, which is called at the end.
     """
-    n_blocks = -(-(4 + len(_parameters(tracks, 0))) // BLOCK)
+    n_blocks = -(-(4 + len(_parameters(tracks, 0))) // BLOCK_BYTES)
     if n_blocks > MAX_BLOCKS or tracks.n_points > MAX_COUNT:
         raise InvalidMotionError(
             f"{tracks.n_points} points with these names do not fit into a C3D file. Shorten the"
@@ -54,10 +54,10 @@ def write_c3d(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
     frames[..., 3] = np.where(tracks.visible, 0.0, -1.0)
     frames[~tracks.visible, :3] = 0.0
     with write_atomically(path) as part, part.open("wb") as file:
-        file.write(_header(tracks, first_data_block).ljust(BLOCK, b"\0"))
-        file.write(parameters.ljust(BLOCK * n_blocks, b"\0"))
+        file.write(_header(tracks, first_data_block).ljust(BLOCK_BYTES, b"\0"))
+        file.write(parameters.ljust(BLOCK_BYTES * n_blocks, b"\0"))
         file.write(frames.tobytes())
-        file.write(b"\0" * (-frames.nbytes % BLOCK))
+        file.write(b"\0" * (-frames.nbytes % BLOCK_BYTES))
     progress(1.0, "Writing")
 
 

@@ -27,7 +27,7 @@ LABEL_PERCENTILE = 10.0
 ROOT_JITTER_M = 0.005 / 3.0
 """Meters of noise on the root for each degree on the joints."""
 MAX_FRAMES = 480
-RATE = 120.0
+RATE_HZ = 120.0
 HDM05 = (
     "bk_kickLFront1Reps_007", "bk_hopBothLegs1hops_013", "bk_squat1Reps_013",
     "bk_sneak2StepsLStart_004", "dg_depositFloorR_013", "dg_jogLeftCircle4StepsRstart_008",
@@ -46,7 +46,7 @@ def labeled_clips() -> dict[str, tuple[Motion, Flags]]:
 
 def at_rate(motion: Motion, label: Flags, rate: float, degrees: float) -> tuple[Motion, Flags]:
     """Return both at a lower rate, the motion with noise on all joints."""
-    step = round(RATE / rate)
+    step = round(RATE_HZ / rate)
     settings = CorruptionSettings(jitter=degrees, root_jitter=degrees * ROOT_JITTER_M)
     return corrupt(clips.every(motion, step), settings), label[::step]
 
@@ -78,7 +78,7 @@ def _label(motion: Motion) -> Flags:
 
 
 def _rests(points: Array) -> Flags:
-    slow = np.linalg.norm(np.gradient(points, 1.0 / RATE, axis=0), axis=-1) < LABEL_SPEED
+    slow = np.linalg.norm(np.gradient(points, 1.0 / RATE_HZ, axis=0), axis=-1) < LABEL_SPEED
     floor = [
         np.percentile(points[still, number, 2], LABEL_PERCENTILE) if still.any() else np.inf
         for number, still in enumerate(slow.T)

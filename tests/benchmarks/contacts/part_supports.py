@@ -22,7 +22,7 @@ from .detectors import SPEED
 from .made_supports import joints_of, made_supports
 from .part_takes import INPUTS, acceleration_ratio
 
-RATE = 30.0
+RATE_HZ = 30.0
 """Hertz."""
 PARTS = {"hands": slice(0, 2), "knees": slice(2, 4)}
 """Columns of `SUPPORTS`."""
@@ -38,7 +38,7 @@ Planter = Callable[[Motion], Motion]
 
 def support_tables(actors: Iterable[str], movements: Iterable[takes.Take]) -> list[str]:
     """Return the tables of detection and of slide."""
-    made = [take.motion for take in made_supports(RATE).values()]
+    made = [take.motion for take in made_supports(RATE_HZ).values()]
     captured = [
         clips.every(read_acclaim(path), clips.STEP)
         for actor in actors
@@ -66,7 +66,7 @@ def _detection_table() -> str:
     }
     rows = {}
     totals: dict[tuple[str, str], np.ndarray] = defaultdict(lambda: np.zeros(3))
-    for name, take in made_supports(RATE).items():
+    for name, take in made_supports(RATE_HZ).items():
         for part, columns in PARTS.items():
             cells = []
             for method, detect in detectors.items():
@@ -79,7 +79,7 @@ def _detection_table() -> str:
         rows[f"all, {part}"] = [
             _precision_and_recall(*totals[method, part]) for method in detectors
         ]
-    title = f"**Hands and knees of made bodies: precision and recall, {RATE:g} Hz**"
+    title = f"**Hands and knees of made bodies: precision and recall, {RATE_HZ:g} Hz**"
     return f"{title}\n\n{table(['take', *detectors], rows)}\n"
 
 

@@ -25,7 +25,7 @@ from ..shared import clips
 from ..shared.tables import Scores
 from .part_takes import Planter
 
-SKATING = 1.15
+TRAVEL_RATIO = 1.15
 """The body travels this much farther than the feet carry it, as after a careless retarget."""
 LINEAR_EASE = 0.15
 
@@ -154,7 +154,7 @@ def _swaying(name: str, motion: Motion) -> Motion:
 
 def _skating(name: str, motion: Motion) -> Motion:
     place = motion.root_positions.copy()
-    place[:, :2] += (SKATING - 1.0) * (place[:, :2] - place[0, :2])
+    place[:, :2] += (TRAVEL_RATIO - 1.0) * (place[:, :2] - place[0, :2])
     return motion.with_poses(root_positions=place)
 
 

@@ -19,7 +19,7 @@ from solvers.samples import walker_skeleton
 from ..first_press import takes
 from ..shared import clips
 
-RATE = 30.0
+RATE_HZ = 30.0
 LYING = {
     "bk_lieDownFloor_005": 115, "bk_lieDownFloor_006": 105, "bk_lieDownFloor_008": 115,
     "bk_lieDownFloor_010": 105, "dg_lieDownFloor_011": 62, "dg_lieDownFloor_012": 62,
@@ -50,7 +50,7 @@ def weightless_takes() -> Iterator[tuple[str, WeightlessFeet]]:
         yield f"{name}, lies", _from(clips.every(motion, clips.STEP), first)
     for name, (take, first, stop) in HANGING.items():
         motion = takes.read_variety(take)
-        motion = clips.every(motion, round(motion.frame_rate / RATE))
+        motion = clips.every(motion, round(motion.frame_rate / RATE_HZ))
         yield name, _from(motion, first, stop)
         yield f"{name}, window alone", _from(motion.slice(first, stop), 0)
     for name, motion in made_takes().items():
@@ -59,7 +59,7 @@ def weightless_takes() -> Iterator[tuple[str, WeightlessFeet]]:
 
 def made_takes() -> dict[str, Motion]:
     """Return bodies that hang, float, lie, sit on the floor, and turn a cartwheel."""
-    time = np.arange(round(MADE_S * RATE)) / RATE
+    time = np.arange(round(MADE_S * RATE_HZ)) / RATE_HZ
     swing, slide = np.sin(2.0 * np.pi * 0.5 * time), 1.0 - np.cos(time)
     return {
         "hangs from a bar and swings": _body(
@@ -115,7 +115,7 @@ def _body(
         sign = -1.0 if opposite and number else 1.0
         for joint, angle in legs.items():
             rotations[:, skeleton.index(side + joint)] = _about_x(sign * angle)
-    return Motion(skeleton, rotations, np.tile(hips, (len(body), 1)), RATE)
+    return Motion(skeleton, rotations, np.tile(hips, (len(body), 1)), RATE_HZ)
 
 
 def _about_x(angle: Array) -> Array:

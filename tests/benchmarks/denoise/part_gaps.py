@@ -20,7 +20,7 @@ from .ours import Ours
 ARMS = ("LeftShoulder", "RightShoulder")
 LEG = ("LeftUpLeg",)
 WHOLE = 1e9
-DRAWS = 3
+N_DRAWS = 3
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def compare_gaps(cases: list[Case], fillers: Mapping[str, Filler]) -> list[Score
     scores = Scores("CMU walks with gaps: missing joints", "geodesic angle, degrees")
     for case in cases:
         for gap in GAPS:
-            draws = 1 if gap.seconds >= WHOLE else DRAWS
+            draws = 1 if gap.seconds >= WHOLE else N_DRAWS
             lost = [cut(case, gap, draw) for draw in range(draws)]
             for name, fill in fillers.items():
                 figures = [score(case, fill, *one) for one in lost]

@@ -31,11 +31,11 @@ from .forest_sources import CMU_METERS, DATA, all_bodies
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
 SHAPES = TrainingImagesSettings(shape=0.05, clothes=0.02)
-RATE = 30.0
+RATE_HZ = 30.0
 BUILD = Path(__file__).resolve().parents[3] / "build" / "depth_more"
 SEAT, BEHIND = 0.5, 0.4
-"""Metres of a seated pelvis above the feet, and behind them."""
-EASE = 20
+"""Meters of a seated pelvis above the feet, and behind them."""
+CROSSING_FRAMES = 20
 """Frames in which arms are crossed."""
 
 
@@ -146,7 +146,7 @@ def _render(name: str) -> dict[str, object]:
         pictures.append((1000.0 * noisy.depth).round().astype(np.uint16))
         joints.append(true_joints)
     return {
-        "depth": np.array(pictures), "joints": np.array(joints), "frame_rate": RATE,
+        "depth": np.array(pictures), "joints": np.array(joints), "frame_rate": RATE_HZ,
         "joint_names": np.array(body.skeleton.names),
         "fx": KINECT.fx, "fy": KINECT.fy, "cx": KINECT.cx, "cy": KINECT.cy,
     }  # fmt: skip
@@ -154,13 +154,13 @@ def _render(name: str) -> dict[str, object]:
 
 def _moved(body: SkinnedBody, take: Take) -> Motion:
     """Return the piece of the clip, moved by the body."""
-    clip = resample(_clip(take.clip), RATE)
+    clip = resample(_clip(take.clip), RATE_HZ)
     clip = clip.slice(take.first, min(clip.n_frames, take.first + take.n_frames))
     theirs = find_humanoid_map(clip.skeleton).indices(clip.skeleton)
     ours = body.humanoid.indices(body.skeleton)
     scale = _leg(body.skeleton, ours) / _leg(clip.skeleton, theirs)
     roots = clip.root_positions * scale
-    motion = Motion(body.skeleton, body.rotations_of(clip), roots, RATE)
+    motion = Motion(body.skeleton, body.rotations_of(clip), roots, RATE_HZ)
     if take.seated:
         motion = _seated(body, motion)
     return _crossed(body, motion) if take.crossed else motion
@@ -194,7 +194,7 @@ def _crossed(body: SkinnedBody, motion: Motion) -> Motion:
     """Cross the arms before the chest, the right one outside."""
     indices = body.humanoid.indices(body.skeleton)
     ahead = _ahead(motion, indices)
-    weight = np.clip(np.arange(motion.n_frames) / EASE, 0.0, 1.0)[:, np.newaxis]
+    weight = np.clip(np.arange(motion.n_frames) / CROSSING_FRAMES, 0.0, 1.0)[:, np.newaxis]
     for side, other, out in (("left", "right", 0.14), ("right", "left", 0.2)):
         joints = forward_kinematics(motion).positions
         limb = tuple(indices[f"{side}{bone}"] for bone in ("UpperArm", "LowerArm", "Hand"))
@@ -221,7 +221,7 @@ def _headings(motion: Motion, take: Take) -> np.ndarray:
     joints = forward_kinematics(motion).positions[middle]
     across = joints[left] - joints[right]
     still = np.radians(take.yaw) - np.arctan2(across[1], across[0])
-    return still + np.radians(take.spin) * (np.arange(motion.n_frames) - middle) / RATE
+    return still + np.radians(take.spin) * (np.arange(motion.n_frames) - middle) / RATE_HZ
 
 
 def _yaw_matrix(angle: float) -> np.ndarray:

@@ -50,7 +50,7 @@ class LabeledFrame(NamedTuple):
 
 
 def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabeledFrame]:
-    """Yield every so manieth frame of a take, every `step`-th column and row of it."""
+    """Yield frames of a take at a constant step, every `step`-th column and row of it."""
     body, laid = truth_bodies(take, every)
     with np.load(DATA / "depth" / "truth" / f"{take}.npz") as archive:
         truth = {name: np.array(archive[name]) for name in archive.files}

@@ -16,9 +16,9 @@ from solvers.depth_tracking.capturing.capture import Capture
 from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 
 CONFIDENT, LOW_CONFIDENCE, OTHERS = (40, 220, 60), (230, 30, 30), (80, 160, 255)
-ENLARGED = 2.0
-HALF = 120
-"""Half of a panel's width."""
+ENLARGEMENT = 2.0
+HALF_WIDTH_PX = 120
+"""Half of a panel's width, pixels."""
 
 
 def overlay(
@@ -28,19 +28,19 @@ def overlay(
     depth_image, camera = depth.frame(frame), depth.camera
     drawn = render_hypothesis(found.body, found.poses[frame], camera).image.depth_image()
     image = Image.fromarray(_tinted(depth_image, drawn))
-    image = image.resize((int(ENLARGED * camera.width), int(ENLARGED * camera.height)))
+    image = image.resize((int(ENLARGEMENT * camera.width), int(ENLARGEMENT * camera.height)))
     pen = ImageDraw.Draw(image)
-    pixels = ENLARGED * camera.project(found.joints.positions[frame])
+    pixels = ENLARGEMENT * camera.project(found.joints.positions[frame])
     for joint, parent in enumerate(JOINT_PARENTS):
         if parent >= 0:
             color = LOW_CONFIDENCE if found.low_confidence[frame, joint] else CONFIDENT
             pen.line([*pixels[parent], *pixels[joint]], fill=color, width=3)
-    for x, y in [] if others is None else ENLARGED * camera.project(others):
+    for x, y in [] if others is None else ENLARGEMENT * camera.project(others):
         if np.isfinite(x + y):
             pen.ellipse([x - 3, y - 3, x + 3, y + 3], fill=OTHERS)
     columns = np.nonzero(depth_image)[1]
-    middle = int(ENLARGED * np.median(columns)) if len(columns) else image.width // 2
-    return image.crop((middle - HALF, 0, middle + HALF, image.height))
+    middle = int(ENLARGEMENT * np.median(columns)) if len(columns) else image.width // 2
+    return image.crop((middle - HALF_WIDTH_PX, 0, middle + HALF_WIDTH_PX, image.height))
 
 
 def strip(panels: Sequence[Image.Image], title: str) -> Image.Image:

@@ -27,8 +27,8 @@ CMU_NAMES = CENTRAL | {
     for role, name in LIMBS.items()
 }
 """CMU's name of each of `JOINTS`."""
-ENOUGH = 0.1
-"""Metres within which a joint counts as found [WZC12] 7.2."""
+MAX_FOUND_ERROR_M = 0.1
+"""Meters within which a joint counts as found [WZC12] 7.2."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,9 +100,9 @@ class Errors:
         """Return the figures of a table."""
         return {
             "cm": 100.0 * self.offset_taken.mean(),
-            "% < 10 cm": 100.0 * (self.offset_taken < ENOUGH).mean(),
+            "% < 10 cm": 100.0 * (self.offset_taken < MAX_FOUND_ERROR_M).mean(),
             "cm raw": 100.0 * self.raw.mean(),
-            "% raw < 10 cm": 100.0 * (self.raw < ENOUGH).mean(),
+            "% raw < 10 cm": 100.0 * (self.raw < MAX_FOUND_ERROR_M).mean(),
         }
 
 

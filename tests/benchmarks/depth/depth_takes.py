@@ -22,7 +22,7 @@ ACTIONS = (
     "baseball swing", "tennis swing", "arm curl", "tennis serve", "push", "knock", "catch",
     "pick up and throw", "jog", "walk", "sit to stand", "stand to sit", "lunge", "squat",
 )  # fmt: skip
-LATE = 2
+DEPTH_DELAY_FRAMES = 2
 """depth[t] fits skeleton[t - 2] (data/README.md)."""
 SDK = {
     "head": 0, "neck": 1, "spine": 2, "hips": 3,
@@ -38,8 +38,8 @@ STABLE = [
 ]
 """Of `SDK`: trunk, shoulders, hips and knees."""
 HANDS = [list(SDK).index(joint) for joint in ("leftHand", "rightHand")]
-AWAY = 0.1
-"""Metres between a hand and the nearest point of the depth from which on it is in the air."""
+MIN_AIR_DISTANCE_M = 0.1
+"""Meters between a hand and the nearest point of the depth from which on it is in the air."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ class KinectTake:
             points = self.depth.camera.back_project(depth)[depth > 0.0]
             here = hands[frame][np.isfinite(hands[frame]).all(axis=-1)]
             if len(points) and len(here):
-                sdk_joints += (cKDTree(points).query(here)[0] > AWAY).tolist()
+                sdk_joints += (cKDTree(points).query(here)[0] > MIN_AIR_DISTANCE_M).tolist()
         return float(np.mean(sdk_joints))
 
 
@@ -85,8 +85,10 @@ def kinect_take(action: int, subject: int) -> KinectTake | None:
     depth = read_depth(TAKES / f"{stem}_depth.mat")
     sdk_joints = np.moveaxis(loadmat(TAKES / f"{stem}_skeleton.mat")["d_skel"], 2, 0)
     joints = np.full((depth.n_frames, len(SDK), 3), np.nan)
-    n_frames = min(depth.n_frames - LATE, len(sdk_joints))
-    joints[LATE : LATE + n_frames] = sdk_joints[:n_frames, list(SDK.values())] * [
+    n_frames = min(depth.n_frames - DEPTH_DELAY_FRAMES, len(sdk_joints))
+    joints[DEPTH_DELAY_FRAMES : DEPTH_DELAY_FRAMES + n_frames] = sdk_joints[
+        :n_frames, list(SDK.values())
+    ] * [
         -1.0,
         -1.0,
         1.0,

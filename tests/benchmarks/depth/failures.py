@@ -22,15 +22,15 @@ from solvers.depth_tracking.tracking.track_pose import next_pose_prior, track_fr
 
 from .depth_sequences import Sequence
 
-WRONG = 0.1
-"""Metres that the joints of a failed pose are off, on average."""
+MIN_FAILURE_ERROR_M = 0.1
+"""Meters that the joints of a failed pose are off, on average."""
 TRACKERS: dict[str, tuple[TrackerSettings, int]] = {
     "ours": (DEFAULT_TRACKER, 1),
     "ours, every third frame": (DEFAULT_TRACKER, 3),
     "ours, no prediction": (replace(DEFAULT_TRACKER, prediction=0.0), 2),
     "WZC12 preset": (REGISTRATION_TRACKER, 1),
 }
-"""Settings, and every how manieth frame is looked at: some of them fail often."""
+"""Settings, and the step between evaluated frames: some of them fail often."""
 
 
 class Judged(NamedTuple):

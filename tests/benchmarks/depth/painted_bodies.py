@@ -18,7 +18,7 @@ MATERIALS = np.array([
 """Red, green and blue of skin, hair, two stripes of a shirt, trousers and shoes."""
 _SKIN, _HAIR, _SHIRT, _STRIPE, _TROUSERS, _SHOES = range(len(MATERIALS))
 STRIPE = 0.06
-"""Metres from one edge of a stripe of the shirt to the next."""
+"""Meters from one edge of a stripe of the shirt to the next."""
 SHADES = 40
 """Steps of brightness."""
 AMBIENT = 0.45

@@ -18,12 +18,12 @@ from solvers.errors import InvalidMotionError
 
 from ..shared.tables import Scores
 from .depth_extra_sequences import TAKES, more_sequence
-from .depth_sequences import ENOUGH, SCORED, Sequence, errors, length_error, sequence
+from .depth_sequences import MAX_FOUND_ERROR_M, SCORED, Sequence, errors, length_error, sequence
 
 FPS = "frames/s"
 FORWARD = CaptureSettings(backward=False, smoothing=0.0)
-EVERY = 5
-"""Every so manieth frame is given to the detector where it works alone."""
+DETECTOR_STEP_FRAMES = 5
+"""Frames from one that the detector gets to the next, where it works alone."""
 BY_JOINT = {
     "detector alone, each frame by itself": "detector",
     "tracker alone, from the true first pose": "tracker",
@@ -137,13 +137,15 @@ def _measured(
     speed = len(frames) / (process_time() - started)
     off = errors(joints, one.joints[frames])
     if by_joint is not None and label in BY_JOINT:
-        for joint, near in zip(JOINTS, (off.offset_taken < ENOUGH).mean(axis=0), strict=True):
+        for joint, near in zip(
+            JOINTS, (off.offset_taken < MAX_FOUND_ERROR_M).mean(axis=0), strict=True
+        ):
             by_joint.add(joint, BY_JOINT[label], one.name, 100.0 * near)
     return off.figures() | {"restarts": float(restarts), FPS: speed}
 
 
 def _detector_alone(one: Sequence) -> Found:
-    forest, frames = load_pixel_forest(), np.arange(0, one.depth.n_frames, EVERY)
+    forest, frames = load_pixel_forest(), np.arange(0, one.depth.n_frames, DETECTOR_STEP_FRAMES)
     joints = []
     for frame in frames.tolist():
         depth = one.depth.frame(frame)
@@ -155,7 +157,7 @@ def _detector_refined(one: Sequence) -> Found:
     actor = TrackingContext(
         one.depth, one.body, load_pixel_forest(), DEFAULT_TRACKER, RecoverySettings()
     )
-    frames = np.arange(0, one.depth.n_frames, EVERY)
+    frames = np.arange(0, one.depth.n_frames, DETECTOR_STEP_FRAMES)
     poses = np.array([_refined(actor, frame) for frame in frames.tolist()])
     return joint_positions(one.body, segment_frames(one.body, poses)), frames, 0
 

@@ -21,9 +21,9 @@ from .depth_takes import ACTIONS, HANDS, OURS, STABLE, SUBJECTS, KinectTake, kin
 
 LOOKED_AT = 5
 """Frames of a take that are drawn."""
-SHEETS = 3
+N_SHEETS = 3
 BUILD = Path(__file__).resolve().parents[3] / "build" / "depth_kinect"
-NEAR = 0.1
+MAX_FOUND_ERROR_M = 0.1
 
 
 def kinect(subjects: Sequence[int] = SUBJECTS) -> list[str]:
@@ -46,8 +46,8 @@ def kinect(subjects: Sequence[int] = SUBJECTS) -> list[str]:
             print(
                 take.name, {key: round(value, 2) for key, value in scores_.items()}, flush=True
             )
-        per_sheet = -(-len(rows) // SHEETS)
-        for sheet in range(SHEETS):
+        per_sheet = -(-len(rows) // N_SHEETS)
+        for sheet in range(N_SHEETS):
             part = rows[sheet * per_sheet : (sheet + 1) * per_sheet]
             save_sheet(part, 1, 0.6, BUILD / f"s{subject}_{sheet}.jpg")
             if subject == subjects[0]:
@@ -59,7 +59,7 @@ def kinect(subjects: Sequence[int] = SUBJECTS) -> list[str]:
 
 
 def _pictures() -> list[str]:
-    return [show(_picture(sheet), "All actions of one subject") for sheet in range(SHEETS)]
+    return [show(_picture(sheet), "All actions of one subject") for sheet in range(N_SHEETS)]
 
 
 def _picture(sheet: int) -> Path:
@@ -73,7 +73,7 @@ def figures(take: KinectTake, found: Capture) -> dict[str, float]:
     hands = [OURS[index] for index in HANDS]
     return {
         "cm, stable joints": 100.0 * float(scores_[:, STABLE].mean()),
-        "% < 10 cm": 100.0 * float((scores_ < NEAR)[:, STABLE].mean()),
+        "% < 10 cm": 100.0 * float((scores_ < MAX_FOUND_ERROR_M)[:, STABLE].mean()),
         "cm, hands": 100.0 * float(scores_[:, HANDS].mean()),
         "% hands in air": 100.0 * take.hands_in_air(found.joints.positions[:, hands]),
         "% SDK's in air": 100.0 * take.hands_in_air(take.joints[:, HANDS]),

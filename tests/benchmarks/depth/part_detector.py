@@ -44,10 +44,10 @@ from .depth_labels import LabeledFrame, held_out_frames, truth_frames
 from .forest_sources import TRUTH, all_bodies, taught_motions
 from .part_detector_kinect import kinect_rows
 
-NEAR = 0.1
-"""Metres: a joint found within counts as found."""
-EVERY = 15
-"""Every so manieth frame of a take is looked at."""
+MAX_FOUND_ERROR_M = 0.1
+"""Meters: a joint found within counts as found."""
+STEP_FRAMES = 15
+"""Frames from one that is evaluated to the next."""
 PEER_PICTURES, PEER_PIXELS, PEER_FEATURES = 1500, 60, 400
 
 
@@ -56,16 +56,16 @@ def detector() -> list[str]:
     forest = load_pixel_forest()
     settings = DetectorSettings()
     default, true = (
-        pose_rows(forest, EVERY, settings, calibrated) for calibrated in (False, True)
+        pose_rows(forest, STEP_FRAMES, settings, calibrated) for calibrated in (False, True)
     )
     tables = {
         f"Parts classified per pixel, at 160 x 120; {forest.trained_on}": accuracy_rows(
-            forest, EVERY
+            forest, STEP_FRAMES
         ),
         "Poses in single frames, default adult body": default,
         "Poses in single frames, limbs of true length": true,
-        "Against scikit-learn's forest on the same features": peer_rows(EVERY),
-        "Held-out bodies": body_rows(EVERY),
+        "Against scikit-learn's forest on the same features": peer_rows(STEP_FRAMES),
+        "Held-out bodies": body_rows(STEP_FRAMES),
         "Single frames of a real Kinect, against its SDK": kinect_rows(forest),
     }
     return [f"**{title}**\n\n" + "\n".join(rows) for title, rows in tables.items()]
@@ -154,7 +154,7 @@ def _pose_row(name: str, errors: Sequence[tuple[Array, Array]], milliseconds: fl
     figures = []
     for kind in range(2):
         distances = np.concatenate([np.linalg.norm(one[kind], axis=-1) for one in errors])
-        figures += [100.0 * distances.mean(), (distances < NEAR).mean()]
+        figures += [100.0 * distances.mean(), (distances < MAX_FOUND_ERROR_M).mean()]
     shown = " | ".join(
         f"{figure:.{1 if index % 2 == 0 else 3}f}" for index, figure in enumerate(figures)
     )

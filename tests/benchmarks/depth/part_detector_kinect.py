@@ -32,10 +32,10 @@ from .forest_sources import DATA
 FOLDER = DATA / "depth" / "utd_mhad"
 SUBJECTS = (1, 3, 5, 7)
 N_ACTIONS = 27
-LATE = 2
+DEPTH_DELAY_FRAMES = 2
 """Frames that the depth is behind the skeleton."""
 FRAMES_PER_TAKE = 2
-NEAR = 0.1
+MAX_FOUND_ERROR_M = 0.1
 SDK = {
     "hips": 3, "leftUpperArm": 4, "leftLowerArm": 5, "leftHand": 6, "rightUpperArm": 8,
     "rightLowerArm": 9, "rightHand": 10, "leftLowerLeg": 13, "leftFoot": 14,
@@ -66,10 +66,14 @@ def kinect_take(action: int, subject: int, body: BodyModel, forest: PixelForest)
     """Detect the body in a few frames of a take, spread over it."""
     depth = _recording(action, subject)
     skeleton = loadmat(FOLDER / f"a{action}_s{subject}_t1_skeleton.mat")["d_skel"]
-    last = min(depth.n_frames, skeleton.shape[2] + LATE) - 1
-    frames = np.linspace(LATE, last, FRAMES_PER_TAKE + 2)[1:-1].astype(int).tolist()
+    last = min(depth.n_frames, skeleton.shape[2] + DEPTH_DELAY_FRAMES) - 1
+    frames = (
+        np.linspace(DEPTH_DELAY_FRAMES, last, FRAMES_PER_TAKE + 2)[1:-1].astype(int).tolist()
+    )
     found = [detect_pose(depth.frame(frame), depth.camera, body, forest) for frame in frames]
-    sdk_joints = skeleton[list(SDK.values())][:, :, [frame - LATE for frame in frames]]
+    sdk_joints = skeleton[list(SDK.values())][
+        :, :, [frame - DEPTH_DELAY_FRAMES for frame in frames]
+    ]
     reference = np.moveaxis(sdk_joints, 2, 0) * [-1.0, -1.0, 1.0]
     return KinectTake(action, subject, frames, depth, found, reference)
 
@@ -104,7 +108,7 @@ def distance_rows(takes: list[KinectTake]) -> list[str]:
     rows = ["| joint | mean cm | median cm | within 10 cm |", "|---|---|---|---|"]
     for index, joint in enumerate([*SDK, "all"]):
         one = distances if joint == "all" else distances[:, index]
-        figures = 100 * one.mean(), 100 * np.median(one), (one < NEAR).mean()
+        figures = 100 * one.mean(), 100 * np.median(one), (one < MAX_FOUND_ERROR_M).mean()
         rows.append(f"| {joint} | {figures[0]:.1f} | {figures[1]:.1f} | {figures[2]:.3f} |")
     actions = np.array([take.action for take in takes for _ in take.found])
     worst = sorted(set(actions), key=lambda action: -distances[actions == action].mean())[:5]

@@ -14,13 +14,13 @@ from solvers.depth_tracking.tracking.failure_test import (
 
 from ..shared.tables import number, table
 from .depth_sequences import SCORED, sequence
-from .failures import RESIDUAL_UNIT, WRONG, area_under_roc, judged
+from .failures import MIN_FAILURE_ERROR_M, RESIDUAL_UNIT, area_under_roc, judged
 
 
 def failures() -> list[str]:
     """Compare tests on depth/truth, with trackers of which some lose the actor."""
     found = judged(sequence(name) for name in SCORED)
-    failed = found.errors > WRONG
+    failed = found.errors > MIN_FAILURE_ERROR_M
     columns = dict(zip(FEATURES, found.features.T, strict=True))
     chance = found.features @ LEARNED_WEIGHTS + LEARNED_BIAS
     residual, overlap = columns["residual"] * RESIDUAL_UNIT, columns["overlap"]

@@ -7,8 +7,8 @@ from solvers.pictures.canvas import FAINT, GRID, INK, SERIES, Canvas
 from ..shared.tables import Scores, number
 
 LEFT, TOP, ROW, WIDTH, GAP, RIGHT = 270.0, 64.0, 22.0, 330.0, 60.0, 20.0
-CEILING = 4.0
-"""Bars of more than so many times the first method's are cut off; their figures tell."""
+MAX_BAR_RATIO = 4.0
+"""Bars longer than the first one by this factor are cut off; figures stand next to them."""
 
 
 def draw_bars(scores: Scores, columns: dict[str, float], path: Path) -> None:
@@ -31,9 +31,9 @@ def draw_bars(scores: Scores, columns: dict[str, float], path: Path) -> None:
     for index, (column, start) in enumerate(columns.items()):
         left = LEFT + index * (WIDTH + GAP)
         means = [scores.mean(method, column) - start for method in scores.methods]
-        most = min(max(means), CEILING * means[0])
+        most = min(max(means), MAX_BAR_RATIO * means[0])
         words = column + (f", from {start:g}" if start else "")
-        cut = f"; bars of more than {CEILING:g} times the first are cut off"
+        cut = f"; bars of more than {MAX_BAR_RATIO:g} times the first are cut off"
         canvas.text(left, 44.0, words + (cut if max(means) > most else ""), FAINT)
         at = left + WIDTH * means[0] / most
         for row, (method, mean) in enumerate(zip(scores.methods, means, strict=True)):

@@ -45,7 +45,7 @@ def main() -> None:
             n_read += row[0] == "read"
             wrong += [name] * bool(faults)
     header = [
-        "file", "", "upright", "height, m", "lowest, m", "travel, m", "roles", "Hz", "said",
+        "file", "", "upright", "height, m", "lowest, m", "travel, m", "roles", "Hz", "message",
         "wrong",
     ]  # fmt: skip
     verdict = f"{n_read} takes read, {len(rows) - n_read} files refused, {len(wrong)} wrong."

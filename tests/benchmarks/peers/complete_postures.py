@@ -15,8 +15,8 @@ from solvers.motion import Tracks
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.published.observed_signals import observed_signals
 
-RIDGE = 1e-4
-"""Metres squared; a standard deviation of one centimeter on each coordinate."""
+RIDGE_M2 = 1e-4
+"""Meters squared; a standard deviation of one centimeter on each coordinate."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class CompletePostures:
             return signals
         observed_covariance = self.covariance[
             np.ix_(is_observed, is_observed)
-        ] + RIDGE * np.eye(is_observed.sum())
+        ] + RIDGE_M2 * np.eye(is_observed.sum())
         weights = np.linalg.solve(
             observed_covariance, self.covariance[np.ix_(is_observed, ~is_observed)]
         )

@@ -5,8 +5,8 @@ from scipy.optimize import linear_sum_assignment
 
 from solvers.arrays import Array
 
-FAR = 10.0
-"""Metres: the cost of a label that gets no point."""
+UNASSIGNED_COST_M = 10.0
+"""Meters: the cost of a label that gets no point."""
 
 
 def by_continuity(positions: Array) -> Array:
@@ -25,7 +25,7 @@ def by_continuity(positions: Array) -> Array:
     for frame in range(1, len(positions)):
         expected = last + step
         cost = np.linalg.norm(expected[:, None] - positions[frame][None], axis=-1)
-        labels, points = linear_sum_assignment(np.nan_to_num(cost, nan=FAR))
+        labels, points = linear_sum_assignment(np.nan_to_num(cost, nan=UNASSIGNED_COST_M))
         result[frame, labels] = positions[frame, points]
         observed = np.isfinite(result[frame]).all(axis=-1)
         step = np.where(observed[:, None], np.nan_to_num(result[frame] - last), 0.0)

@@ -17,7 +17,7 @@ MISSING_WEIGHT = 0.02
 DISTAL = 0.5
 KEPT_ENERGY = 0.99
 SUBSPACE_ENERGY = 0.9999
-AROUND = 1.0
+CONTEXT_S = 1.0
 """Seconds on both sides of a gap that the subspace Kalman smoother sees."""
 
 
@@ -123,7 +123,7 @@ def subspace_kalman(gapped: Array, frame_rate: float) -> Array:
         np.diag(scores.var(axis=0)),
     )
     rows = np.flatnonzero(~observed.all(axis=1))
-    margin = round(AROUND * frame_rate)
+    margin = round(CONTEXT_S * frame_rate)
     part = slice(max(rows[0] - margin, 0), rows[-1] + margin + 1)
     estimate = smooth(dynamics, filled[part] - mean) @ V.T + mean
     filled[part] = np.where(observed[part], filled[part], estimate)

@@ -16,10 +16,10 @@ from solvers.signals import find_runs
 
 from .marker_fillers import principal_markers
 
-RIGID = 0.05
-"""Metres: markers whose distance varies more do not enter the global regression."""
-SPREAD = 0.3
-"""Of the kernel regression, on standardised predictors."""
+MAX_DISTANCE_CHANGE_M = 0.05
+"""Meters: markers whose distance varies more do not enter the global regression."""
+KERNEL_WIDTH = 0.3
+"""Width of the kernel regression, for standardized predictors."""
 MAX_FRAMES = 1000
 SHELL = (0.01, 0.99)
 """Quantiles of the distances outside which estimates are pulled back."""
@@ -60,7 +60,7 @@ def _averaged(
     for number, each in enumerate(locals_):
         joined = _interpolated(local, gap) if number == 0 else _joined(each, local, gap)
         estimates.append(origin[gap] + np.einsum("fij,fj->fi", frames[gap], joined))
-    rigid = np.flatnonzero(varies < max(RIGID, np.sort(varies)[2] * 1.01))
+    rigid = np.flatnonzero(varies < max(MAX_DISTANCE_CHANGE_M, np.sort(varies)[2] * 1.01))
     others = gapped[:, rigid].reshape(len(gapped), -1)
     linear = _regression(others, gapped[:, marker], learned)
     estimates.append(_joined(linear, gapped[:, marker], gap))
@@ -115,7 +115,7 @@ def _kernel_regression(
     rows = np.arange(max(gap.start - 1, 0), min(gap.stop + 1, len(shape)))
     squared = ((points[rows][:, None] - points[learned][None]) ** 2).sum(axis=2)
     squared -= squared.min(axis=1, keepdims=True)
-    weights = np.exp(-squared * (np.log(2.0) / SPREAD**2))
+    weights = np.exp(-squared * (np.log(2.0) / KERNEL_WIDTH**2))
     result = np.full_like(wanted, np.nan)
     result[rows] = weights @ wanted[learned] / weights.sum(axis=1, keepdims=True)
     return result

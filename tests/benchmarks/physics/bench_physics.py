@@ -46,7 +46,7 @@ from ..shared.tables import table
 from .physics_momentum import impossible_force
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data"
-CARRIES = 0.1
+MIN_LOAD_FRACTION = 0.1
 """Fraction of the weight."""
 STRENGTHS = (0.25, 0.5, 1.0)
 MAX_FRAMES = 600
@@ -161,7 +161,9 @@ def row(motion: Motion, result: Motion, simulated: Simulated, speed: float = np.
     is_input = result is motion
     return Row((
         100 * measure_foot_slide(body, result, detect_contacts(motion, humanoid)) / seconds,
-        100 * measure_foot_slide(body, result, simulated.foot_loads > CARRIES) / seconds,
+        100
+        * measure_foot_slide(body, result, simulated.foot_loads > MIN_LOAD_FRACTION)
+        / seconds,
         1000 * depths.max(),
         1000 * np.percentile(depths, 99),
         1000 * length_change(result, after),

@@ -12,8 +12,8 @@ from solvers.rotations.representations import rotate
 GRAVITY = np.array([0.0, 0.0, -9.81])
 SMOOTHING_S = 0.05
 """Seconds of the Gaussian through which the center of mass is looked at."""
-TOUCHING = 0.03
-"""Metres over the ground up to which the lowest point may be pushed."""
+MAX_CONTACT_HEIGHT_M = 0.03
+"""Meters over the ground up to which the lowest point may be pushed."""
 FRICTION = 1.0
 
 
@@ -44,7 +44,7 @@ def impossible_force(body: PhysicsBody, motion: Motion, ground: float) -> float:
     )
     acceleration = np.diff(center, 2, axis=0) * motion.frame_rate**2
     force = (acceleration - GRAVITY) / 9.81
-    touches = measure_clearance(body, motion, ground)[1:-1] < TOUCHING
+    touches = measure_clearance(body, motion, ground)[1:-1] < MAX_CONTACT_HEIGHT_M
     left = np.where(touches, outside_cone(force), np.linalg.norm(force, axis=-1))
     border = min(round(4.0 * SMOOTHING_S * motion.frame_rate), len(left) // 3)
     return float(left[border : len(left) - border].mean())

@@ -28,7 +28,7 @@ JUMPS = (0.05, 0.15)
 SWAPS = (((5, 6), (9, 10)), ((13, 14, 15), (17, 18, 19)))
 """Left and right of forearms with hands, and of shanks with feet."""
 DISTANCE, HEIGHT = 2.5, 1.0
-"""Metres from the hips to the sensor, and from the ground."""
+"""Meters from the hips to the sensor, and from the ground."""
 VIEWS = {"front": 0.0, "slantwise": np.radians(45.0), "side": np.radians(80.0)}
 CAPSULES = (
     ((0, 2), 0.13), ((2, 3), 0.09),

@@ -50,8 +50,8 @@ SMOOTHING_S = 1 / 30
 """Seconds of the Gaussian that regressions see through, as our prior does."""
 SMOOTHING = 0.05
 """Seconds; predictions of regressions are smoothed like ours."""
-THINNED = 5
-"""Every so manieth frame is an example, 6 a second as for our prior."""
+EXAMPLE_STEP_FRAMES = 5
+"""Frames from one example to the next: 6 examples a second, as for our prior."""
 SIGNS_PUBLISHED = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
 TERMS_PUBLISHED = ThreeTermSettings()
 
@@ -107,8 +107,8 @@ def _regression(learn: Callable[[Array, Array], Predict], subject: str) -> Predi
         off = rotate_about_vertical(
             truth_of(pair) - smoothed.positions, -smoothed.normalized.headings
         )
-        features.append(smoothed.features[::THINNED, columns[1:]])
-        offsets.append(off[::THINNED, columns])
+        features.append(smoothed.features[::EXAMPLE_STEP_FRAMES, columns[1:]])
+        offsets.append(off[::EXAMPLE_STEP_FRAMES, columns])
     X, Y = (_flat(parts) for parts in (features, offsets))
     is_observed = np.isfinite(Y).all(axis=1)
     return learn(X[is_observed], Y[is_observed])
@@ -124,7 +124,7 @@ def _memory(learn: Callable[[Array], Predict], subject: str) -> Predict:
             np.abs(observed.normalized.postures)
         )
         columns = _tracked(observed.features)
-        examples.append(size * plain.postures[::THINNED, columns])
+        examples.append(size * plain.postures[::EXAMPLE_STEP_FRAMES, columns])
     X = _flat(examples)
     return learn(X[np.isfinite(X).all(axis=1)])
 

@@ -24,7 +24,7 @@ FOLDER = Path(__file__).parents[4] / "shared/data/kinect/ui_prmd"
 MISPAIRED = "m03_s01"
 OTHER_STANCE = ("m07_s01", "m08_s01", "m09_s01", "m10_s01")
 BELOW_SHOULDER = np.array([0.0, 0.0, 0.04])
-"""Metres from the marker on top of a shoulder down to the joint."""
+"""Meters from the marker on top of a shoulder down to the joint."""
 
 
 @dataclass(frozen=True, eq=False)

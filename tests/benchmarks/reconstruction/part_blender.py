@@ -43,7 +43,7 @@ from .part_losses import bridged_by
 REST_M = 0.05
 """Diagonal (m) of the box around a true joint that rests while it is lost."""
 IN_BLENDER = "ours, default, in Blender"
-EVERY = 10
+EXERCISE_STEP = 10
 """Lost joints are those of every tenth exercise, of each person."""
 ACCURACY = (
     "joints, cm", "skeleton, cm", "in Blender, cm", "in Blender, offset-free, cm",
@@ -171,7 +171,7 @@ def rest(n_repetitions: int) -> list[str]:
     found: dict[str, list[float]] = {name: [] for name in (*methods, IN_BLENDER)}
     rests, lengths = [], []
     for subject in SUBJECTS:
-        for index, pair in enumerate(takes_of(subject, 1, 1)[::EVERY]):
+        for index, pair in enumerate(takes_of(subject, 1, 1)[::EXERCISE_STEP]):
             for each in with_missing_joints(pair, np.random.default_rng(index)):
                 made = {name: method(each.pair, subject) for name, method in methods.items()}
                 made[IN_BLENDER] = _joints(ours_in_blender(each.pair, subject))

@@ -41,8 +41,8 @@ VARIANTS = {
     "twice the kinematics": PUBLISHED._replace(kinematics=3.0),
     "ten times the continuity": PUBLISHED._replace(continuity=2.5),
 }
-EVERY = 10
-"""One of so many exercises: the frames are solved one after the other."""
+EXERCISE_STEP = 10
+"""Exercises from one that is solved to the next: frames are solved one after the other."""
 SECONDS = "1 s"
 CLASSES: dict[str, Method] = {
     "raw, gaps bridged by lines": lambda pair, subject: bridged_by(linear, pair, subject),
@@ -89,7 +89,7 @@ def energy_weights() -> str:
 def _all_cases() -> Iterator[EnergyCase]:
     for subject in SUBJECTS:
         library = posture_library(subject)
-        for count, pair in enumerate(takes_of(subject, *REPETITIONS)[::EVERY]):
+        for count, pair in enumerate(takes_of(subject, *REPETITIONS)[::EXERCISE_STEP]):
             for damaged in with_missing_joints(pair, np.random.default_rng(count)):
                 if damaged.seconds == SECONDS and damaged.what in {"4", "arm", "leg"}:
                     observed, rate = observed_postures(damaged.pair), pair.kinect.frame_rate
@@ -129,7 +129,7 @@ def classes() -> str:
     """Return table IV of [SHJT13]: eq. 18, for worse and worse views of the body."""
     errors: dict[str, dict[str, list[Array]]] = {name: {} for name in CLASSES}
     for subject in SUBJECTS:
-        for pair in takes_of(subject, *REPETITIONS)[::EVERY]:
+        for pair in takes_of(subject, *REPETITIONS)[::EXERCISE_STEP]:
             nothing = np.zeros(observed_postures(pair).shape[:2], bool)
             cases = [("(a) unchanged", Damaged("", "", pair, nothing))]
             cases += [(f"(b) hidden, {one.what}", one) for one in hidden(pair)]

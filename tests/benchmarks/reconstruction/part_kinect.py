@@ -27,7 +27,7 @@ from .kinect_pairs import Pair
 
 LENGTHS = (3.0, 10.0, 30.0)
 """Seconds."""
-WORST = 0.1
+WORST_FRACTION = 0.1
 """Fraction of the joint-frames: those with the largest raw errors."""
 COLUMNS = (
     "absolute, cm", "vector from the parent, cm", "offset-free, cm", "worst tenth, cm",
@@ -147,7 +147,7 @@ def accuracy(n_repetitions: int) -> list[str]:
 
 
 def _worst(raw: Array) -> NDArray[np.bool_]:
-    return np.asarray(raw >= np.nanquantile(raw, 1.0 - WORST))
+    return np.asarray(raw >= np.nanquantile(raw, 1.0 - WORST_FRACTION))
 
 
 def _centimeters(errors: Array) -> str:
@@ -157,7 +157,9 @@ def _centimeters(errors: Array) -> str:
 def _otherwise(found: Errors, before: Errors) -> list[str]:
     """Return errors without takes whose markers are of another stance, and by eq. 18."""
     sound = found.matched
-    worst = sound[:, None] & (before.free >= np.nanquantile(before.free[sound], 1.0 - WORST))
+    worst = sound[:, None] & (
+        before.free >= np.nanquantile(before.free[sound], 1.0 - WORST_FRACTION)
+    )
     return [
         _centimeters(found.absolute[sound]),
         _centimeters(found.free[sound]),

@@ -22,8 +22,8 @@ from ..shared.tables import table
 from .kinect_damage import Damaged, hidden, shaken, swapped, with_missing_joints
 from .kinect_folds import SUBJECTS, observed_postures, others, takes_of, truth_of
 from .kinect_methods import (
+    EXAMPLE_STEP_FRAMES,
     SMOOTHING_S,
-    THINNED,
     Method,
     by_postures,
     by_published_postures,
@@ -115,7 +115,7 @@ def _components(examples: Array) -> tuple[Array, Array]:
 def sensor_examples(subject: str) -> Array:
     """Postures of the others by the Kinect, normalized and of default size, (n, 60)."""
     found = [
-        smooth_postures(pair.kinect, SMOOTHING_S).features[::THINNED]
+        smooth_postures(pair.kinect, SMOOTHING_S).features[::EXAMPLE_STEP_FRAMES]
         for pair in others(subject)
     ]
     together = np.concatenate(found)

@@ -22,7 +22,7 @@ from solvers.reconstruction.reliability.reference import parent_distances, refer
 from . import kinect_pairs
 
 LIMITS = (0.05, 0.10)
-"""Metres from the truth that are wrong."""
+"""Meters from the truth at which a joint is wrong."""
 MIN_SAMPLES = 20
 """Wrong and right ones that there must be for a curve."""
 FRACTIONS = (0.1, 0.15, 0.2, 0.3, 0.5)

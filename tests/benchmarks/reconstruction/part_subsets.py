@@ -24,8 +24,8 @@ PARTS = {
     "all": POSTURE_JOINTS,
 }  # fmt: skip
 """Hips are always used. The first frame shows all joints, and so the lengths of bones."""
-EVERY = 5
-"""One of so many exercises."""
+EXERCISE_STEP = 5
+"""Exercises from one that is measured to the next."""
 METHODS: dict[str, Method] = {
     "[SHJT13] postures, as published": joints(by_published_postures),
     "postures": joints(by_postures),
@@ -38,7 +38,7 @@ def subsets(n_repetitions: int) -> list[str]:
     """Return errors of the vector from the parent joint, as they are and without their mean."""
     del n_repetitions
     errors: dict[str, dict[str, list[tuple[Array, Array]]]] = {}
-    takes = [pair for one in SUBJECTS for pair in takes_of(one, *REPETITIONS)[::EVERY]]
+    takes = [pair for one in SUBJECTS for pair in takes_of(one, *REPETITIONS)[::EXERCISE_STEP]]
     for pair in takes:
         for part, used in PARTS.items():
             used_joints = [POSTURE_JOINTS.index(role) for role in ("hips", *used)]

@@ -38,7 +38,7 @@ from .kinect_methods import (
 )
 from .kinect_pairs import Pair
 from .part_energy import classes, energy_weights
-from .part_kinect import WORST, Errors, errors_of
+from .part_kinect import WORST_FRACTION, Errors, errors_of
 from .part_losses import Found, errors_table
 from .part_losses import errors_of as damage_errors
 
@@ -59,7 +59,7 @@ SIGNS = {
     "both, published": ("behavior", "kinematics"),
 }
 BINS = (0.0, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
-WITHIN = 0.05
+MAX_GOOD_ERROR_M = 0.05
 """Meters: distance of which confidence is the probability."""
 
 
@@ -67,7 +67,7 @@ def terms(n_repetitions: int) -> list[str]:
     """Return table 5.3 of [ZH14]; energy, table IV and reliability terms of [SHJT13]."""
     few = max(n_repetitions // 2, 1)
     before = errors_of(raw, few)
-    worst = before.free >= np.nanquantile(before.free, 1.0 - WORST)
+    worst = before.free >= np.nanquantile(before.free, 1.0 - WORST_FRACTION)
     rows = {"raw": _cells(before, worst)}
     for name, weights in TERMS.items():
         rows[name] = _cells(errors_of(_published(*weights), few), worst)
@@ -203,5 +203,5 @@ def _confidences(
             for role, index in posture_joint_indices(pair.kinect.names).items():
                 confidence_values[:, POSTURE_JOINTS.index(role)] = result.confidence[:, index]
             confidences.append(confidence_values[observed])
-            correct.append(off[observed] < WITHIN)
+            correct.append(off[observed] < MAX_GOOD_ERROR_M)
     return np.concatenate(confidences), np.concatenate(correct)

@@ -14,7 +14,7 @@ TAKE = "m02_s02_e01"
 LEFT, TOP, ROW, GAP, WIDTH = 96.0, 40.0, 13.0, 62.0, 900.0
 STEPS: tuple[Color, ...] = ((247, 247, 247), (253, 219, 160), (230, 120, 40), (120, 20, 30))
 """From reliable to unreliable, in equal steps; darker as well as redder."""
-WORST = 0.10
+DARKEST_ERROR_M = 0.10
 """Error that is as dark as reliability zero, meters."""
 
 
@@ -27,7 +27,8 @@ def draw_take(pair: Pair, path: Path) -> None:
         - measure_reliability(recording).combined,
         "As published: 1 - reliability": 1.0
         - measure_reliability(recording, settings=published).combined,
-        "True error by the optical system, darkest: 10 cm and more": pair.error / WORST,
+        "True error by the optical system, darkest: 10 cm and more": pair.error
+        / DARKEST_ERROR_M,
     }
     height = len(recording.names) * ROW
     canvas = Canvas(LEFT + WIDTH + 30.0, TOP + len(panels) * (height + GAP))

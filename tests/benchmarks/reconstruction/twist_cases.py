@@ -28,8 +28,8 @@ BENT = np.radians(30.0)
 """Bends from which on a maker's hinge is measured."""
 HAND_ENDS, HANDS = (7, 11), (6, 10)
 """What UI-PRMD does not tell errs as the hand does."""
-EVERY = 7
-"""Every so manieth take of UI-PRMD lends its errors."""
+TAKE_STEP = 7
+"""Takes from one of UI-PRMD whose errors are used to the next."""
 SECONDS = 1.5
 """How long a limb is missing, seconds."""
 MARGIN = 4
@@ -99,7 +99,7 @@ def _bone_directions(postures: Array, limb: TwistedLimb) -> tuple[Array, Array]:
 def kinect_errors() -> tuple[Array, ...]:
     """Errors of complete takes less their means, in the actor's heading, (n_frames, 20, 3)."""
     found = []
-    for pair in pairs()[::EVERY]:
+    for pair in pairs()[::TAKE_STEP]:
         heading = normalize_postures(truth_of(pair), pair.truth.frame_rate).headings
         off = rotate_about_vertical(observed_postures(pair) - truth_of(pair), -heading)
         off[:, HAND_ENDS] = off[:, HANDS]

@@ -25,7 +25,7 @@ from tests.fixtures.rigs import RIGS, child, with_all_fingers
 from ..shared import clips
 from ..shared.report import DOCS, Report
 from ..shared.tables import Scores, table
-from .part_unbake import STEP, on_fingered_rig, to_and_fro, unbaked
+from .part_unbake import STEP_FRAMES, on_fingered_rig, to_and_fro, unbaked
 from .retarget_measures import acted, ik_figures, world_figures
 
 Giver = Callable[[Motion, HumanoidMap, Skeleton, HumanoidMap], Motion]
@@ -33,7 +33,7 @@ Giver = Callable[[Motion, HumanoidMap, Skeleton, HumanoidMap], Motion]
 BODIES = {**RIGS, "Child": child}
 OURS = "retargeted"
 UNITS = "units in the header"
-LONG = 10_000
+LONG_TAKE_FRAMES = 10_000
 ACTORS = ("bk", "dg")
 PER_CLASS = 2
 
@@ -62,7 +62,7 @@ def main() -> None:
 
 def _inputs(dev: bool) -> dict[str, Iterator[tuple[str, Motion]]]:
     names = (clips.development if dev else clips.scored)(False)
-    walks = ((name, clips.read_cmu(clips.WALKS / f"{name}.bvh", STEP)) for name in names)
+    walks = ((name, clips.read_cmu(clips.WALKS / f"{name}.bvh", STEP_FRAMES)) for name in names)
     return {"CMU walks": walks, "HDM05, all classes": _hdm05(dev)}
 
 
@@ -71,7 +71,7 @@ def _hdm05(dev: bool) -> Iterator[tuple[str, Motion]]:
         for kind in clips.hdm05_classes():
             paths = sorted(clips.HDM05.glob(f"HDM_{actor}_{kind}_*_120.amc"))
             for path in paths[:PER_CLASS]:
-                yield path.stem, clips.every(read_acclaim(path), STEP)
+                yield path.stem, clips.every(read_acclaim(path), STEP_FRAMES)
 
 
 def _retargeted(title: str, motions: list[tuple[str, Motion]]) -> list[Scores]:
@@ -131,7 +131,7 @@ METHODS: dict[str, Giver] = {
 
 
 def _speed() -> str:
-    take = to_and_fro(clips.read_cmu(clips.WALKS / "05_01.bvh", 1), LONG)
+    take = to_and_fro(clips.read_cmu(clips.WALKS / "05_01.bvh", 1), LONG_TAKE_FRAMES)
     target = with_all_fingers()
     maps = find_humanoid_map(take.skeleton), find_humanoid_map(target)
     rows = {}
@@ -145,7 +145,7 @@ def _speed() -> str:
     rows[f"unbaked on that rig to 1 cm: {sparse.n_keys} keys"] = [
         f"{perf_counter() - start:.2f}"
     ]
-    title = f"**{LONG} frames to a rig of {target.n_joints} bones**\n\n"
+    title = f"**{LONG_TAKE_FRAMES} frames to a rig of {target.n_joints} bones**\n\n"
     return title + table(["what", "seconds"], rows) + "\n"
 
 

@@ -33,7 +33,7 @@ from ..importing.bench_scene_io import load_checkout
 from ..shared.report import DOCS, Report
 from ..shared.tables import table
 
-RATE = 60.0
+RATE_HZ = 60.0
 LOOKED_AT = 20  # frames at which the evaluated rig is compared
 
 
@@ -69,7 +69,7 @@ def main() -> None:
             times = per_frame[f"{name}, nla.bake"] / per_frame[name]
             rows[f"{name}: times faster"] = ["", "", "", "", f"{times:.0f}", ""]
     header = ["target", "bones", "keyed", "frames", "seconds", "ms per frame", "off, cm"]
-    title = f"Blender {bpy.app.version_string}, a walk at {RATE:g} Hz"
+    title = f"Blender {bpy.app.version_string}, a walk at {RATE_HZ:g} Hz"
     text = f"**{title}**\n\n{table(header, rows)}\n"
     report = Report(arguments.docs, DOCS / "benchmarks" / "retargeting.md")
     report.part("retarget rig", [text], perf_counter() - started)
@@ -84,7 +84,7 @@ def row(n_bones: int, keyed: int, n_frames: int, seconds: float, off: Any) -> li
 
 
 def import_walk(n_frames: int) -> bpy.types.Object:
-    walk = walking_gait(GaitSettings(duration=n_frames / RATE, frame_rate=RATE))
+    walk = walking_gait(GaitSettings(duration=n_frames / RATE_HZ, frame_rate=RATE_HZ))
     skeleton = with_all_fingers()
     roles = find_humanoid_map(skeleton)
     walk = given_to(walk, find_humanoid_map(walk.skeleton), skeleton, roles)

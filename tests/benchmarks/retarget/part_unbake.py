@@ -15,7 +15,7 @@ from ..shared.tables import number, table
 TOLERANCES = (0.0025, 0.005, 0.01, 0.02)
 CLIPS = {False: ("05_01", "29_01", "35_12"), True: ("10_04", "26_01", "07_03")}
 """By whether they are for tuning."""
-STEP = 2
+STEP_FRAMES = 2
 """Clips are at 60 Hz."""
 
 
@@ -23,7 +23,7 @@ def unbaked(dev: bool, decimate: bool) -> str:
     """Return the table of keys that are left at each tolerance."""
     rows: dict[str, list[str]] = {}
     for name in CLIPS[dev]:
-        motion = on_fingered_rig(clips.read_cmu(clips.WALKS / f"{name}.bvh", STEP))
+        motion = on_fingered_rig(clips.read_cmu(clips.WALKS / f"{name}.bvh", STEP_FRAMES))
         theirs = _decimated(motion) if decimate else [{} for _ in TOLERANCES]
         for tolerance, other in zip(TOLERANCES, theirs, strict=True):
             rows[f"{name}, {100 * tolerance:g} cm"] = _row(motion, tolerance, other)

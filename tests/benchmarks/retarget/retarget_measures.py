@@ -26,8 +26,8 @@ from solvers.motion import (
 from solvers.rotations.representations import inverse, rotate, rotation_between
 
 SIDES = ("left", "right")
-SUNK = 0.01
-"""Metres below its height in the rest pose at which the ball of a foot has sunk."""
+MIN_SUNK_DEPTH_M = 0.01
+"""Meters below its height in the rest pose at which the ball of a foot has sunk."""
 FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
 
 
@@ -91,7 +91,7 @@ def world_figures(source: Acted, given: Acted) -> dict[str, float]:
         "head cm": head.mean(), "head path at most": head_path.max(),
         "trunk degrees": trunk.mean(), "trunk at most": trunk.max(),
         "below floor cm": max(0.0, float(below.max())),
-        "sunk feet %": 100.0 * float(np.mean(_sinking(given) > SUNK)),
+        "sunk feet %": 100.0 * float(np.mean(_sinking(given) > MIN_SUNK_DEPTH_M)),
         "knee acceleration": _shake(source, given, "LowerLeg", growth),
         "elbow acceleration": _shake(source, given, "LowerArm", growth),
     }  # fmt: skip
@@ -166,7 +166,7 @@ def _arm(one: Acted, side: str) -> float:
 
 
 def _slide(one: Acted, contacts: NDArray[np.bool_]) -> float:
-    """Metres per second in contact, of the slower of ankle and toes."""
+    """Meters per second in contact, of the slower of ankle and toes."""
     skeleton: Skeleton = one.motion.skeleton
     feet = one.poses.positions[:, foot_points(skeleton, one.humanoid), :2]
     steps = np.linalg.norm(np.diff(feet, axis=0), axis=-1).min(axis=-1)

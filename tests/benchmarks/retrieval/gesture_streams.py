@@ -28,7 +28,7 @@ ONE_GRIP = 1.0
 """Seconds without zoom or rotation, after which a new gesture starts."""
 RIGHT_WRIST, LEFT_WRIST, HEAD = 10, 6, 3
 TOUCH, WAVE_SPEED = 0.2, 1.5
-"""Metres, and meters per second, of the simple thresholds."""
+"""Meters, and meters per second, of the simple thresholds."""
 MOVES = {Gesture.ZOOM, Gesture.TURN}
 
 

@@ -35,8 +35,8 @@ from .retrieval_protocol import (
 Say = Callable[[str], None]
 OTHERS = "other actors"
 CACHE = Path("build") / "retrieval"
-EVERY = 4
-"""Every so many-th clip of the test classes is a damaged query."""
+QUERY_STEP = 4
+"""Clips of the test classes from one damaged query to the next."""
 
 
 @dataclass
@@ -64,7 +64,7 @@ class Found:
 
     def damaged(self, kind: str) -> list[Answer]:
         """Return answers to the same clips for each kind of damage."""
-        return self.tested(kind)[:: EVERY if kind == "clean" else 1]
+        return self.tested(kind)[:: QUERY_STEP if kind == "clean" else 1]
 
 
 def find_all(names: Sequence[str], n_jobs: int, say: Say) -> None:
@@ -100,7 +100,7 @@ def found_by(name: str) -> Found:
         prepared = METHODS[name].prepare([clip.tracks for clip in clips])
         found = Found(process_time() - started, megabytes(prepared))
         for kind, damage in DAMAGES.items():
-            of = clips if kind == "clean" else pending[::EVERY]
+            of = clips if kind == "clean" else pending[::QUERY_STEP]
             found.answers[kind] = answer(prepared, clips, queries(clips, of, damage))
         others = queries(clips, pending, DAMAGES["clean"], other_actors=True)
         found.answers[OTHERS] = answer(prepared, clips, others)

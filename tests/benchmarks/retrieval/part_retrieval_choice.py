@@ -19,8 +19,8 @@ from .retrieval_damage import DAMAGES
 from .retrieval_protocol import Method, Query, answer, mean_precision, queries
 
 KINDS = ("clean", "joints missing", "missing at random", "0.7x speed")
-EVERY = 2
-"""Every so many-th clip is a query."""
+QUERY_STEP = 2
+"""Clips from one query to the next."""
 START = Pyramids(
     DictionarySettings(n_atoms=32, n_nonzeros=3),
     PyramidSettings(gap=0.1, normalize_cubes=True),
@@ -43,7 +43,7 @@ class PostureQueries:
         self.tracks = [clip.tracks for clip in clips]
         self.query_sets: list[tuple[Tracks, list[Query]]] = []
         for name in KINDS:
-            found = list(queries(clips, clips[::EVERY], DAMAGES[name], other_actors=True))
+            found = list(queries(clips, clips[::QUERY_STEP], DAMAGES[name], other_actors=True))
             self.query_sets.append((name, found))
         self.postures: dict[int, ClipPostures] = {}
 

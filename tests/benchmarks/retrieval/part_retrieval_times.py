@@ -15,8 +15,8 @@ from .retrieval_clips import library
 from .retrieval_default import Default
 
 REPEATS = 10
-EVERY = 4
-"""Every so many-th clip is a query."""
+QUERY_STEP = 4
+"""Clips from one query to the next."""
 N_MATCHES = 20
 RATES = (120.0, 30.0)
 
@@ -26,7 +26,7 @@ def time_searches() -> str:
     clips = library()
     prepared = Default().prepare([clip.tracks for clip in clips])
     allowed = ~np.eye(len(clips), dtype=bool)
-    indices = range(0, len(clips), EVERY)
+    indices = range(0, len(clips), QUERY_STEP)
     rows = {}
     for rate in RATES:
         tracks = {index: resample(clips[index].tracks, rate) for index in indices}

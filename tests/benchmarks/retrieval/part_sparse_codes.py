@@ -17,13 +17,13 @@ from ..shared.timing import run_times
 from .retrieval_clips import training_library
 
 N_SIGNALS, N_ATOMS = 300, 700
-RATE = 30.0
+RATE_HZ = 30.0
 REPEATS = 5
 
 
 def compare_pursuits() -> str:
     """Return a table of milliseconds for 300 postures, the least of five runs."""
-    clips = [clip_postures(clip.tracks, RATE) for clip in training_library()]
+    clips = [clip_postures(clip.tracks, RATE_HZ) for clip in training_library()]
     found = [observed_signals(clip.positions) for clip in clips]
     postures = np.concatenate([signals for signals, observed in found if observed.all()])
     rng = np.random.default_rng(0)

@@ -20,7 +20,7 @@ from solvers.recordings import read_acclaim, read_recording
 
 from ..shared import clips
 
-RATE = 120.0
+RATE_HZ = 120.0
 WALK = 2.5
 """Seconds used of each CMU walk, from its middle: about as long as other clips."""
 TRAINING = frozenset({
@@ -90,7 +90,7 @@ def _walks() -> list[LabeledClip]:
     found = []
     for path in sorted(clips.WALKS.glob("*.bvh")):
         motion = clips.read_cmu(path, step=1)
-        length = min(motion.n_frames, round(WALK * RATE))
+        length = min(motion.n_frames, round(WALK * RATE_HZ))
         start = (motion.n_frames - length) // 2
         cut = motion.slice(start, start + length)
         label = "run" if path.stem in RUNS else "walk"
@@ -122,8 +122,8 @@ def _jacks() -> list[LabeledClip]:
 
 
 def _cut(motion: Motion, start: float, seconds: float) -> Motion:
-    first = round(start * RATE)
-    return motion.slice(first, first + round(seconds * RATE))
+    first = round(start * RATE_HZ)
+    return motion.slice(first, first + round(seconds * RATE_HZ))
 
 
 def _clip(name: str, label: str, actor: str, motion: Motion) -> LabeledClip:

@@ -13,7 +13,7 @@ Damage = Callable[[Tracks, Random], Tracks]
 
 MISSING = 0.3
 NOISE = 0.02
-"""Metres; standard deviation of each coordinate, new in each frame."""
+"""Meters; standard deviation of each coordinate, new in each frame."""
 
 
 def unharmed(tracks: Tracks, random: Random) -> Tracks:

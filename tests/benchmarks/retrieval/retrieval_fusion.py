@@ -11,7 +11,7 @@ from solvers.motion import Tracks
 
 from .retrieval_protocol import Method, Prepared
 
-SPREADING = 0.95
+PASSED_FRACTION = 0.95
 """Fraction of its score that a clip passes on (alpha of [ZBL04])."""
 
 
@@ -89,5 +89,5 @@ def manifold_ranking(between: Array, query: Array, n_neighbors: int) -> Array:
     size = np.sqrt(links.sum(axis=1))
     query_weights = np.zeros(n_clips)
     query_weights[np.argsort(query)[:n_neighbors]] = 1.0
-    spread = np.eye(n_clips) - SPREADING * links / np.outer(size, size)
+    spread = np.eye(n_clips) - PASSED_FRACTION * links / np.outer(size, size)
     return np.asarray(np.linalg.solve(spread, query_weights))

@@ -16,10 +16,10 @@ from solvers.retrieval.published.observed_signals import observed_signals
 from ..shared import clips
 from .retrieval_clips import LabeledClip, sensor_tracks
 
-SMOOTH = 0.15
+SMOOTHING_S = 0.15
 """Seconds."""
-STILL = 0.25
-"""Part of the greatest speed of a take, of all joints together, below which it stands still."""
+STILL_SPEED_FRACTION = 0.25
+"""Fraction of the maximum speed of all joints together below which a take stands still."""
 FRAME_RATE = 30.0
 OF_UTD = (
     "head", "chest", "spine", "hips",
@@ -78,7 +78,7 @@ def _of_utd(path: Path) -> Tracks:
 def moving(tracks: Tracks) -> Tracks:
     """Cut off what stands still before and after, as one would of a query."""
     signals, is_observed = observed_signals(tracks.positions)
-    smooth = gaussian_filter1d(signals[:, is_observed], SMOOTH * tracks.frame_rate, axis=0)
+    smooth = gaussian_filter1d(signals[:, is_observed], SMOOTHING_S * tracks.frame_rate, axis=0)
     speeds = np.linalg.norm(np.gradient(smooth, axis=0), axis=1)
-    fast = np.flatnonzero(speeds > STILL * speeds.max())
+    fast = np.flatnonzero(speeds > STILL_SPEED_FRACTION * speeds.max())
     return replace(tracks, positions=tracks.positions[fast[0] : fast[-1] + 1])

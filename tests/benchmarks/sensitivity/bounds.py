@@ -60,7 +60,7 @@ BOUNDS: dict[str, tuple[str, ...]] = {
         "*.MAX_BLOCK_*",
         "recordings/*.BLOCK_BYTES",
         "recordings/*.FRAMES_AT_ONCE",
-        "recordings/depth_files/depth_formats.HEAD",
+        "recordings/depth_files/depth_formats.HEAD_BYTES",
     ),
 }
 """Patterns of keys, by reason."""

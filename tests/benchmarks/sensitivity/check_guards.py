@@ -14,9 +14,9 @@ from .constants import FAMILIES, ROOT, Constant, constants_of
 from .evaluate import replace_on_import
 from .guards import GUARDS, Guard
 
-ELSEWHERE = 5
-"""Of pytest: no test was selected."""
-WORDS = {0: "PASSES WITHOUT IT", 1: "fails without it", ELSEWHERE: "on the other Python"}
+NO_TESTS_STATUS = 5
+"""Exit status of pytest if no test was selected."""
+WORDS = {0: "PASSES WITHOUT IT", 1: "fails without it", NO_TESTS_STATUS: "on the other Python"}
 
 
 def main() -> None:
@@ -29,7 +29,7 @@ def main() -> None:
                 [sys.executable, "-m", __spec__.name, "--one", key],
                 cwd=ROOT, stdout=subprocess.DEVNULL, check=False,
             ).returncode  # fmt: skip
-            useless += code not in (1, ELSEWHERE)
+            useless += code not in (1, NO_TESTS_STATUS)
             print(f"{key}: {WORDS.get(code, f'ENDS WITH {code}')} ({guard.test})", flush=True)
     raise SystemExit(bool(useless))
 

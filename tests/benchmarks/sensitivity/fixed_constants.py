@@ -92,7 +92,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "recordings/depth_files/k4a_calibration.N_PARAMETERS",
         "recordings/depth_files/mkv.PIXEL_BYTES",
         "recordings/depth_files/npz.*",
-        "recordings/depth_files/raw.PIXEL",
+        "recordings/depth_files/raw.PIXEL_BYTES",
         "recordings/depth_files/stray_scanner.POSE",
         "recordings/depth_files/stray_scanner.WIDTHS",
         "recordings/depth_files/stray_scanner.WITH_TIMES",

@@ -13,8 +13,8 @@ from .tables import Scores, number
 
 WIDTH, LEFT, RIGHT, TOP, BOTTOM, ROW = 1180, 60.0, 420.0, 50.0, 50.0, 22.0
 MIN_HEIGHT_PX = 420
-CEILING = 2.5
-"""The scale ends at this multiple of our worst figure: what is far off runs out at the top."""
+MAX_SCALE_RATIO = 2.5
+"""The scale ends at this multiple of our worst figure; larger ones are cut off at the top."""
 Color = tuple[int, int, int]
 
 
@@ -66,7 +66,7 @@ def _top(scores: Scores) -> float:
         return float(np.nanmax(means))
 
     mine = [name for name in scores.methods if name == scores.ours] or scores.methods
-    return 1.05 * min(worst(scores.methods), CEILING * worst(mine))
+    return 1.05 * min(worst(scores.methods), MAX_SCALE_RATIO * worst(mine))
 
 
 def _runs(

@@ -43,8 +43,8 @@ Maker = Callable[..., Sequence[Variant]]
 
 N_VARIANTS, N_PLANTED = 20, 4
 OURS = "mixture (default)"
-ENOUGH = 9
-"""Examples that a set needs for one part of them to be held out."""
+MIN_SPLIT_EXAMPLES = 9
+"""Minimum number of examples of a set of which a part is held out."""
 EXCUSED = ("published", "Lau et al., from its description")
 """Methods that a classifier always distinguishes from captures."""
 PARTS = ("figures", "sets", "examples", "discriminator", "pictures")
@@ -155,7 +155,7 @@ def by_examples(sets: Sets) -> list[str]:
     """Measure variation against the number of examples (fig. 4.6)."""
     counts, rows = (2, 3, 4, 6, 8, 10, 12), {}
     for name, examples in sets.items():
-        if len(examples) < ENOUGH:
+        if len(examples) < MIN_SPLIT_EXAMPLES:
             continue
         judge, cells = Judge(examples), []
         for count in counts:
@@ -178,7 +178,7 @@ def _planted(variant: Variant) -> Motion:
 def discriminated(sets: Sets) -> list[str]:
     """Train on variants of every second clip and on the clips between them."""
     rows: dict[str, list[str]] = {}
-    large = {name: one for name, one in sets.items() if len(one) >= ENOUGH}
+    large = {name: one for name, one in sets.items() if len(one) >= MIN_SPLIT_EXAMPLES}
     for examples in large.values():
         given, held = examples[::2], examples[1::2]
         rows.setdefault("the captures that variants are made of", []).append(

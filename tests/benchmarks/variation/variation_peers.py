@@ -22,7 +22,7 @@ from solvers.variation.curves.motion_curves import (
 )
 from solvers.variation.curves.partitions import partition_joints
 
-RATE = 30.0
+RATE_HZ = 30.0
 OCTAVES = ((1.0, 1.0), (2.0, 0.5), (4.0, 0.25))
 """Frequencies of Perlin noise in hertz, and their strengths."""
 BANDWIDTH = 0.25
@@ -47,13 +47,13 @@ class Flat:
             MotionCurves(rows[:, :N_ROOT_CHANNELS], joints),
             self.skeleton,
             self.mean,
-            RATE,
+            RATE_HZ,
             np.zeros(3),
         )
 
 
 def flatten(examples: Sequence[Motion]) -> Flat:
-    motions = [resample(one, RATE) for one in examples]
+    motions = [resample(one, RATE_HZ) for one in examples]
     headings = [headings_from_motion(one) for one in motions]
     plain = [
         remove_heading(one, heading) for one, heading in zip(motions, headings, strict=True)
@@ -79,7 +79,7 @@ def perlin(examples: Sequence[Motion], n: int, rng: np.random.Generator) -> list
     made = []
     for index in range(n):
         rows = flat.rows[index % len(flat.rows)]
-        times = np.arange(len(rows)) / RATE
+        times = np.arange(len(rows)) / RATE_HZ
         noise = sum(
             part * _gradient_noise(times * tone, rows.shape[1], rng) for tone, part in OCTAVES
         )

@@ -187,7 +187,7 @@ def test_the_command_writes_a_file_for_each_armature(
 
 
 @pytest.mark.parametrize("ending", FORMATS)
-def test_constraints_count(walk, blank, export, bring, heads, ending):
+def test_exported_bones_follow_constraints(walk, blank, export, bring, heads, ending):
     """The right arm points at an empty that nothing of the action moves."""
     goal = blank.data.objects.new("Goal", None)
     blank.context.scene.collection.objects.link(goal)

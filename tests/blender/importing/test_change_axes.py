@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-NEAR = 2e-4  # meters; bones and keys are 32-bit numbers
+TOLERANCE_M = 2e-4  # meters; bones and keys are 32-bit numbers
 FRAMES = (1, 20, 40)
 
 
@@ -46,7 +46,7 @@ def test_a_change_shows_what_an_import_with_it_would(walk, bring, shown, blank, 
 
     change(blank, **axes)
 
-    assert_allclose(shown(armature), expected, atol=NEAR)
+    assert_allclose(shown(armature), expected, atol=TOLERANCE_M)
     assert armature.animation_data.action == action
 
 
@@ -60,7 +60,7 @@ def test_back_and_forth_leaves_it_as_it_was(walk, bring, shown, blank):
     change(blank, up="Y", global_scale=1.0)
 
     assert np.abs(turned - before).max() > 0.5
-    assert_allclose(shown(armature), before, atol=NEAR)
+    assert_allclose(shown(armature), before, atol=TOLERANCE_M)
 
 
 def test_scale_and_unit_change_the_size(walk, bring, shown, blank):
@@ -68,7 +68,7 @@ def test_scale_and_unit_change_the_size(walk, bring, shown, blank):
     before = shown(armature)
 
     change(blank, global_scale=2.0)
-    assert_allclose(shown(armature), 2.0 * before, rtol=1e-4, atol=NEAR)
+    assert_allclose(shown(armature), 2.0 * before, rtol=1e-4, atol=TOLERANCE_M)
 
     change(blank, unit="METRES")
     assert np.ptp(shown(armature)[..., 2]) > 10.0 * np.ptp(before[..., 2])
@@ -104,7 +104,7 @@ def test_markers_are_turned_too(recordings, bring, shown, blank):
 
     change(blank, up="Z")
 
-    assert_allclose(shown(holder), expected, atol=NEAR)
+    assert_allclose(shown(holder), expected, atol=TOLERANCE_M)
 
 
 def test_equal_axes_are_refused(walk, bring, blank):

@@ -6,7 +6,7 @@ from depth_files import depth_npz
 from depth_folders import open3d, save_png
 from depth_views import points_of
 
-NEAR = 1e-4  # meters: 32-bit numbers
+TOLERANCE_M = 1e-4  # meters: 32-bit numbers
 
 
 def expected(depth: np.ndarray, focal: float = 90.0) -> np.ndarray:
@@ -26,7 +26,7 @@ def test_points_are_where_the_pixels_saw_them(archive, depth, bring, blank, pict
     np.testing.assert_allclose(
         points_of(made),
         expected(depth[picture])[depth[picture].ravel() > 0],
-        atol=NEAR,
+        atol=TOLERANCE_M,
     )
 
 
@@ -65,9 +65,9 @@ def test_it_survives_save_and_load(archive, depth, bring, blank, tmp_path):
     blank.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
 
     made = blank.data.objects["wall"]
-    assert points_of(made)[-1, 1] == pytest.approx(2.7, abs=NEAR)
+    assert points_of(made)[-1, 1] == pytest.approx(2.7, abs=TOLERANCE_M)
     blank.context.scene.frame_set(7)
-    assert points_of(made)[-1, 1] == pytest.approx(2.4, abs=NEAR)
+    assert points_of(made)[-1, 1] == pytest.approx(2.4, abs=TOLERANCE_M)
 
 
 def test_missing_file_shows_nothing_and_the_panel_gives_a_reason(archive, bring, blank, draw):
@@ -156,7 +156,7 @@ def test_a_plain_folder_needs_unit_and_focal_length(tmp_path, depth, blank):
     seen = points_of(made)
     mirrored = expected(depth[0])[depth[0].ravel() > 0] * (-1.0, 1.0, 1.0)
     order = np.lexsort(seen.round(3).T), np.lexsort(mirrored.round(3).T)
-    np.testing.assert_allclose(seen[order[0]], mirrored[order[1]], atol=NEAR)
+    np.testing.assert_allclose(seen[order[0]], mirrored[order[1]], atol=TOLERANCE_M)
 
 
 def test_a_preview_that_was_copied_plays_on_and_removed_ones_are_gone(archive, bring, blank):
@@ -168,7 +168,7 @@ def test_a_preview_that_was_copied_plays_on_and_removed_ones_are_gone(archive, b
     blank.data.meshes.remove(made.data)
     blank.context.scene.frame_set(6)
 
-    assert points_of(twin)[-1, 1] == pytest.approx(2.5, abs=NEAR)
+    assert points_of(twin)[-1, 1] == pytest.approx(2.5, abs=TOLERANCE_M)
 
 
 def test_of_a_room_only_so_many_points_are_shown_as_are_cheap(tmp_path, bring, rng):
@@ -199,7 +199,7 @@ def test_all_four_numbers_of_the_camera_can_be_given(archive, depth, bring):
     rows, columns = np.mgrid[:60, :80]
     z = depth[0] * 0.001
     points = np.stack([(columns - 30.0) / 80.0 * z, z, -(rows - 20.0) / 70.0 * z], axis=-1)
-    np.testing.assert_allclose(points_of(made), points[depth[0] > 0], atol=NEAR)
+    np.testing.assert_allclose(points_of(made), points[depth[0] > 0], atol=TOLERANCE_M)
 
 
 def test_import_warns_of_implausible_intrinsics(archive, blank, load):
@@ -216,7 +216,7 @@ def test_points_in_edit_mode_wait_and_let_others_play(archive, bring, blank):
     blank.context.view_layer.objects.active = edited
     blank.ops.object.mode_set(mode="EDIT")
     blank.context.scene.frame_set(6)
-    assert points_of(other)[-1, 1] == pytest.approx(2.5, abs=NEAR)
+    assert points_of(other)[-1, 1] == pytest.approx(2.5, abs=TOLERANCE_M)
     blank.ops.object.mode_set(mode="OBJECT")
     blank.context.scene.frame_set(7)
-    assert points_of(edited)[-1, 1] == pytest.approx(2.4, abs=NEAR)
+    assert points_of(edited)[-1, 1] == pytest.approx(2.4, abs=TOLERANCE_M)

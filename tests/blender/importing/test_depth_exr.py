@@ -9,7 +9,7 @@ from depth_views import points_of
 from exr_files import exr_header
 
 WIDTH, HEIGHT = 32, 20
-NEAR = 1e-3  # meters
+TOLERANCE_M = 1e-3  # meters
 
 
 def depth_at(frame: int) -> np.ndarray:
@@ -71,8 +71,10 @@ def test_pictures_come_in_their_order_with_the_top_row_on_top(folder, blank):
         depth = depth_at(frame)
         row, column = np.nonzero(depth < 100.0)
         points, depth = points_of(made), depth[row, column]
-        assert np.abs(points[:, 1] - depth).max() < NEAR
-        assert np.abs(points[:, 2] + (row - (HEIGHT - 1) / 2) / 40.0 * depth).max() < NEAR
+        assert np.abs(points[:, 1] - depth).max() < TOLERANCE_M
+        assert (
+            np.abs(points[:, 2] + (row - (HEIGHT - 1) / 2) / 40.0 * depth).max() < TOLERANCE_M
+        )
     assert not blank.data.images
 
 
@@ -83,7 +85,7 @@ def test_the_camera_of_the_scene_is_taken(folder, lens, blank):
     focal = 50.0 / 36.0 * WIDTH
     row, column = np.nonzero(depth_at(0) < 100.0)
     across = (column - (WIDTH - 1) / 2) / focal * depth_at(0)[row, column]
-    assert np.abs(points_of(made)[:, 0] - across).max() < NEAR
+    assert np.abs(points_of(made)[:, 0] - across).max() < TOLERANCE_M
 
 
 def test_they_are_copied_once_and_play_from_the_copy(folder, lens, blank, load):

@@ -5,7 +5,7 @@ import json
 import pytest
 from depth_views import points_of
 
-NEAR = 1e-4  # meters: 32-bit numbers
+TOLERANCE_M = 1e-4  # meters: 32-bit numbers
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def test_unknown_recording_is_opened_only_on_request(
     press = load("mocap_assist.blender.last_press").last_press()
     assert "show_depth" in press.button.lower()
 
-    assert points_of(made)[-1, 1] == pytest.approx(2.8, abs=NEAR)
+    assert points_of(made)[-1, 1] == pytest.approx(2.8, abs=TOLERANCE_M)
     blank.ops.wm.open_mainfile(filepath=str(archive.with_suffix(".blend")))
     assert len(points_of(blank.data.objects["wall"]))
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 # Blender's importer leaves its file open.
 INCH = 0.0254 / 0.45  # CMU's unit, in meters
-NEAR = 1e-5  # meters; bones and keys are 32-bit numbers
+TOLERANCE_M = 1e-5  # meters; bones and keys are 32-bit numbers
 
 
 @pytest.mark.parametrize("file", ["cmu_walk/07_01.bvh", "05_13.amc"])
@@ -26,7 +26,9 @@ def test_armature_moves_as_in_the_file(file, recordings, bring, load, blank):
     assert read.frame_rate == pytest.approx(recorded.frame_rate)
     where = load("solvers.motion").forward_kinematics
     order = [read.skeleton.names.index(name) for name in recorded.skeleton.names]
-    assert_allclose(where(read).positions[:, order], where(recorded).positions, atol=NEAR)
+    assert_allclose(
+        where(read).positions[:, order], where(recorded).positions, atol=TOLERANCE_M
+    )
     parents = [read.skeleton.names[read.skeleton.parents[joint]] for joint in order[1:]]
     names = recorded.skeleton.names
     assert parents == [names[parent] for parent in recorded.skeleton.parents[1:]]
@@ -43,7 +45,7 @@ def test_bones_are_where_blenders_own_importer_puts_them(recordings, bring, pose
 
     assert ours.keys() == theirs.keys()
     for name, matrices in ours.items():
-        assert_allclose(matrices[:, :3, 3], theirs[name][:, :3, 3], atol=5 * NEAR)
+        assert_allclose(matrices[:, :3, 3], theirs[name][:, :3, 3], atol=5 * TOLERANCE_M)
 
 
 @pytest.mark.parametrize("file", ["c3d/DEC_INT.C3D", "trc/motion_capture_run.trc"])
@@ -68,7 +70,7 @@ def test_markers_become_empties_with_gaps(file, recordings, bring, load, blank):
         for place, name in enumerate(recorded.names):
             if recorded.visible[frame, place]:
                 shown = markers[name].matrix_world.translation
-                assert_allclose(shown, recorded.positions[frame, place], atol=NEAR)
+                assert_allclose(shown, recorded.positions[frame, place], atol=TOLERANCE_M)
     for name in seen:
         place = recorded.names.index(name)
         bag = channelbag(markers[name])
@@ -121,7 +123,7 @@ def test_odd_names_and_bones_without_length_are_no_obstacle(bring, load, blank, 
     assert read.shape == expected.shape
     for place in np.moveaxis(expected, 1, 0):
         nearest = np.abs(read - place[:, None]).max(axis=(0, 2)).min()
-        assert nearest < 10 * NEAR
+        assert nearest < 10 * TOLERANCE_M
 
 
 def channelbag(animated):

@@ -3,7 +3,7 @@
 import pytest
 from numpy.testing import assert_allclose
 
-NEAR = 1e-5  # meters; bones and keys are 32-bit numbers
+TOLERANCE_M = 1e-5  # meters; bones and keys are 32-bit numbers
 WALK = "07_01.bvh"  # 317 frames at 120 Hz
 N_FRAMES, RATE = 317, 120.0
 
@@ -74,7 +74,7 @@ def test_every_rotation_mode_shows_the_same_walk(mode, walk, bring, poses):
 
     assert {bone.rotation_mode for bone in armature.pose.bones} == {mode}
     for name, matrices in poses(armature, [3, 40]).items():
-        assert_allclose(matrices[:, :3, 3], expected[name][:, :3, 3], atol=NEAR)
+        assert_allclose(matrices[:, :3, 3], expected[name][:, :3, 3], atol=TOLERANCE_M)
 
 
 def test_many_files_come_at_once_and_stand_for_themselves(walk, recordings, bring, blank):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-NEAR = 1e-5  # meters; bones and keys are 32-bit numbers
+TOLERANCE_M = 1e-5  # meters; bones and keys are 32-bit numbers
 MAX_MISS_M = 0.06  # meters that a bone of constant length may miss a joint by
 
 
@@ -50,7 +50,9 @@ def test_what_was_not_tracked_has_no_keys(fps, lossy, bring, load, blank):
         )
     where = motion.forward_kinematics
     order = [read.skeleton.index(name) for name in expected.skeleton.names]
-    assert_allclose(where(read).positions[:, order], where(expected).positions, atol=NEAR)
+    assert_allclose(
+        where(read).positions[:, order], where(expected).positions, atol=TOLERANCE_M
+    )
 
 
 @pytest.mark.parametrize("target", ["ARMATURE", "OBJECT"])
@@ -85,7 +87,7 @@ def test_empties_give_back_what_the_camera_measured(lossy, bring, load, blank):
 
     order = [recording.names.index(name) for name in tracks.names]
     assert len(order) == recording.n_joints
-    assert_allclose(tracks.positions, recording.tracks.positions[:, order], atol=NEAR)
+    assert_allclose(tracks.positions, recording.tracks.positions[:, order], atol=TOLERANCE_M)
 
 
 @pytest.mark.parametrize("target", ["ARMATURE", "OBJECT"])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-NEAR = 1e-5  # meters; keys are 32-bit numbers
+TOLERANCE_M = 1e-5  # meters; keys are 32-bit numbers
 N_MARKERS = 12
 LOST = slice(60, 90)
 
@@ -68,7 +68,7 @@ def test_markers_read_back_as_they_were_recorded(
 
     found = take.tracks.positions[:, in_order(take, bad_tracks)]
     assert take.tracks.frame_rate == pytest.approx(60.0)
-    assert_allclose(found, bad_tracks.positions, atol=NEAR)
+    assert_allclose(found, bad_tracks.positions, atol=TOLERANCE_M)
 
 
 def test_markers_are_read_in_the_world(holder, bad_tracks, read):
@@ -77,7 +77,7 @@ def test_markers_are_read_in_the_world(holder, bad_tracks, read):
     take = read(holder)
 
     found = take.tracks.positions[:, in_order(take, bad_tracks)]
-    assert_allclose(found, 2.0 * bad_tracks.positions + (1.0, 2.0, 3.0), atol=2 * NEAR)
+    assert_allclose(found, 2.0 * bad_tracks.positions + (1.0, 2.0, 3.0), atol=2 * TOLERANCE_M)
 
 
 def test_clean_fills_and_smooths_markers_and_revert_restores_raw(
@@ -104,7 +104,9 @@ def test_clean_fills_and_smooths_markers_and_revert_restores_raw(
     assert {each.animation_data.action for each in markers_of(holder)} == {raw}
     again = read(holder)
     assert_allclose(
-        again.tracks.positions[:, in_order(again, bad_tracks)], bad_tracks.positions, atol=NEAR
+        again.tracks.positions[:, in_order(again, bad_tracks)],
+        bad_tracks.positions,
+        atol=TOLERANCE_M,
     )
 
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 GAIT = "formats/c3d/PiG_Motion-FlatFoot-Hole.c3d"  # 35 markers, 78 computed points
-NEAR = 1e-5  # meters; 32-bit numbers
+TOLERANCE_M = 1e-5  # meters; 32-bit numbers
 
 
 @pytest.fixture
@@ -49,7 +49,7 @@ def assert_follows(holder, blank, load):
         distances = np.minimum(
             np.abs(found - ends).max(axis=(1, 2)), np.abs(found - ends[::-1]).max(axis=(1, 2))
         )
-        assert distances.min() < NEAR
+        assert distances.min() < TOLERANCE_M
 
 
 def test_sticks_follow_the_markers_even_when_the_take_is_moved(gait, blank, load):
@@ -101,7 +101,7 @@ def test_computed_points_move_with_the_take(gait, blank):
     blank.context.view_layer.update()
 
     assert_allclose(
-        np.array(point.matrix_world.translation) - before, [2.0, 0.0, 0.0], atol=NEAR
+        np.array(point.matrix_world.translation) - before, [2.0, 0.0, 0.0], atol=TOLERANCE_M
     )
 
 

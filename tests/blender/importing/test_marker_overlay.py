@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-NEAR = 2e-6
+TOLERANCE_M = 2e-6
 N_MARKERS = 8
 LOST = slice(40, 70)
 FRAMES = (1, 20, 90)
@@ -54,7 +54,7 @@ def test_crosses_stand_where_the_empties_do(blank, overlay, holder):
     for frame in FRAMES:
         places = world_positions(blank, raw.markers, frame)
         lines = overlay.lines_at(raw, blank.context.scene)
-        assert_allclose(crosses(lines), places, atol=10 * NEAR)
+        assert_allclose(crosses(lines), places, atol=10 * TOLERANCE_M)
 
 
 def test_trails_go_through_the_positions_at_adjacent_frames(blank, overlay, holder):
@@ -65,8 +65,8 @@ def test_trails_go_through_the_positions_at_adjacent_frames(blank, overlay, hold
 
     trails = lines[3 * N_MARKERS :].reshape(-1, N_MARKERS, 2, 3)
     assert len(trails) == 24  # 0.2 s at 60 frames a second, to either side
-    assert_allclose(trails[0, :, 0], world_positions(blank, raw.markers, 8), atol=NEAR)
-    assert_allclose(trails[-1, :, 1], world_positions(blank, raw.markers, 32), atol=NEAR)
+    assert_allclose(trails[0, :, 0], world_positions(blank, raw.markers, 8), atol=TOLERANCE_M)
+    assert_allclose(trails[-1, :, 1], world_positions(blank, raw.markers, 32), atol=TOLERANCE_M)
     assert_allclose(trails[:-1, :, 1], trails[1:, :, 0])
 
 
@@ -82,7 +82,7 @@ def test_a_gap_is_drawn_filled_where_it_was_cleaned_only(blank, overlay, holder)
     assert len(raw_lines) == whole - (3 + 24)
     assert len(clean_lines) == whole
     played = world_positions(blank, clean.markers, 56)
-    assert_allclose(crosses(clean_lines), played, atol=NEAR)
+    assert_allclose(crosses(clean_lines), played, atol=TOLERANCE_M)
 
 
 def test_raw_and_clean_of_each_marker_are_found_from_either(blank, overlay, holder):
@@ -105,7 +105,7 @@ def test_before_and_after_the_take_its_ends_are_shown(blank, overlay, holder):
 
     lines = overlay.lines_at(raw, blank.context.scene)
 
-    assert_allclose(crosses(lines), world_positions(blank, raw.markers, 100), atol=NEAR)
+    assert_allclose(crosses(lines), world_positions(blank, raw.markers, 100), atol=TOLERANCE_M)
 
 
 def test_keys_are_read_once_until_they_are_edited(blank, load, overlay, holder):

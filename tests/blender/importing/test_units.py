@@ -23,7 +23,7 @@ def silent(load, tmp_path):
 
 
 def height(armature):
-    """Metres from the lowest to the highest joint, at rest."""
+    """Meters from the lowest to the highest joint, at rest."""
     heads = np.array([bone.head_local for bone in armature.data.bones])
     return np.ptp(heads[:, 2])
 

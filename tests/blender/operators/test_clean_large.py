@@ -9,7 +9,7 @@ import pickle
 import numpy as np
 import pytest
 
-LOOKS = 400
+N_TIME_CHECKS = 400
 """How often the work checks the time in one time slice."""
 
 
@@ -68,7 +68,7 @@ def read_in_slices(load, monkeypatch, blank, work_of):
         )
         reading = load("mocap_assist.clean.cleaning").read_cleaning
         work, done = time_slices.Work(reading, blank.context.scene, armature, settings), []
-        while not work.run_slice(LOOKS):
+        while not work.run_slice(N_TIME_CHECKS):
             done.append(work_of())
         return work.result.args[0], [*done, work_of()]
 
@@ -87,10 +87,12 @@ def test_each_time_slice_does_part_of_the_work(
     (body,) = problem.recordings
     assert body.n_frames == n_frames and set(bones(n_bones)) <= set(body.skeleton.names)
     assert np.isfinite(body.rotations).all()
-    assert len(time_slices) >= 6 * n_bones // LOOKS  # 4 curves of each bone, and twice itself
+    assert (
+        len(time_slices) >= 6 * n_bones // N_TIME_CHECKS
+    )  # 4 curves of each bone, and twice itself
     for kind, total in (("bone", n_bones), ("keys", 4 * n_bones + 3)):
         assert sum(time_slice[kind] for time_slice in time_slices) == total
-        assert max(time_slice[kind] for time_slice in time_slices) <= LOOKS
+        assert max(time_slice[kind] for time_slice in time_slices) <= N_TIME_CHECKS
     assert not any(
         time_slice["frames"] for time_slice in time_slices
     )  # keys lie on all of them

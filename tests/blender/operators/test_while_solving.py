@@ -62,7 +62,7 @@ def test_only_what_looks_and_scrubs_reaches_the_window(
     assert may_pass(context, event(kind, *where, **held)) is passes
 
 
-def test_time_left(load):
+def test_time_left_is_in_minutes_or_seconds(load):
     time_left = load("mocap_assist.runtime.watch").time_left
 
     assert time_left(0.25, 10.0) == "30 s left"

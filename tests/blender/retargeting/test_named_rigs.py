@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 CENTIMETER = 0.01
-ROLLING = 0.04
+ANKLE_ROLL_M = 0.04
 """Ankles go along where a foot of another length rolls over its planted ball."""
 SOURCE = ("LeftUpLeg", "LeftLeg", "LeftFoot", "LeftArm", "LeftForeArm", "LeftHand")
 ENDS = {
@@ -45,7 +45,7 @@ def test_hands_and_feet_follow_the_source(case, walker, give, poses):
     )
     growth = length(ours[:, :3]) / length(theirs[:, :3])
     paths = [points[:, 2] - points[0, 2] for points in (ours, theirs)]
-    assert np.linalg.norm(paths[0] - growth * paths[1], axis=1).max() < ROLLING
+    assert np.linalg.norm(paths[0] - growth * paths[1], axis=1).max() < ANKLE_ROLL_M
     grown = length(ours[:, 3:]) / length(theirs[:, 3:])
     reach = [points[:, 5] - points[:, 3] for points in (ours, theirs)]
     assert np.linalg.norm(reach[0] - grown * reach[1], axis=1).max() < CENTIMETER
@@ -127,4 +127,4 @@ def test_recorded_walk_is_retargeted_to_a_mixamo_rig(
     )
     growth = length(ours[:, :3]) / length(theirs[:, :3])
     paths = [points[:, 2] - points[0, 2] for points in (ours, theirs)]
-    assert np.linalg.norm(paths[0] - growth * paths[1], axis=1).max() < ROLLING
+    assert np.linalg.norm(paths[0] - growth * paths[1], axis=1).max() < ANKLE_ROLL_M

@@ -5,7 +5,7 @@ import pytest
 
 pytestmark = pytest.mark.timeout(200)
 CENTIMETER = 0.01
-ROLLING = 0.04
+ANKLE_ROLL_M = 0.04
 """Ankles go along where a foot of another length rolls over its planted ball."""
 SOURCE = ("LeftUpLeg", "LeftLeg", "LeftFoot", "LeftArm", "LeftForeArm", "LeftHand")
 DEFORM = ("thigh.L", "shin.L", "foot.L", "upper_arm.L", "forearm.L", "hand.L")
@@ -44,7 +44,7 @@ def test_hands_and_feet_follow_the_source(limbs, hero, walker, give, poses):
     give(walker, hero, limbs=limbs)
 
     feet, hands = ends_off(poses, hero, walker)
-    assert feet < ROLLING and hands < CENTIMETER
+    assert feet < ANKLE_ROLL_M and hands < CENTIMETER
 
 
 @pytest.mark.parametrize("limbs", ["FK", "IK"])

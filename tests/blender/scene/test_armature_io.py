@@ -6,7 +6,7 @@ from mathutils import Euler, Matrix
 from numpy.testing import assert_allclose
 
 MODES = ["QUATERNION", "AXIS_ANGLE", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
-NEAR = 2e-5  # meters; poses are 32-bit numbers
+TOLERANCE_M = 2e-5  # meters; poses are 32-bit numbers
 
 
 @pytest.fixture
@@ -18,7 +18,7 @@ def rewrite(scene_io, blank):
         source = scene_io.reading.action_of(armature)
         chosen = take.rig.bones if bones is None else bones
         action, slot = scene_io.writing.write_take(armature, source, take, chosen, {})
-        scene_io.writing.put_to_use(armature, action, slot, scene_io.writing.Output.ACTION)
+        scene_io.writing.assign_result(armature, action, slot, scene_io.writing.Output.ACTION)
         return action
 
     return again
@@ -47,9 +47,9 @@ def test_read_joints_equal_blenders_bones(mode, make_armature, animate, poses, s
 
     found, shown = joint_positions(scene_io, take), poses(armature, frames)
     for bone, matrices in shown.items():
-        assert_allclose(found[bone][::7], matrices[:, :3, 3], atol=NEAR)
+        assert_allclose(found[bone][::7], matrices[:, :3, 3], atol=TOLERANCE_M)
     ends = [matrix @ (0, np.linalg.norm((0.15, 0.08)), 0, 1) for matrix in shown["LeftFoot"]]
-    assert_allclose(found["LeftFoot_end"][::7], np.array(ends)[:, :3], atol=NEAR)
+    assert_allclose(found["LeftFoot_end"][::7], np.array(ends)[:, :3], atol=TOLERANCE_M)
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -61,7 +61,7 @@ def test_writing_the_read_motion_changes_nothing(mode, make_armature, animate, p
     rewrite(armature)
 
     for bone, matrices in poses(armature, range(1, 61)).items():
-        assert_allclose(matrices, before[bone], atol=NEAR)
+        assert_allclose(matrices, before[bone], atol=TOLERANCE_M)
 
 
 def test_moved_armature_is_read_in_world_space(
@@ -79,10 +79,10 @@ def test_moved_armature_is_read_in_world_space(
 
     for bone, positions in joint_positions(scene_io, take).items():
         if not bone.endswith("_end"):
-            assert_allclose(positions, before[bone][:, :3, 3], atol=NEAR)
+            assert_allclose(positions, before[bone][:, :3, 3], atol=TOLERANCE_M)
     rewrite(armature, take=take)
     for bone, matrices in poses(armature, range(1, 61)).items():
-        assert_allclose(matrices, before[bone], atol=NEAR)
+        assert_allclose(matrices, before[bone], atol=TOLERANCE_M)
 
 
 def test_full_rotations_are_written_without_jumps(make_armature, animate, rewrite, blank):
@@ -255,7 +255,7 @@ def test_bones_have_plausible_lengths_at_any_scale(
     assert_allclose(thigh, 0.45 * meters, rtol=0.01)
     rewrite(armature)
     for bone, matrices in poses(armature, range(1, 61)).items():
-        assert_allclose(matrices, before[bone], atol=NEAR * scale)
+        assert_allclose(matrices, before[bone], atol=TOLERANCE_M * scale)
 
 
 def test_unevenly_scaled_armatures_are_refused_with_a_reason(make_armature, animate, scene_io):

@@ -29,7 +29,7 @@ def strip(made, load):
     result = write.copy_of(made.source[0])
     slot = write.same_slot(result, made.source[1])
     history.record(result, made.source, {"operation": "clean"})
-    write.put_to_use(made.armature, result, slot, write.Output.NLA_TRACK)
+    write.assign_result(made.armature, result, slot, write.Output.NLA_TRACK)
     ((strip,),) = (track.strips for track in made.armature.animation_data.nla_tracks)
     return strip
 

@@ -231,7 +231,7 @@ def test_cancelling_ends_the_prediction(rng, cancel):
         predict_limbs(channels, _interpolated(channels), RATE, load_body_relation(), cancel)
 
 
-def test_one_frame(rng):
+def test_one_frame_has_no_gap_to_predict(rng):
     channels = encode(_swings(rng).slice(0, 1))
 
     assert predict_limbs(channels, _interpolated(channels), RATE, load_body_relation())[1] == 0

@@ -24,7 +24,7 @@ from solvers.rotations.representations import (
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
 MILLIMETER = 0.001
-LOADED = 0.5
+MIN_LOAD_FRACTION = 0.5
 """Fraction of the weight."""
 
 
@@ -56,7 +56,7 @@ def planted(shaking):
 
 def test_loaded_foot_rests_on_a_fixed_point(body, by_friction, planted):
     assert np.array_equal(planted.foot_loads, by_friction.foot_loads)
-    loaded = planted.foot_loads[:-1] > LOADED
+    loaded = planted.foot_loads[:-1] > MIN_LOAD_FRACTION
     assert loaded.mean() > 0.3
     slow = steps(body, by_friction.motion)[loaded] < 0.3 / 60.0
 

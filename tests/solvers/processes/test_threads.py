@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from solvers.processes.threads import VARIABLES, thread_environment, threads_of_words
+from solvers.processes.threads import VARIABLES, thread_environment, threads_from_arguments
 
 ROOT = Path(__file__).parents[3]
 
@@ -52,4 +52,4 @@ def test_all_variables_have_the_number():
     ],
 )
 def test_number_of_threads_is_found_before_the_command_line_is_parsed(words, number):
-    assert threads_of_words(words.split()) == number
+    assert threads_from_arguments(words.split()) == number

@@ -27,8 +27,8 @@ from solvers.workflows.reconstruct_motion import postures_recording
 
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 PARENTS = joint_parents(NAMES)
-AT = np.radians(50.0)
-"""By so much the left upper arm is twisted in like postures."""
+TWIST_RAD = np.radians(50.0)
+"""Twist of the left upper arm in similar postures."""
 
 
 def hanging_arm(flexion: np.ndarray) -> Tracks:
@@ -47,7 +47,7 @@ def similar_twists(
     n_frames: int, length: float = 1.0, library_only: bool = False
 ) -> LimbTwists:
     vectors = np.zeros((n_frames, 4), complex)
-    vectors[:, 0] = length * np.exp(1j * AT)
+    vectors[:, 0] = length * np.exp(1j * TWIST_RAD)
     return LimbTwists(vectors, library_only)
 
 
@@ -67,7 +67,7 @@ def test_straight_arm_gets_the_twist_of_similar_postures():
     )
 
     assert_allclose(elbow_twist_deg(plain), 0.0, atol=1.0)
-    assert_allclose(elbow_twist_deg(motion), np.degrees(AT), atol=10.0)
+    assert_allclose(elbow_twist_deg(motion), np.degrees(TWIST_RAD), atol=10.0)
 
 
 def test_library_twist_weighs_less_where_neighbors_disagree():
@@ -75,7 +75,7 @@ def test_library_twist_weighs_less_where_neighbors_disagree():
 
     motion = motion_from_positions(tracks, PARENTS, twists=similar_twists(30, length=0.1))
 
-    mean = 0.1 * np.exp(1j * AT) + 0.9  # the rest has no twist
+    mean = 0.1 * np.exp(1j * TWIST_RAD) + 0.9  # the rest has no twist
     assert_allclose(elbow_twist_deg(motion), np.degrees(np.angle(mean)), atol=0.5)
 
 
@@ -102,7 +102,7 @@ def test_published_method_uses_library_twists_only():
         tracks, PARENTS, twists=similar_twists(30, length=0.3, library_only=True)
     )
 
-    assert_allclose(elbow_twist_deg(motion), np.degrees(AT), atol=0.5)
+    assert_allclose(elbow_twist_deg(motion), np.degrees(TWIST_RAD), atol=0.5)
 
 
 def test_published_method_has_no_twist_where_it_is_unknown():
@@ -113,7 +113,9 @@ def test_published_method_has_no_twist_where_it_is_unknown():
         hanging_arm(np.full(30, np.radians(80.0))), PARENTS, twists=twists
     )
 
-    assert_allclose(elbow_twist_deg(motion), np.where(unknown, 0.0, np.degrees(AT)), atol=0.5)
+    assert_allclose(
+        elbow_twist_deg(motion), np.where(unknown, 0.0, np.degrees(TWIST_RAD)), atol=0.5
+    )
 
 
 @pytest.mark.parametrize("dip", [0.5, 1.9])

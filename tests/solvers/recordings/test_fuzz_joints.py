@@ -22,7 +22,7 @@ def test_undamaged_files_are_read_and_detected_by_content(kind, tmp_path):
 
 
 @pytest.mark.parametrize("kind", JOINT_FILES)
-def test_damaged_files(kind, tmp_path):
+def test_damaged_joint_files_are_read_or_refused(kind, tmp_path):
     read, complete = JOINT_FILES[kind]
     path = tmp_path / "take"
 

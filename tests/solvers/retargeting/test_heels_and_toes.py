@@ -25,7 +25,7 @@ FEET = [
     [RIG.index(f"mixamorig:{side}{bone}") for bone in ("Foot", "ToeBase", "Toe_end")]
     for side in ("Left", "Right")
 ]
-AS_EVER = RetargetSettings()
+DEFAULTS = RetargetSettings()
 ACROSS, FORWARD = np.array([1.0, 0.0, 0.0]), np.array([0.0, -1.0, 0.0])
 SENSED = ("msr_action3d/a11_s03_e03", "msr_action3d/a13_s01_e01", "irds/215_18_0_5_1")
 TAKES = ("cmu_walk/07_05.bvh", "cmu_walk/07_01.bvh", "05_13.amc")
@@ -133,7 +133,7 @@ def resting(n_frames: int) -> Motion:
 
 
 def retargeted_to(
-    motion: Motion, rig: Skeleton = RIG, settings: RetargetSettings = AS_EVER
+    motion: Motion, rig: Skeleton = RIG, settings: RetargetSettings = DEFAULTS
 ) -> Motion:
     humanoid = find_humanoid_map(motion.skeleton)
     return retarget(motion, humanoid, rig, find_humanoid_map(rig), settings=settings)

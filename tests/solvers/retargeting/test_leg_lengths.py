@@ -13,7 +13,7 @@ from solvers.retargeting.leg_lengths import TargetLeg, level_ankles
 from solvers.samples import GaitSettings, walking_gait
 
 STANDS = np.ones(1, dtype=np.bool_)
-AS_EVER = RetargetSettings()
+DEFAULTS = RetargetSettings()
 
 
 def test_ankle_heights_are_corrected_by_the_leg_difference():
@@ -93,7 +93,7 @@ def walk_of(rig: Skeleton, walk: Motion) -> Motion:
     return Motion(rig, walk.rotations, walk.root_positions, walk.frame_rate)
 
 
-def retargeted(motion: Motion, rig: Skeleton, settings: RetargetSettings = AS_EVER) -> Motion:
+def retargeted(motion: Motion, rig: Skeleton, settings: RetargetSettings = DEFAULTS) -> Motion:
     maps = find_humanoid_map(motion.skeleton), find_humanoid_map(rig)
     return retarget(motion, maps[0], rig, maps[1], settings=settings)
 

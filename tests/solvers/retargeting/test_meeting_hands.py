@@ -12,7 +12,7 @@ from solvers.retargeting.hand_paths import HandPath, Meeting
 from solvers.rotations.representations import quaternion_from_rotation_vector
 
 ARM = ("UpperArm", "LowerArm", "Hand")
-AS_EVER = RetargetSettings()
+DEFAULTS = RetargetSettings()
 
 
 @pytest.mark.parametrize("family", RIGS)

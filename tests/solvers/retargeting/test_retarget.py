@@ -26,7 +26,7 @@ from solvers.rotations.representations import (
 from solvers.samples import GaitSettings, walking_gait
 
 CMU_METERS = 0.0254 / 0.45
-AS_EVER = RetargetSettings()
+DEFAULTS = RetargetSettings()
 
 
 @pytest.fixture(scope="module")
@@ -181,7 +181,7 @@ def test_hips_are_the_only_required_role():
     assert_allclose(result.rotations, motion.rotations, atol=1e-12)
 
 
-def retargeted(motion: Motion, rig: Skeleton, settings: RetargetSettings = AS_EVER) -> Motion:
+def retargeted(motion: Motion, rig: Skeleton, settings: RetargetSettings = DEFAULTS) -> Motion:
     source_map, target_map = find_humanoid_map(motion.skeleton), find_humanoid_map(rig)
     return retarget(motion, source_map, rig, target_map, settings=settings)
 

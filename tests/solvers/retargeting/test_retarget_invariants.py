@@ -21,7 +21,7 @@ from solvers.samples import GaitSettings, walking_gait
 
 WALK = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
 LIMBS = ("UpperArm", "LowerArm", "UpperLeg", "LowerLeg")
-AS_EVER = RetargetSettings()
+DEFAULTS = RetargetSettings()
 
 
 @settings(max_examples=25)

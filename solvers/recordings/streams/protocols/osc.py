@@ -22,7 +22,7 @@ MAX_DEPTH = 4
 MAX_MESSAGES = 512
 """Maximum number of messages in a packet; a body has 55 bones. It bounds the time of a
 packet."""
-WORD = 4
+WORD_BYTES = 4
 """Bytes to whose multiples everything is padded."""
 NUMBERS = {"i": ">i", "f": ">f", "h": ">q", "d": ">d", "t": ">Q"}
 WITHOUT_DATA: dict[str, Argument] = {"T": True, "F": False, "N": None, "I": float("inf")}
@@ -81,8 +81,8 @@ def _messages(packet: bytes, depth: int) -> Iterator[Message]:
     offset = len(BUNDLE) + len(IMMEDIATELY)
     while offset < len(packet):
         (size,) = struct.unpack_from(">i", packet, offset)
-        offset += WORD
-        if not 0 < size <= len(packet) - offset or size % WORD:
+        offset += WORD_BYTES
+        if not 0 < size <= len(packet) - offset or size % WORD_BYTES:
             raise ValueError("size")
         yield from _messages(packet[offset : offset + size], depth - 1)
         offset += size
@@ -111,10 +111,10 @@ def _argument(packet: bytes, offset: int, tag: str) -> tuple[Argument, int]:
         return _text(packet, offset)
     if tag == "b":
         (size,) = struct.unpack_from(">i", packet, offset)
-        end = offset + WORD + size
+        end = offset + WORD_BYTES + size
         if size < 0 or end > len(packet):
             raise ValueError("blob")
-        return packet[offset + WORD : end], _aligned(end)
+        return packet[offset + WORD_BYTES : end], _aligned(end)
     if tag in WITHOUT_DATA:
         return WITHOUT_DATA[tag], offset
     raise ValueError("type")
@@ -126,7 +126,7 @@ def _text(packet: bytes, offset: int) -> tuple[str, int]:
 
 
 def _aligned(offset: int) -> int:
-    return -(-offset // WORD) * WORD
+    return -(-offset // WORD_BYTES) * WORD_BYTES
 
 
 def _padded(text: str) -> bytes:

@@ -19,8 +19,8 @@ from ...contacts.made_takes import MadeTake
 from ...live.held_feet import drifting, hold_feet
 from ..takes import hdm05, variety, walk
 
-SKATING = 0.15
-"""Part of the way that the body travels too far."""
+EXTRA_TRAVEL_FRACTION = 0.15
+"""Fraction by which the body travels farther than its steps."""
 
 
 def prepare() -> dict[str, object]:
@@ -28,7 +28,7 @@ def prepare() -> dict[str, object]:
     plain = walk("07_11", 1)
     swaying, skating = walk("10_04", 2), walk("32_01", 2)
     place = skating.root_positions.copy()
-    place[:, :2] += SKATING * (place[:, :2] - place[0, :2])
+    place[:, :2] += EXTRA_TRAVEL_FRACTION * (place[:, :2] - place[0, :2])
     noisy, kick = walk("07_03"), hdm05("kickLFront1Reps", 2)
     punch = variety("02_05").slice(600, 900)
     dance = variety("salsa_01").slice(300, 500)

@@ -65,7 +65,7 @@ def test_undamaged_files_are_read(kind, tmp_path):
 
 
 @pytest.mark.parametrize("kind", FILES)
-def test_damaged_files(kind, tmp_path):
+def test_damaged_depth_files_are_read_or_refused(kind, tmp_path):
     path = tmp_path / "take"
 
     @searching(EXAMPLES)

@@ -79,7 +79,7 @@ def test_longest_observed_body_is_selected(read):
     assert recording.n_frames == 7
 
 
-def test_scale(read):
+def test_scale_multiplies_positions(read):
     text = irds([(1, 33 * n, {}) for n in range(3)])
 
     assert_allclose(read(text, scale=2.0).tracks.positions, 2 * read(text).tracks.positions)

@@ -51,7 +51,7 @@ def check_standing(motion):
     assert np.cross(across, facing)[0, 2] < 0.0  # the left is at the left
 
 
-def test_old_amass(tmp_path):
+def test_old_amass_files_are_read(tmp_path):
     vectors = poses(root=Z_UP, n_joints=52)
     path = save(
         tmp_path / "amass.npz", trans=np.tile((0.2, 0.1, 0.9), (F, 1)), gender="female",
