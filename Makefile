@@ -19,6 +19,9 @@ NO_5.2 := SKIPPED on Blender 5.2: $(call NO_PYTHON,3.13).
 # Solves are small, and two suites run side by side: one thread each.
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
+# The suites start hundreds of Pythons. Without bytecode each compiles all that it imports:
+# 2.9 s of CPU time in place of 1.2 s for a solve of Clean.
+unexport PYTHONDONTWRITEBYTECODE
 # A test that hangs, or a Blender that hangs at its end, must not hold up the rest for ever; a
 # suite takes ten minutes on a quiet machine and an hour beside ten other jobs.
 AT_MOST := timeout --kill-after=10 3600
