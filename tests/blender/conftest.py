@@ -160,7 +160,7 @@ def pytest_configure(config: pytest.Config) -> None:
         [sys.executable, "-c", INSTALL, str(zipped)],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         check=False,
         cwd=config.stash[RESOURCES],
     )

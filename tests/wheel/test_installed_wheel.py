@@ -71,7 +71,7 @@ class Installed:
         environment = {"PATH": f"{self.programs}{os.pathsep}{os.environ['PATH']}"}
         done = subprocess.run(
             [str(self.programs / program), *words], cwd=self.folder, env=environment,
-            capture_output=True, text=True, check=False, timeout=120,
+            capture_output=True, text=True, check=False, timeout=600,
         )  # fmt: skip
         assert (done.returncode, done.stderr) == (0, "")
         return done.stdout
@@ -86,7 +86,7 @@ def installed(wheel, tmp_path_factory) -> Installed:
     (own / "borrowed.pth").write_text(f"{sysconfig.get_path('purelib')}\n")
     command = [sys.executable, "-m", "pip", "--python", str(python), "install", "--quiet"]
     command += ["--no-index", "--no-compile", "--disable-pip-version-check"]
-    subprocess.run([*command, str(wheel)], check=True, timeout=120)
+    subprocess.run([*command, str(wheel)], check=True, timeout=600)
     return Installed(home)
 
 
