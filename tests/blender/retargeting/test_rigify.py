@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(200)
 CENTIMETER = 0.01
 ANKLE_ROLL_M = 0.04
 """Ankles go along where a foot of another length rolls over its planted ball."""

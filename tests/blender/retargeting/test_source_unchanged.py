@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(200)
 SWITCH = "thigh_parent.L"
 CHANNELS = ("location", "rotation_quaternion", "rotation_euler", "scale")
 

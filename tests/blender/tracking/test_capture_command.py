@@ -56,7 +56,6 @@ def test_a_folder_of_takes_is_imported(takes, blank, load, tmp_path):
     assert blank.data.objects["second"].type == blank.data.objects["walk"].type == "MESH"
 
 
-@pytest.mark.timeout(300)
 def test_a_folder_of_takes_is_captured(takes, blank, load, tmp_path, capsys):
     run = load("mocap_assist.batch.command").run
     out = tmp_path / "out"
@@ -85,7 +84,6 @@ def test_a_folder_of_takes_is_captured(takes, blank, load, tmp_path, capsys):
     assert "There is no recording in the folder" in capsys.readouterr().err
 
 
-@pytest.mark.timeout(300)
 def test_a_folder_of_takes_becomes_one_scene(takes, blank, load, tmp_path, capsys):
     run = load("mocap_assist.batch.command").run
     target = tmp_path / "both.blend"
