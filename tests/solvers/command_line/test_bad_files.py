@@ -245,8 +245,7 @@ def test_interrupt_leaves_only_complete_files(swinging_leg, tmp_path):
 
     assert running.returncode == 130
     assert error_output == "Interrupted. Finished files are kept.\n"
-    written = list(out.iterdir())
-    assert [path.name for path in written if path.name.startswith(".")] == [FOLDER]
+    assert [path.name for path in out.glob(".*")] == [FOLDER]
     assert all(path.suffix == ".json" for path in (out / FOLDER).iterdir())
     for file in files:
         assert read_bvh(out / file.name).n_frames == swinging_leg.n_frames
