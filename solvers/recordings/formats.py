@@ -45,12 +45,12 @@ from .joint_files import (
     open_ntu_skeleton,
     open_nuitrack_csv,
     open_nuitrack_json,
+    open_point_table,
     open_zed_json,
     read_kinect_csv,
     read_mediapipe_csv,
     read_mediapipe_json,
     read_msr_action3d,
-    read_point_table,
     read_ui_prmd,
 )
 from .marker_files import (
@@ -79,6 +79,10 @@ from .skeleton_files import (
 )
 
 HEAD_BYTES = 4096
+MAX_TITLES_BYTES = 1 << 17
+"""Of the first lines of a table, where these are longer than the head of other files."""
+N_TITLE_LINES = 4
+"""Lines of a table that its head must have: names, axes, units and a frame."""
 MAX_DIRECTORY_BYTES = 1 << 16
 """Of the end of an archive, where the names of its members are."""
 MAX_JSON_BYTES = 1 << 22
@@ -97,6 +101,13 @@ def _is_acclaim(head: bytes) -> bool:
 def _is_trc(head: bytes) -> bool:
     """Detect TRC; some programs omit the first line, or write it in lower case."""
     return re.match(rb"(?i)[\s\"]*(PathFileType|DataRate\W+CameraRate)\b", head) is not None
+
+
+def _is_wide_table(head: bytes) -> bool:
+    """Return whether a head is text with long lines of cells; JSON has no such lines."""
+    is_text = len(head) >= HEAD - len(BYTE_ORDER_MARK) and b"\0" not in head
+    is_json = head.lstrip()[:1] in {b"{", b"["}
+    return is_text and not is_json and len(head.splitlines()) <= N_TITLE_LINES
 
 
 FORMATS = (
@@ -141,7 +152,7 @@ FORMATS = (
     Format("joint JSON", is_joint_json, open_joint_json),
     Format("JSON of joints", is_frames_json, open_frames_json, is_one_frame=is_frame_json),
     Format("table with a line per joint", is_long_table, open_long_table),
-    Format("table of points", is_point_table, one_body(read_point_table)),
+    Format("table of points", is_point_table, open_point_table),
 )
 """Supported formats; add a line here for a new one."""
 
@@ -163,6 +174,8 @@ def detect_format(path: Path | str) -> Format | None:
         with open_regular(path) as file:
             head = file.read(HEAD_BYTES).removeprefix(BYTE_ORDER_MARK)
             head += file.read(min(json_length(head), MAX_JSON_BYTES))
+            if _is_wide_table(head):
+                head += file.read(MAX_TITLES_BYTES)
             if head.startswith(ZIP_MEMBER):
                 file.seek(max(HEAD_BYTES, file.seek(0, SEEK_END) - MAX_DIRECTORY_BYTES))
                 head += file.read()

@@ -25,7 +25,10 @@ TRIPLES = re.compile(
     rb'"keypoints"\s*:\s*\[\s*\[\s*[-+\d.e]+\s*,\s*[-+\d.e]+\s*,\s*[-+\d.e]+\s*\]'
 )
 """Points with a third coordinate, which may be a score: `point_arrays` decides that."""
-DEEPLABCUT = re.compile(rb"scorer,[^\r\n]*\r?\n(individuals,[^\r\n]*\r?\n)?bodyparts,")
+DEEPLABCUT = re.compile(
+    rb"scorer,[^\r\n]*\r?\n(individuals,[^\r\n]*\r?\n)?bodyparts,[^\r\n]*\r?\n(?!coords,x,y,z,)"
+)
+"""Its tables of images; those of several cameras have a third coordinate."""
 OPENSIM_BODIES = re.compile(rb"#?\s*times?\s*,\s*(\w+)_x\s*,\s*\1_y\s*,\s*\1_z\s*,\s*\1_rotx")
 
 

@@ -63,7 +63,7 @@ from .scene_bodies import (
     describe_lying,
 )
 from .sensor_axes import from_azure_space, from_kinect_space
-from .subjects import bodies_of_joints, bodies_of_markers
+from .subjects import MarkerSubject, bodies_of_joints, bodies_of_markers, split_subjects
 from .time_stamps import (
     DEFAULT_FRAME_RATE,
     MAX_TIME_S,
@@ -87,6 +87,7 @@ __all__ = [
     "Bodies",
     "Body",
     "ConstantRate",
+    "MarkerSubject",
     "UpAxisName",
     "axes_of_points",
     "bodies_of_frames",
@@ -131,6 +132,7 @@ __all__ = [
     "rotation_between",
     "rotations_y_up_from_z_up",
     "rotations_z_up_from_y_up",
+    "split_subjects",
     "stack_body_frames",
     "stand_along",
     "stand_markers",

@@ -25,7 +25,7 @@ from .nuitrack import (
     open_nuitrack_csv,
     open_nuitrack_json,
 )
-from .point_table import is_point_table, read_point_table
+from .point_table import is_point_table, open_point_table
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
 from .zed_json import is_zed_json, open_zed_json
 
@@ -62,6 +62,7 @@ __all__ = [
     "open_ntu_skeleton",
     "open_nuitrack_csv",
     "open_nuitrack_json",
+    "open_point_table",
     "open_zed_json",
     "read_freemocap",
     "read_freemocap_points",
@@ -69,7 +70,6 @@ __all__ = [
     "read_mediapipe_csv",
     "read_mediapipe_json",
     "read_msr_action3d",
-    "read_point_table",
     "read_ui_prmd",
     "read_ui_prmd_pair",
     "write_joint_csv",

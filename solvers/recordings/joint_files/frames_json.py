@@ -28,6 +28,7 @@ from ..point_bodies import (
     stand_body,
 )
 from .body_json import BodiesFrame, BodyJoints, open_frames, stacked
+from .json_frames import json_by_frame
 from .json_people import POINT_KEYS, JsonPerson, people_of_frame
 
 LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
@@ -41,6 +42,13 @@ HEAD = re.compile(
     + rb')"\s*:\s*(\[\s*([\[{\d-]|null)|\{)',
     re.DOTALL,
 )
+JOINT = re.compile(
+    rb"(?i)\"[^\"]*(hip|pelvi|spine|head|neck|nose|should|arm|elbow|wrist|hand|leg|knee|ankle|foot"
+    rb"|root)[^\"]*\"\s*:\s*(\{\s*\"(x|pos\w*)\"\s*:\s*\[?|(\[\s*){1,2})\s*[-\d]"
+)
+"""A joint with its place, or with the first one of its places."""
+NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*\[\s*\[\s*[-\d]")
+"""The first frame of those that are keyed by their number."""
 
 
 class _Content(NamedTuple):
@@ -64,13 +72,15 @@ class _Content(NamedTuple):
 
 def is_frames_json(head: bytes) -> bool:
     """Return whether a file lists joints, from its first bytes."""
-    return HEAD.match(head) is not None
+    if HEAD.match(head) or NUMBERED.match(head):
+        return True
+    return head.lstrip()[:1] in {b"{", b"["} and JOINT.search(head) is not None
 
 
 def is_frame_json(path: Path | str) -> bool:
     """Return whether a file holds the joints of one frame."""
-    listed = _read_content(json_members(path, lists=True), unwatched).n_frames
-    outermost = _read_content([json_content(path)], unwatched).n_frames
+    listed = _read_content(path, json_members(path, lists=True), unwatched).n_frames
+    outermost = _read_content(path, [json_content(path)], unwatched).n_frames
     return listed <= 1 and max(listed, outermost) == 1
 
 
@@ -81,10 +91,10 @@ def open_frames_json(
 
     A frame is an object with `keypoints`, `keypoints3d`, `joints`, `positions` or the like: a
     list of points, a list of numbers, or an object with a point for each name. It may list
-    people in `instances`, `people` or the like, or be a list of points itself. Named joints may
-    be missing in some frames. Joints without names are recognized by their bones
-    (`name_joints`). Axes and unit are judged from the body. A file of one frame stands for all
-    files of its take (`frame_files`).
+    people in `instances`, `people` or the like, or be a list of points itself. A file may also
+    be keyed by frame or by joint (`json_by_frame`). Named joints may be missing in some frames.
+    Joints without names are recognized by their bones (`name_joints`). Axes and unit are judged
+    from the body. A file of one frame stands for all files of its take (`frame_files`).
 
     Parameters
     ----------
@@ -102,9 +112,9 @@ def open_frames_json(
         Raised by `progress`.
     """
     check_scale(scale)
-    content = own = _read_content(json_members(path, lists=True), progress)
+    content = own = _read_content(path, json_members(path, lists=True), progress)
     if own.n_frames <= 1:
-        content = _read_content(json_frame_files(path), progress)
+        content = _read_content(path, json_frame_files(path), progress)
         if content.n_frames > 1:
             progress(0.8, Remark(describe_frame_files(len(content.frames))))
     if max(own.n_frames, content.n_frames) == 1:
@@ -123,14 +133,16 @@ def open_frames_json(
     return open_frames(path, frames, second, read)
 
 
-def _read_content(members: Iterable[JsonMember], progress: Progress) -> _Content:
+def _read_content(
+    path: Path | str, members: Iterable[JsonMember], progress: Progress
+) -> _Content:
     """Return the frames in the members of a file, or in the files of a take."""
     by_key: dict[str, list[BodiesFrame]] = {}
     columns: dict[str, dict[str, int]] = {}
     rate: float | None = None
     second: float | None = None
     names: list[str] = []
-    for member in members:
+    for member in json_by_frame(members, path):
         if member.key in RATE_KEYS and _is_number(member.value):
             rate = float(member.value)
         if member.key in LIST_OF_NAMES and isinstance(member.value, str):

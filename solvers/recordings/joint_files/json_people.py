@@ -24,6 +24,9 @@ PLACE_KEYS = ("position", "pos", "translation", "location", "transform", "matrix
 MIN_JOINTS = 8
 """Number of joints of a person. It guards JSON of something else."""
 
+MAX_ROUNDING = 1e-3
+"""Difference of the length of rounded unit quaternions from 1."""
+
 
 class JsonPerson(NamedTuple):
     """A person of a frame, and the joints."""
@@ -62,10 +65,41 @@ def _person(body: Mapping[str, Any], count: int) -> Iterator[JsonPerson]:
         names, joints = tuple(map(str, joints)), list(joints.values())
     elif isinstance(joints, list) and joints and all(isinstance(k, Mapping) for k in joints):
         names = _names_of(joints)
-    values = [_place(joint) for joint in joints] if names else joints
+    values = [place_of(joint) for joint in joints] if names else joints
     points = _points(values) if isinstance(values, list) else None
     if points is not None:
         yield JsonPerson(identity, names, points)
+    elif not key:
+        yield from _keyed_people(body, identity)
+
+
+def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
+    """Yield who has a place for each joint, by its name, without a key for all of them."""
+    nested = {key: value for key, value in body.items() if isinstance(value, Mapping)}
+    for name, joints in {identity: body, **nested}.items():
+        places = {str(key): place_of(value) for key, value in joints.items() if value}
+        for width in (3, 4):
+            found = {key: place for key, place in places.items() if _width(place) == width}
+            points = _points([*found.values()]) if len(found) >= MIN_JOINTS else None
+            if points is not None:
+                yield JsonPerson(name, tuple(found), points)
+                break
+
+
+def is_place(value: Any) -> bool:
+    """Return whether a value is x, y and z, perhaps with a fourth number, or null."""
+    return value is None or _width(place_of(value)) in {3, 4}
+
+
+def _width(place: Any) -> int:
+    """Return how many numbers a list has, nulls included; 0 for other values."""
+    is_row = isinstance(place, list) and any(map(_is_number, place))
+    is_whole = is_row and all(each is None or _is_number(each) for each in place)
+    return len(place) if is_whole else 0
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _names_of(joints: list[Mapping[str, Any]]) -> tuple[str, ...]:
@@ -77,7 +111,7 @@ def _names_of(joints: list[Mapping[str, Any]]) -> tuple[str, ...]:
     return ()
 
 
-def _place(joint: Any) -> Any:
+def place_of(joint: Any) -> Any:
     """Return x, y, z of an object or a matrix of 4 x 4; other values as they are."""
     if joint is None:
         return [None] * 3
@@ -117,4 +151,7 @@ def _points(values: list[Any]) -> Array | None:
         array = array.reshape(-1, (known or widths)[0]) if widths else array
     if array.ndim != 2 or array.shape[1] not in {3, 4} or len(array) < MIN_JOINTS:
         return None
-    return array if array.shape[1] == 3 else without_undetected(array)
+    if array.shape[1] == 3:
+        return array
+    is_rotation = np.abs(np.linalg.norm(array, axis=1) - 1.0).max() < MAX_ROUNDING
+    return None if is_rotation else without_undetected(array)

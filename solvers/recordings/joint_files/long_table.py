@@ -17,7 +17,6 @@ from ..containers import (
     decode_text,
     find_separator,
     shown,
-    split_cells,
     stream_cells,
 )
 from ..conventions import (
@@ -29,6 +28,7 @@ from ..conventions import (
 )
 from ..point_bodies import second_of_times
 from .point_table import TIMES, recording_of_points
+from .table_titles import titles_of_line
 
 FRAMES = ("frame", "frame_id", "frameid", "frame_index", "frame_number", "frame_num", "image")
 JOINTS = (
@@ -108,8 +108,8 @@ class _LongTable(NamedTuple):
 
 def is_long_table(head: bytes) -> bool:
     """Return whether the first line of a file names a frame, a joint and its coordinates."""
-    lines = head.lstrip().splitlines()
-    return len(lines) > 1 and _columns(_titles(lines[0])) is not None
+    lines = head.lstrip(b"\r\n").splitlines()
+    return len(lines) > 1 and _columns(titles_of_line(lines[0]).titles) is not None
 
 
 def open_long_table(
@@ -120,7 +120,7 @@ def open_long_table(
     Frames are in a column called `frame` or the like; without it, each time is one. `joint`,
     `landmark`, `marker` or the like is a name or a number; `person` or the like, that of one of
     several people, as is `id` where lines repeat a joint of a frame. Lines may be missing:
-    those points are not observed. Axes and unit are judged as in `read_point_table`.
+    those points are not observed. Axes and unit are judged as in `open_point_table`.
 
     Parameters
     ----------
@@ -170,8 +170,9 @@ def open_long_table(
 
 def _read_table(path: Path | str, progress: Progress) -> _LongTable:
     reader = LineReader(path)
+    reader.skip_blank_lines()
     first = reader.take(1)
-    titles = _titles(first[0]) if first else []
+    titles = titles_of_line(first[0]).titles if first else []
     columns = _columns(titles)
     if columns is None:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
@@ -268,11 +269,6 @@ def _frames(rows: Array, columns: _LongColumns) -> tuple[NDArray[np.intp], Array
     numbers = np.arange(len(times))
     is_known = np.isfinite(times)
     return frames, np.interp(numbers, numbers[is_known], times[is_known])
-
-
-def _titles(line: bytes) -> list[str]:
-    line = line.lstrip(b"#").strip()
-    return [decode_text(cell) for cell in split_cells(line, find_separator(line))]
 
 
 def _columns(titles: Sequence[str]) -> _LongColumns | None:

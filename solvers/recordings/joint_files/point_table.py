@@ -11,13 +11,18 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
 from ...progress import READING, Progress, Remark, unwatched, within
-from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
+from ..containers import LineReader, stream_cells
 from ..conventions import (
     DEFAULT_FRAME_RATE,
+    Bodies,
     ConstantRate,
+    MarkerSubject,
     check_scale,
     guess_unit_of_points,
     meters_from_unit_name,
+    observed_body,
+    recorded_seconds,
+    split_subjects,
     stand_markers,
 )
 from ..point_bodies import (
@@ -27,6 +32,7 @@ from ..point_bodies import (
     second_of_times,
     stand_body,
 )
+from .table_titles import MAX_TITLE_LINES, MIN_POINTS, table_titles
 
 COORDINATE = re.compile(
     r"(?P<name>.*?)([\s_.:\-]+(pos(ition)?|loc(ation)?|translat(e|ion)|tr?|world))?[\s_.:\-]*"
@@ -43,12 +49,11 @@ NO_POSITION = re.compile(
 TIMES = {
     "time": None, "times": None, "timestamp": None, "t": None, "seconds": 1.0, "time_s": 1.0,
     "timestamp_s": 1.0, "time (s)": 1.0, "time(s)": 1.0, "time [s]": 1.0, "sec": 1.0,
+    "time (seconds)": 1.0,
     "time_ms": 0.001, "timestamp_ms": 0.001, "time (ms)": 0.001, "milliseconds": 0.001,
 }  # fmt: skip
 """Seconds per unit of a time stamp, by the title of its column; None where that does not state
 it."""
-MIN_POINTS = 8
-"""Number of points of a table. It guards tables of something else, such as of one sensor."""
 
 
 class _Columns(NamedTuple):
@@ -66,23 +71,25 @@ class _Columns(NamedTuple):
 
 
 def is_point_table(head: bytes) -> bool:
-    """Return whether the first line of a file names the coordinates of points."""
-    lines = head.lstrip().splitlines()
+    """Return whether the first lines of a file name the coordinates of points."""
+    lines = head.lstrip(b"\r\n").splitlines()
     if len(lines) < 2:
         return False
-    columns = _columns(_titles(lines[0]))
+    columns = _columns(table_titles(lines).titles)
     return columns is not None and len(columns.names) >= MIN_POINTS
 
 
-def read_point_table(
+def open_point_table(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> JointRecording | Tracks:
-    """Read a table with a column for x, y and z of each point, a line for each frame.
+) -> Bodies[JointRecording | Tracks]:
+    """Open a table with a column for x, y and z of each point, a line for each frame.
 
     Columns are called `LeftHand_x`, `Hip_position_x`, `nose.X`, `Head X (mm)` or `x0`; others
-    are left out. Points that form a body, by their names or, if these are numbers, by their
-    bones (`name_joints`), are its joints. Their axes, and their unit if it is not stated, are
-    judged from the body. Without a column of times, 30 Hz are assumed.
+    are left out. Names may also stand above the axes, in a line of their own (`table_titles`).
+    Points that form a body, by their names or, if these are numbers, by their bones
+    (`name_joints`), are its joints. Their axes, and their unit if it is not stated, are judged
+    from the body. Without a column of times, 30 Hz are assumed. Points of several people are
+    called `Anna:Head_x`.
 
     Parameters
     ----------
@@ -101,12 +108,15 @@ def read_point_table(
     """
     check_scale(scale)
     reader = LineReader(path)
-    first = reader.take(1)
-    columns = _columns(_titles(first[0])) if first else None
-    if columns is None:
+    reader.skip_blank_lines()
+    first = reader.peek(MAX_TITLE_LINES)
+    header = table_titles(first) if first else None
+    columns = _columns(header.titles) if header else None
+    if header is None or columns is None:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
+    reader.take(header.n_lines)
     rows = stream_cells(
-        reader, find_separator(first[0]), columns.width, path, within(progress, 0.0, 0.8)
+        reader, header.separator, columns.width, path, within(progress, 0.0, 0.8)
     )
     points = rows[:, columns.positions.astype(int)]
     times = None if columns.time is None else rows[:, columns.time]
@@ -115,7 +125,36 @@ def read_point_table(
     else:
         times = times * (columns.second or second_of_times(times, progress))
     unit = columns.unit if scale is None else scale
-    return recording_of_points(path, columns.names, points, times, unit, progress)
+    people = _people(columns.names, points)
+    duration = len(points) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
+    listed = tuple(
+        observed_body(
+            each.name,
+            np.flatnonzero(np.isfinite(points[:, each.columns]).any(axis=(1, 2))),
+            len(points),
+            duration,
+        )
+        for each in people
+    )
+
+    def read(index: int, progress: Progress) -> JointRecording | Tracks:
+        if not people:
+            return recording_of_points(path, columns.names, points, times, unit, progress)
+        person = people[index]
+        mine = points[:, person.columns]
+        return recording_of_points(path, person.names, mine, times, unit, progress)
+
+    return Bodies(str(path), listed, read)
+
+
+def _people(names: tuple[str, ...], points: Array) -> list[MarkerSubject]:
+    """Return the people whose names begin those of the points; empty for a single one."""
+    people = [
+        each
+        for each in split_subjects(names)
+        if body_of_named_points(each.names, points[:, each.columns]) is not None
+    ]
+    return people if len(people) > 1 else []
 
 
 def recording_of_points(
@@ -163,11 +202,6 @@ def recording_of_points(
     unit = guess_unit_of_points(points) if unit is None else unit
     progress(1.0, READING)
     return stand_markers(names, points * unit, rate, unit, "")
-
-
-def _titles(line: bytes) -> list[str]:
-    line = line.lstrip(b"#").strip()
-    return [decode_text(cell) for cell in split_cells(line, find_separator(line))]
 
 
 def _columns(titles: Sequence[str]) -> _Columns | None:

@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from solvers.errors import InvalidFileError
 from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics, roles_by_name
-from solvers.recordings import read_recording
+from solvers.recordings import list_bodies, read_recording
 from solvers.samples import walking_gait
 
 F = 30
@@ -46,7 +47,42 @@ def skeletons(names, frame):
     return {"skeletons": [{"id": 0, "joints": joints}]}
 
 
+def paths(names, frames):
+    """Return the places of each joint in all frames."""
+    return {name: [frame[name].tolist() for frame in frames] for name in names}
+
+
+def by_name(frame, place=coordinates):
+    return {name: place(point) for name, point in frame.items()}
+
+
 LAYOUTS = {
+    "by joint": lambda names, frames: {"origin": {"x": 0, "y": 0, "z": 0}, "units": None}
+    | paths(names, frames),
+    "by joint, below a key": lambda names, frames: {"fps": 30, "joints": paths(names, frames)},
+    "by joint and axis": lambda names, frames: {
+        name: {axis: [point[k] for point in path] for k, axis in enumerate("xyz")}
+        for name, path in paths(names, frames).items()
+    },
+    "by number, in the order of texts": lambda names, frames: dict(sorted(
+        (str(k), by_name(frame, np.ndarray.tolist)) for k, frame in enumerate(frames)
+    )),
+    "by number, below a key": lambda names, frames: {
+        "unit": "m", "frames": {f"frame_{k}": by_name(frame) for k, frame in enumerate(frames)},
+    },
+    "by time": lambda names, frames: {
+        f"{k / 30:.4f}": by_name(frame) for k, frame in enumerate(frames)
+    },
+    "list of names": lambda names, frames: [by_name(frame) for frame in frames],
+    "list of names and more": lambda names, frames: [
+        {"frame": k, "time": k / 30, "camera": [0, 0, 0, 1]}
+        | {name: {"position": point.tolist(), "rotation": [0, 0, 0, 1]}
+           for name, point in frame.items()}
+        for k, frame in enumerate(frames)
+    ],
+    "names below a key": lambda names, frames: [
+        {"frame": k, "data": by_name(frame)} for k, frame in enumerate(frames)
+    ],
     "skeletons": lambda names, frames: [skeletons(names, frame) for frame in frames],
     "matrices by columns": lambda names, frames: {
         "frames": [
@@ -102,6 +138,67 @@ def test_named_joints_are_read(tmp_path, walk, layout, names):
         expected = (walk[role] - walk["rightUpperLeg"])[..., [0, 2, 1]] * (1.0, -1.0, 1.0)
         found = joints[role] - joints["rightUpperLeg"]
         assert np.allclose(found, expected, atol=1e-4), role
+
+
+def write(path, content):
+    path.write_text(json.dumps(content))
+    return path
+
+
+def test_frames_by_number_are_in_the_order_of_numbers_with_gaps(tmp_path, walk):
+    frames = [{name: walk[role][k].tolist() for name, role in LANDMARKS.items()}
+              for k in range(F)]  # fmt: skip
+    numbered = {str(k): frame for k, frame in enumerate(frames) if k not in {4, 5}}
+    path = write(tmp_path / "take.json", dict(sorted(numbered.items())))
+
+    recording = read_recording(path)
+
+    missing = np.isnan(recording.tracks.positions).all(axis=(1, 2))
+    assert np.flatnonzero(missing).tolist() == [4, 5]
+    rise = np.diff(recording.tracks.positions[:, recording.names.index("left_wrist"), 2])
+    assert np.nanmax(np.abs(rise - np.diff(walk["leftHand"][:, 1]))) < 1e-6
+
+
+@pytest.mark.parametrize("by_frame", [True, False])
+def test_numbers_are_those_of_frames_or_of_joints(tmp_path, walk, by_frame):
+    limbs = {side: [walk[side + role] for role in PARTS.values()] for side in SIDES}
+    points = [walk["head"]] * 5 + [limbs[side][k] for k in range(6) for side in SIDES]
+    positions = np.stack(points, axis=0 if not by_frame else 1)
+    content = {str(k): each.tolist() for k, each in enumerate(positions)}
+
+    recording = read_recording(write(tmp_path / "take.json", content))
+
+    assert recording.tracks.n_frames == F
+    assert "left_elbow" in recording.names
+
+
+def test_people_by_name_are_several(tmp_path, walk):
+    frames = [
+        {who: {name: walk[role][k].tolist() for name, role in LANDMARKS.items()}
+         for who in ("anna", "ben")}
+        for k in range(F)
+    ]  # fmt: skip
+
+    bodies = list_bodies(write(tmp_path / "take.json", frames))
+
+    assert [body.name for body in bodies] == ["anna", "ben"]
+
+
+def test_joints_with_different_numbers_of_frames_are_refused(tmp_path, walk):
+    content = {name: walk[role].tolist() for name, role in LANDMARKS.items()}
+    content["left_knee"].pop()
+
+    with pytest.raises(InvalidFileError, match="29 frames of left_knee, but 30 of"):
+        read_recording(write(tmp_path / "take.json", content))
+
+
+def test_quaternions_by_joint_are_no_positions(tmp_path, rng):
+    turns = rng.normal(size=(F, len(LANDMARKS), 4))
+    turns /= np.linalg.norm(turns, axis=2, keepdims=True)
+    content = dict(zip(LANDMARKS, np.swapaxes(turns, 0, 1).tolist(), strict=True))
+
+    with pytest.raises(InvalidFileError, match="no body"):
+        read_recording(write(tmp_path / "take.json", content))
 
 
 def test_unknown_names_apart_from_the_positions_are_ignored(tmp_path, walk):

@@ -1,0 +1,139 @@
+"""Read the titles of the columns of a table, which may stand in several lines."""
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from ..containers import decode_text, find_separator, split_cells
+from ..conventions import meters_from_unit_name
+
+MAX_TITLE_LINES = 10
+"""Lines above the frames. It bounds the search; tables of Motive have seven."""
+MIN_POINTS = 8
+"""Number of points of a table. It guards tables of something else, such as of one sensor."""
+AXIS = re.compile(r"(?P<axis>[xyz])\d*(\s*[(\[](?P<unit>\w+)[)\]])?", re.IGNORECASE)
+KIND = re.compile(r"(?i)pos(ition)?s?|loc(ation)?|translation|rot(ation)?|quat\w*|orientation")
+"""What the coordinates below are, in tables that also hold rotations."""
+
+
+class TableTitles(NamedTuple):
+    """One title for each column of a table."""
+
+    titles: list[str]
+    n_lines: int
+    """Number of lines above the frames."""
+    separator: bytes
+
+
+def table_titles(lines: Sequence[bytes]) -> TableTitles:
+    """Return the titles of the first line, or those of lines of names and axes joined.
+
+    In tables with the names above x, y and z, a name may stand in any of its columns. A title
+    is then `Hips_x`, or `Hips_position_x (mm)` if kinds and units have lines of their own;
+    where a line above has several people, it begins with `Anna:`.
+
+    Parameters
+    ----------
+    lines : sequence of bytes
+        The first lines of the file, at least one.
+    """
+    for number, line in enumerate(lines[1:MAX_TITLE_LINES], start=1):
+        separator = find_separator(line)
+        axes = [AXIS.fullmatch(cell) for cell in _cells(line, separator)]
+        if sum(match is not None for match in axes) >= 3 * MIN_POINTS:
+            rows = [_cells(each, separator) for each in lines[: number + 2]]
+            joined = _joined(rows[:number], axes, rows[number])
+            if joined is None:
+                break
+            units = [_padded(row, len(axes)) for row in rows[number + 1 :]]
+            if units and _are_units(units[0], axes):
+                joined = [
+                    f"{title} ({unit})" if match and unit else title
+                    for title, match, unit in zip(joined, axes, units[0], strict=True)
+                ]
+                number += 1
+            return TableTitles(joined, number + 1, separator)
+    return titles_of_line(lines[0])
+
+
+def titles_of_line(line: bytes) -> TableTitles:
+    """Return the titles of one line; the first one may be blank, as that of an index."""
+    separator = find_separator(line)
+    return TableTitles(_cells(line.lstrip(b"# "), separator), 1, separator)
+
+
+def _cells(line: bytes, separator: bytes) -> list[str]:
+    return [decode_text(cell) for cell in split_cells(line, separator)]
+
+
+def _padded(row: list[str], width: int) -> list[str]:
+    return (row + [""] * width)[:width]
+
+
+def _joined(
+    rows: list[list[str]], axes: list[re.Match[str] | None], titles: list[str]
+) -> list[str] | None:
+    """Return a title for each column; None if no line has enough names."""
+    names: list[str] = []
+    people: list[str] = []
+    kinds = [""] * len(axes)
+    for row in rows:
+        spread = _spread(_padded(row, len(axes)), axes)
+        found = {name for name, match in zip(spread, axes, strict=True) if match}
+        if all(KIND.fullmatch(name) for name in found):
+            kinds = spread
+        elif not names and sum(_is_name(name) for name in found) >= MIN_POINTS:
+            names = spread
+        elif not names and len(found) > 1:
+            people = spread
+    if not names:
+        return None
+    joined = []
+    for column, match in enumerate(axes):
+        if match is None:
+            above = [_padded(row, len(axes))[column] for row in rows]
+            joined.append(titles[column] or next((each for each in above if each), ""))
+            continue
+        parts = [names[column], kinds[column], match["axis"]]
+        title = "_".join(part for part in parts if part)
+        person = f"{people[column]}:" if people and people[column] else ""
+        joined.append(person + title + (f" ({match['unit']})" if match["unit"] else ""))
+    return joined
+
+
+def _is_name(name: str) -> bool:
+    return any(letter.isalpha() for letter in name)
+
+
+def _spread(row: list[str], axes: list[re.Match[str] | None]) -> list[str]:
+    """Return the name of each column that is an axis, also where it stands over one of three.
+
+    Columns of one point are next to each other, with each axis once; the columns of a second
+    quantity, such as its rotation, have the name of the first.
+    """
+    spread = [""] * len(row)
+    group: list[int] = []
+    name = before = ""
+
+    def close() -> None:
+        for column in group:
+            spread[column] = name or before
+
+    seen: set[str] = set()
+    for column, match in enumerate(axes):
+        if match is None:
+            continue
+        cell, axis = row[column], match["axis"].lower()
+        if axis in seen or (name and cell and cell != name):
+            close()
+            group, seen, before, name = [], set(), name or before, ""
+        group.append(column)
+        seen.add(axis)
+        name = name or cell
+    close()
+    return spread
+
+
+def _are_units(row: list[str], axes: list[re.Match[str] | None]) -> bool:
+    units = [cell for cell, match in zip(row, axes, strict=True) if match and cell]
+    return bool(units) and all(meters_from_unit_name(unit) is not None for unit in units)
