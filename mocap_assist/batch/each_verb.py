@@ -170,7 +170,10 @@ def _blends_in(folder: Path) -> list[Path]:
     """Return the .blend files in a folder and below, and the folders that cannot be opened."""
     found = [file for file in files_below(folder) if file.suffix == BLEND or is_folder(file)]
     if not found:
-        raise InvalidFileError(f"There is no .blend file in {folder}.")
+        raise InvalidFileError(
+            f"There is no .blend file in {folder}. Make them of recordings with each FOLDER"
+            " --output-folder DIR -- import."
+        )
     return found
 
 

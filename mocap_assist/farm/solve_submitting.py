@@ -12,13 +12,16 @@ from ...solvers.command_line.farm import (
     check_job,
     texts_of_settings,
 )
-from ...solvers.command_line.files import MOTIONS, find_recordings, unique_targets
+from ...solvers.command_line.files import (
+    MOTIONS,
+    find_recordings,
+    scene_files_in,
+    unique_targets,
+)
 from ...solvers.command_line.fix_verb import add_fix_options, list_takes
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import real_path, reason_of, write_atomically
+from ...solvers.files import reason_of, write_atomically
 from ...solvers.progress import Progress
-from ...solvers.recordings import is_scene_file
-from ...solvers.recordings.containers import files_below
 from ...solvers.workflows import FixSettings
 from ..track.pose_previews import Show, no_preview
 
@@ -71,7 +74,7 @@ def submit_takes(problem: Submission, progress: Progress, show: Show = no_previe
     """
     progress(0.0, "Listing")
     found = find_recordings([problem.takes], problem.output_folder, list_takes)
-    n_left_out = _count_left_out(problem)
+    n_left_out = len(scene_files_in(problem.takes, problem.output_folder))
     targets = unique_targets([name for _, name in found], [MOTIONS] * len(found))
     lines = [
         json.dumps({"input": str(path), "output": target.as_posix()}) + "\n"
@@ -93,15 +96,6 @@ def submit_takes(problem: Submission, progress: Progress, show: Show = no_previe
     progress(0.7, SUBMITTING)
     show(SUBMITTING)
     return Submitted(checked.submit(), len(found), n_left_out)
-
-
-def _count_left_out(problem: Submission) -> int:
-    """Return the number of files that only Blender reads, except those among the results."""
-    excluded = real_path(problem.output_folder)
-    return sum(
-        is_scene_file(path) and excluded not in real_path(path).parents
-        for path in files_below(problem.takes)
-    )
 
 
 def _path_of_list(problem: Submission, text: str) -> Path:

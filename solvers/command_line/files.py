@@ -15,6 +15,7 @@ from ..recordings import (
     FloorPlacement,
     ReadingSettings,
     detect_format,
+    is_scene_file,
     open_bodies,
     read_as,
     recordings_in,
@@ -22,7 +23,7 @@ from ..recordings import (
     write_c3d,
     write_trc,
 )
-from ..recordings.containers import is_folder, shown
+from ..recordings.containers import files_below, is_folder, shown
 from ..recordings.conventions import conventions_of
 from .options import arguments_from, settings_from_arguments
 from .verb_description import Outcome
@@ -144,11 +145,33 @@ def find_recordings(
         if excluded is not None:
             inside = [each for each in inside if real_path(excluded) not in each[1].parents]
         if not inside:
-            raise InvalidFileError(f"There is no recording in the folder {path}.")
+            raise InvalidFileError(_no_recording(path, excluded))
         is_single = len(paths) == 1 and inside != [(path, root)]
         base = root if is_single else root.parent
         found += [(file, path.relative_to(base)) for file, path in inside]
     return found
+
+
+def scene_files_in(folder: Path, excluded: Path | None = None) -> list[Path]:
+    """Return the files in a folder and below, but for an excluded one, that need Blender."""
+    outside = None if excluded is None else real_path(excluded)
+    return [
+        path
+        for path in files_below(folder)
+        if is_scene_file(path) and outside not in real_path(path).parents
+    ]
+
+
+def _no_recording(folder: Path, excluded: Path | None) -> str:
+    """Return that a folder has no recordings, and the way if it has files that need Blender."""
+    needing = scene_files_in(folder, excluded)
+    if not needing:
+        return f"There is no recording in the folder {folder}."
+    return (
+        f"There is no recording in the folder {folder}, but files that need Blender, such as"
+        f" {needing[0].name}. Press Fix Folder there, or run blender --background --command"
+        " mocap_assist each FOLDER --output-folder DIR -- import."
+    )
 
 
 def read_all(

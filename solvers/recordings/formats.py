@@ -105,7 +105,7 @@ def _is_trc(head: bytes) -> bool:
 
 def _is_wide_table(head: bytes) -> bool:
     """Return whether a head is text with long lines of cells; JSON has no such lines."""
-    is_text = len(head) >= HEAD - len(BYTE_ORDER_MARK) and b"\0" not in head
+    is_text = len(head) >= HEAD_BYTES - len(BYTE_ORDER_MARK) and b"\0" not in head
     is_json = head.lstrip()[:1] in {b"{", b"["}
     return is_text and not is_json and len(head.splitlines()) <= N_TITLE_LINES
 

@@ -93,7 +93,10 @@ def test_window_goes_on_until_the_manager_answers(press, manager, folder, window
     status = wait(button, window)
 
     page = f"{manager.address}/app/jobs/{JOB_ID}"
-    message = f"Submitted 3 takes of shoot to {page}. 2 files need Blender and were left out."
+    message = (
+        f"Submitted 3 takes of shoot to {page}. 2 files need Blender and were left out; press"
+        " Fix Folder for these."
+    )
     assert (status, window.reports) == ({"FINISHED"}, [({"INFO"}, message)])
 
 
@@ -105,6 +108,17 @@ def test_failure_of_the_manager_is_reported(blank, manager, folder):
         blank.ops.mocap_assist.submit_folder(directory=str(folder))
 
     assert not folder.with_name("shoot_fixed").exists()
+
+
+def test_folder_of_files_that_need_blender_names_the_way(blank, manager, folder):
+    for path in [*folder.rglob("*.bvh"), folder / "a.asf"]:
+        path.with_suffix(".fbx").write_bytes(b"Kaydara FBX Binary")
+        path.unlink()
+
+    with pytest.raises(RuntimeError, match=r"such as a\.fbx\. Press Fix Folder there, or run"):
+        blank.ops.mocap_assist.submit_folder(directory=str(folder))
+
+    assert not manager.requests
 
 
 def test_cancelled_job_that_was_sent_is_not_taken_back(press, manager, window):

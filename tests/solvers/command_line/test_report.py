@@ -116,6 +116,16 @@ def test_a_folder_without_recordings_is_refused(call, tmp_path):
     )  # fmt: skip
 
 
+def test_a_folder_of_files_that_need_blender_names_the_way(call, tmp_path):
+    (tmp_path / "shots").mkdir()
+    (tmp_path / "shots" / "walk.fbx").write_bytes(b"Kaydara FBX Binary")
+
+    status, _, error_output = call("quality", tmp_path / "shots")
+
+    assert status == 2
+    assert "such as walk.fbx. Press Fix Folder there, or run blender" in error_output
+
+
 def test_a_report_needs_a_folder(call, leg_file, tmp_path):
     status, _, error_output = call("convert", leg_file, tmp_path / "out.bvh", "--report")
 
