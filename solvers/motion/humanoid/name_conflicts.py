@@ -121,6 +121,10 @@ def _limb_is_contradicted(
         return False
     by_structure = [structure.joints[role] for role in roles]
     by_name = [joints.get(role, structure.joints[role]) for role in roles]
+    if _lacks_its_end(by_name, joints, roles[2]) and _is_chain(skeleton, by_name[:2]):
+        return not _upper_misfit(skeleton, by_name, limb, structure.height) < _upper_misfit(
+            skeleton, by_structure, limb, structure.height
+        )
     # Without an ankle, the structure takes the toes for it; above, a lack is a conflict.
     lacking = {structure.joints[role] for role in roles[:2] if role not in joints}
     if not lacking.isdisjoint(joints.values()) or not _is_chain(skeleton, by_name):
@@ -132,6 +136,17 @@ def _limb_is_contradicted(
         for names in (by_name, by_structure)
     )
     return named > structural + MIN_MISFIT_MARGIN
+
+
+def _lacks_its_end(by_name: Sequence[str], joints: Mapping[str, str], end: str) -> bool:
+    """Whether names have no hand or foot, and the structure takes the joint above for it."""
+    return end not in joints and by_name[1] == by_name[2]
+
+
+def _upper_misfit(skeleton: Skeleton, names: Sequence[str], limb: str, height: float) -> float:
+    """Return the absolute log ratio of the upper bone of a limb to that of a person."""
+    fraction = _bone_lengths(skeleton, names[:2])[0] / height
+    return float(abs(np.log(max(fraction, MIN_LENGTH_FRACTION) / LENGTHS[limb][0])))
 
 
 def _trunk_is_contradicted(

@@ -140,7 +140,10 @@ def _weigh(
     in_rest: Mapping[UpAxisName, float],
     expected: Mapping[UpAxisName, float] | None,
 ) -> UpAxis:
-    """Weigh the evidence; the rest pose gets the axis of the motion."""
+    """Weigh the evidence; the rest pose gets the axis of the motion.
+
+    A body that stands along an axis that the format does not have is no clear case.
+    """
     standing = measure_standing(positions, body)
     floor, travel = measure_floor(positions, body), measure_travel(positions, body)
     totals = {
@@ -155,8 +158,11 @@ def _weigh(
     lead = (totals[best] - totals[second]) / CLEAR_LEAD
     on_floor = floor[best] - floor[second] >= CLEAR_FLOOR_LEAD
     stands = min(standing[best], floor[best]) if on_floor else 0.0
-    is_clear = lead >= 1.0 or stands >= CLEAR_STANDING
-    confidence = 1.0 if is_clear else float(np.clip(max(lead, stands), 0.0, 0.99))
+    elsewhere = max((standing[axis] for axis in AXES if axis not in totals), default=0.0)
+    is_elsewhere = elsewhere >= CLEAR_STANDING and elsewhere > standing[best]
+    is_clear = (lead >= 1.0 or stands >= CLEAR_STANDING) and not is_elsewhere
+    sure = 0.0 if is_elsewhere else max(lead, stands)
+    confidence = 1.0 if is_clear else float(np.clip(sure, 0.0, 0.99))
     return UpAxis(best, best, is_clear, 0.5 + 0.5 * confidence)
 
 

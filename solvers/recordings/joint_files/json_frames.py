@@ -74,7 +74,7 @@ def _regrouped(member: JsonMember, path: Path | str) -> Iterator[JsonMember]:
     is_numbered = len(values) > 1 and all(FRAME_KEY.fullmatch(key) for key in values)
     if is_numbered and not (has_layout(len(paths)) and not has_layout(lengths[-1])):
         yield from _by_number(member.key, values, member.done)
-    elif len(paths) >= MIN_JOINTS and lengths[-1] > 1:
+    elif len(paths) >= MIN_JOINTS:
         if len(lengths) > 1:
             short, full = (next(k for k, v in paths.items() if len(v) == n)
                            for n in (lengths[0], lengths[-1]))  # fmt: skip

@@ -28,6 +28,7 @@ from ..conventions import (
 from ..point_bodies import (
     body_of_named_points,
     body_of_points,
+    missing_limbs,
     read_body,
     second_of_times,
     stand_body,
@@ -194,6 +195,14 @@ def recording_of_points(
     if body is not None:
         return stand_body(
             path, body.names, body.positions, times=times, scale=unit, progress=progress
+        )
+    if lacking := missing_limbs(names):
+        progress(
+            0.8,
+            Remark(
+                f"The points lack {', '.join(lacking)} of a body and are imported as markers;"
+                " export these joints too"
+            ),
         )
     rate = DEFAULT_FRAME_RATE
     if times is not None:

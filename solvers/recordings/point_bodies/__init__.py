@@ -10,7 +10,7 @@ from .mediapipe_landmarks import (
     seconds,
     with_computed_joints,
 )
-from .named_points import body_of_named_points
+from .named_points import body_of_named_points, missing_limbs
 from .point_arrays import (
     body_of_points,
     points_of_array,
@@ -30,6 +30,7 @@ __all__ = [
     "body_of_points",
     "has_layout",
     "is_world",
+    "missing_limbs",
     "points_of_array",
     "read_body",
     "recording_from_landmarks",

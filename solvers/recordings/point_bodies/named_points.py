@@ -45,6 +45,9 @@ NEEDED_ROLES = frozenset(
     for part in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 )
 """Roles that a body must have."""
+MAX_MISSING = len(NEEDED_ROLES) // 2
+"""Limbs that may lack in points whose names are those of a body. By definition the half: an
+upper or a lower body is named like one."""
 
 
 class NamedBody(NamedTuple):
@@ -87,6 +90,20 @@ def body_of_named_points(names: Sequence[str], points: Array) -> NamedBody | Non
             points[:, keypoints["hips_center"]] if "hips_center" in keypoints else middle
         )
     return NamedBody(tuple(found), np.stack(list(found.values()), axis=1))
+
+
+def missing_limbs(names: Sequence[str]) -> list[str]:
+    """Return the joints that named points lack of a body; empty if they are none at all.
+
+    Points are those of a body if they have most of its limbs.
+    """
+    keypoints = [*map(_keypoint, names)]
+    by_kind = (
+        [each for each in LIMBS if each not in keypoints],
+        [NAMES_OF_ROLES[role] for role in NEEDED_ROLES - roles_by_name(names).keys()],
+    )
+    fewest = min(by_kind, key=len)
+    return sorted(fewest) if len(fewest) <= MAX_MISSING else []
 
 
 def _keypoint(name: str) -> str:

@@ -62,6 +62,22 @@ def test_right_names_of_held_out_rigs_are_believed():
     assert total["false_marks"] <= MAX_FALSE_MARKS_HELD_OUT * total["roles"]
 
 
+def test_arms_without_hands_keep_the_names_of_their_bones():
+    """As HDM05 without wrists: a long collarbone, and the structure takes it for the arm."""
+    stretched = {"clavicle": 0.055, "humerus": 0.1, "radius": 0.1}
+    moved = []
+    for joint in joints_of("Acclaim"):
+        if any(part in joint.name for part in ("wrist", "hand", "finger", "thumb")):
+            continue
+        sign = 1.0 if joint.name.startswith("l") else -1.0
+        shift = next((x for part, x in stretched.items() if part in joint.name), 0.0)
+        moved.append(joint._replace(position=joint.position + (sign * shift, 0.0, 0.0)))
+
+    humanoid = find_humanoid_map(skeleton_from(moved))
+
+    assert wrong_roles(moved, humanoid.joints) == {}
+
+
 def test_map_decided_by_lengths_is_reported():
     joints = SHIFTS["pelvis called thigh"](joints_of("SMPL"))
     skeleton = skeleton_from(joints)
