@@ -2,6 +2,7 @@
 
 from collections import Counter
 
+import numpy as np
 import pytest
 from exports.shifted_names import SHIFTS, reproportioned, wrong_roles
 from rigs import FAMILIES, HELD_OUT, joints_of, skeleton_from
@@ -71,7 +72,9 @@ def test_arms_without_hands_keep_the_names_of_their_bones():
             continue
         sign = 1.0 if joint.name.startswith("l") else -1.0
         shift = next((x for part, x in stretched.items() if part in joint.name), 0.0)
-        moved.append(joint._replace(position=joint.position + (sign * shift, 0.0, 0.0)))
+        moved.append(
+            joint._replace(position=joint.position + np.array((sign * shift, 0.0, 0.0)))
+        )
 
     humanoid = find_humanoid_map(skeleton_from(moved))
 
