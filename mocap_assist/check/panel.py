@@ -150,10 +150,10 @@ def _draw_thresholds(layout: bpy.types.UILayout, check: bpy.types.PropertyGroup)
     header.label(text="Thresholds")
     if body is None:
         return
-    body.use_property_split = True
-    body.use_property_decorate = False
+    column = body.column(align=True)
+    column.use_property_split = False  # names of a default sidebar have more room in the fields
     for name in type(check).setting_names:
-        body.prop(check, name)
+        column.prop(check, name)
 
 
 def _jump(layout: bpy.types.UILayout, index: int, text: str, icon: str) -> None:

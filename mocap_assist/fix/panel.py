@@ -67,12 +67,12 @@ class FixPanel(PanelMixin):
         button = layout.row()
         button.scale_y = 2.0
         button.operator(FIX, icon="SHADERFX")
-        row = layout.row(align=True)
+        several = layout.column(align=True)
         if len(selected_takes(context)) > 1:
-            row.operator(FIX_TAKES)
-        row.operator(FIX_FOLDER, text="Fix Folder...", icon="FILE_FOLDER")
+            several.operator(FIX_TAKES)
+        several.operator(FIX_FOLDER, text="Fix Folder...", icon="FILE_FOLDER")
         if preferred("flamenco_manager"):
-            row.operator(SUBMIT_FOLDER, text="Submit Folder...", icon="NETWORK_DRIVE")
+            several.operator(SUBMIT_FOLDER, text="Submit Folder...", icon="NETWORK_DRIVE")
         if reason:
             draw_sentence(layout, context, reason, icon="INFO")
         elif card := shown_card(context):

@@ -13,6 +13,8 @@ LETTER_WIDTH_PX = 6.2
 """Mean width of a letter of the interface, in pixels at scale 1."""
 BORDER_WIDTH_PX = 50
 """Width of both borders of a panel, in pixels at scale 1."""
+ICON_WIDTH_PX = 20
+"""Width of the icon left of a sentence, in pixels at scale 1: Blender's unit of a widget."""
 MIN_WIDE_SIDEBAR_PX = 340
 """Pixels from which a sidebar has space for two columns; Blender's default one is narrower."""
 MIN_LINE_LETTERS = 24
@@ -34,7 +36,7 @@ def draw_sentence(
 
 def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = "NONE") -> None:
     """Draw a sentence, wrapped to a width in pixels at scale 1."""
-    lines = column_lines(translated(text), width)
+    lines = column_lines(translated(text), width - (ICON_WIDTH_PX if icon != "NONE" else 0))
     column = layout.column(align=True)
     column.scale_y = 0.8
     for index, line in enumerate(lines):

@@ -72,4 +72,4 @@ def steps():
     bgui.shot("5-changed.png")
 
 
-bgui.run(steps, timeout=300)
+bgui.run(steps, timeout=1500)

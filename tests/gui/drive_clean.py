@@ -14,12 +14,12 @@ from urllib.parse import unquote, urlparse
 import bgui
 import bpy
 from driver_scene import (
-    PACKAGE,
     WHEEL_DOWN,
     empty_scene,
     import_noisy_walk,
     look_at_figure,
     lose_arm,
+    open_preferences,
     scroll,
     settle,
 )
@@ -261,18 +261,6 @@ def wide_sidebar_with_examples():
     yield from bgui.dismiss()
 
 
-def the_preferences():
-    bpy.ops.screen.userpref_show("INVOKE_DEFAULT")
-    yield 1.0
-    window = bpy.context.window_manager.windows[-1]
-    bpy.context.preferences.active_section = "ADDONS"
-    bpy.context.window_manager.addon_search = "mocap"
-    with bpy.context.temp_override(window=window):
-        bpy.ops.preferences.addon_expand(module=PACKAGE)
-    yield 1.5
-    bgui.shot("10-preferences.png")
-
-
 def steps():
     armature = set_the_stage()
     look_at_figure()
@@ -292,7 +280,8 @@ def steps():
     yield from bgui.open_sidebar("Mocap")
     yield from wide_sidebar_with_examples()
     yield from delta_layer(armature)
-    yield from the_preferences()
+    yield from open_preferences()
+    bgui.shot("10-preferences.png")
 
 
-bgui.run(steps, timeout=900)
+bgui.run(steps, timeout=1500)

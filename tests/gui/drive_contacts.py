@@ -71,4 +71,4 @@ def steps():
         bpy.data.objects.remove(source)
 
 
-bgui.run(steps, timeout=600)
+bgui.run(steps, timeout=1500)

@@ -73,4 +73,4 @@ def steps():
     assert [each.name for each in bpy.data.objects] == ["walk"]
 
 
-bgui.run(steps, timeout=300)
+bgui.run(steps, timeout=1500)

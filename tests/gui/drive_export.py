@@ -106,4 +106,4 @@ def steps():
     yield from look_at_the_bones(hero)
 
 
-bgui.run(steps, timeout=400)
+bgui.run(steps, timeout=1500)

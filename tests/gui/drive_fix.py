@@ -185,4 +185,4 @@ def steps():
     yield from other_languages()
 
 
-bgui.run(steps, timeout=600)
+bgui.run(steps, timeout=1500)

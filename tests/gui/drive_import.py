@@ -156,4 +156,4 @@ def steps():
     yield from browse()
 
 
-bgui.run(steps, timeout=300)
+bgui.run(steps, timeout=1500)

@@ -83,4 +83,4 @@ def steps():
         yield from bring(name)
 
 
-bgui.run(steps, timeout=300)
+bgui.run(steps, timeout=1500)

@@ -11,8 +11,8 @@ import bpy
 from driver_scene import PANELS, empty_scene, settle, until_done
 
 AWAY = (500, 500)
-LANGUAGES = ("ja_JP", "de_DE")
-"""Wide characters, and long words."""
+LANGUAGES = ("en_US", "de_DE", "fr_FR", "es", "zh_HANS", "ja_JP")
+"""All that the extension speaks."""
 PARTS = ("row", "column", "split", "box", "grid_flow")
 
 
@@ -68,7 +68,7 @@ def unfold(kinds, is_shown):
 def steps():
     view = bpy.context.preferences.view
     try:
-        view.language = LANGUAGES[0]
+        view.language = LANGUAGES[-1]
     except TypeError:
         print("languages: skipped, since this Blender has English alone.")
         return
@@ -101,4 +101,4 @@ def steps():
     view.language = "en_US"
 
 
-bgui.run(steps, timeout=900)
+bgui.run(steps, timeout=1500)

@@ -184,4 +184,4 @@ def steps():
     yield from use(armature)
 
 
-bgui.run(steps, timeout=500)
+bgui.run(steps, timeout=1500)

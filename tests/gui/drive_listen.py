@@ -8,20 +8,18 @@ frames go over a real socket, each at its time.
 
 import socket
 import time
-from importlib import import_module
+from dataclasses import replace
 
 import bgui
 import bpy
-from driver_scene import empty_scene, settle, unfold_alone
+import numpy as np
+from driver_scene import empty_scene, load, ours, settle, unfold_alone
 
 SENDER = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+ASIDE = np.array((2.0, 0.0, 0.0))
+"""From one person to the other, in meters."""
 MAX_REPEATS = 6
 """Number of performances in which the solver starts, on a busy machine too."""
-PACKAGE = "bl_ext.user_default.mocap_assist"
-
-
-def load(name):
-    return import_module(f"{PACKAGE}.{name}")
 
 
 def perform(*gestures):
@@ -64,10 +62,8 @@ def steps():
     yield from perform("zoom in", "turn")
     assert view.view_distance < 4.0
     bgui.shot("4-zoomed-and-turned.png")
-    yield from perform("clap", "wave left", "clap", "hand up")
-    commands = load("mocap_assist.live.commands")
-    assert commands.last_performance().n_frames > 30
-    bgui.shot("5-captured.png")
+    yield from follow_the_second_person(listening)
+    yield from capture()
     bgui.move(*middle_of_view())
     yield from bgui.key("Escape")
     yield 0.5
@@ -75,6 +71,47 @@ def steps():
     yield from record_live()
     yield from record_bones()
     bgui.shot()
+
+
+def capture():
+    """What is performed between two claps is kept for the search."""
+    yield from perform("clap", "wave left", "clap", "hand up")
+    assert load("mocap_assist.live.commands").last_performance().n_frames > 30
+    bgui.shot("5-captured.png")
+
+
+def follow_the_second_person(listening):
+    """Two people in one stream: the panel shows which one is followed."""
+    live = bpy.context.scene.mocap_assist.live
+    yield from press_listen()
+    assert listening.current() is None
+    live.live_person = 2
+    yield from settle(pointer=middle_of_view())
+    bgui.shot("4b-person.png")
+    yield from press_listen()
+    streams, samples = load("solvers.recordings.streams"), load("solvers.samples")
+    made = samples.perform_gestures(("hand up",), samples.PerformanceSettings()).recording()
+    start = time.monotonic()
+    for frame in streams.frames_from_recording(made, body=1):
+        while time.monotonic() - start < frame.time:
+            yield 0.01
+        other = replace(frame, body=2, positions=frame.positions + ASIDE)
+        for each in (frame, other):
+            SENDER.sendto(streams.encode_frame(each), ("127.0.0.1", streams.PORT))
+    yield 0.2
+    state = listening.current().stream_state
+    assert (state.n_people, state.person) == (2, 2), state
+    bgui.shot("4c-second-of-two.png")
+    yield from press_listen()
+    live.live_person = 0
+    yield 1.5  # the last sender is followed for a second
+    yield from press_listen()
+
+
+def press_listen():
+    yield from bgui.scan()
+    yield from bgui.click(*bgui.at("mocap_assist.listen"))
+    yield 0.5
 
 
 def record_live():
@@ -125,9 +162,14 @@ def record_bones():
     bgui.shot("9-bones.png")
     yield from bgui.key("Escape")
     yield 1.0
-    action = armature.animation_data.action
+    action, slot = armature.animation_data.action, armature.animation_data.action_slot
     assert action != before and action.frame_range[1] - action.frame_range[0] > 60
+    assert bpy.context.scene.mocap_assist.live.hold_feet
+    contacts = ours("actions.contact_keys").contact_keys(action, slot)
+    assert all(len(keys) > 1 for keys in contacts[:2]), contacts  # both feet step
+    bpy.context.scene.frame_set(round(action.frame_range[1] - 30.0))
     yield from settle()
+    bgui.shot("10-held-feet.png")
 
 
 def middle_of_view():
@@ -135,4 +177,4 @@ def middle_of_view():
     return region.x + region.width // 3, region.y + region.height // 2
 
 
-bgui.run(steps, timeout=400)
+bgui.run(steps, timeout=1500)

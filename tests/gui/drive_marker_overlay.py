@@ -36,4 +36,4 @@ def steps():
     bgui.shot("1-marker-overlay.png")
 
 
-bgui.run(steps, timeout=300)
+bgui.run(steps, timeout=1500)

@@ -41,4 +41,4 @@ def steps():
     bgui.shot("2-skeleton.png")
 
 
-bgui.run(steps, timeout=300)
+bgui.run(steps, timeout=1500)

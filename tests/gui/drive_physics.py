@@ -52,4 +52,4 @@ def steps():
     assert made == HAS_ENGINE, armature.animation_data.action.name
 
 
-bgui.run(steps, timeout=300)
+bgui.run(steps, timeout=1500)

@@ -85,4 +85,4 @@ def steps():
     yield from choices(armature)
 
 
-bgui.run(steps, timeout=300)
+bgui.run(steps, timeout=1500)

@@ -80,4 +80,4 @@ def steps():
     assert abs(head_height() - 2.0 * low) < 1e-3, (head_height(), low)
 
 
-bgui.run(steps, timeout=200)
+bgui.run(steps, timeout=1500)

@@ -142,4 +142,4 @@ def steps():
     yield from take_it_back(name)
 
 
-bgui.run(steps, timeout=400)
+bgui.run(steps, timeout=1500)

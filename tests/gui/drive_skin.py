@@ -120,4 +120,4 @@ def steps():
         bgui.shot(f"4-rigify-{frame}.png")
 
 
-bgui.run(steps, timeout=600)
+bgui.run(steps, timeout=1500)

@@ -171,4 +171,4 @@ def steps():
     yield from many()
 
 
-bgui.run(steps, timeout=3600)
+bgui.run(steps, timeout=1500)

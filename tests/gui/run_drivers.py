@@ -19,7 +19,7 @@ from window import own_window
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared"
 TOOL = SHARED / "tools" / "blender-gui.sh"
-FOLDER = ROOT / "tests" / "gui"
+FOLDER, FIXTURES = ROOT / "tests" / "gui", ROOT / "tests" / "fixtures"
 PICTURES = ROOT / "build" / "gui"
 PACKAGES = "python3-scipy python3-pil"
 """Of the tool's Debian: what the plain zip lacks."""
@@ -58,6 +58,11 @@ RECORDINGS = {
     "reconstruct": {"kinect.txt": "kinect/irds/217_18_0_3_1_wheelchair.txt"},
     "retarget": {},
     "strip": {},
+    "submit": {"clusters/flamenco_stub.py": FIXTURES / "clusters" / "flamenco_stub.py"},
+    "supports": {
+        "HDM_dg.asf": "mocap/hdm05/HDM_dg.asf",
+        "HDM_dg_lieDownFloor_014_120.amc": "mocap/hdm05/HDM_dg_lieDownFloor_014_120.amc",
+    },
     "skin": {"walking.glb": "corpus/glb/mixamo_blender/walking.glb"},
     "import_framing": {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",
@@ -75,7 +80,7 @@ RECORDINGS = {
         )
     },
 }  # fmt: skip
-"""For each driver, the files copied next to it, and their sources in ../shared/data."""
+"""For each driver, the files copied next to it, and their sources, from ../shared/data on."""
 FIRST_FRAMES = {"track": 30}
 """Of a recording of depth: tracking a frame takes a second."""
 
@@ -137,7 +142,7 @@ def lay_out(name: str, folder: Path) -> list[Path]:
             _cut(SHARED / "data" / source, path, FIRST_FRAMES[name])
         else:
             shutil.copy(SHARED / "data" / source, path)
-    return [FOLDER / "driver_scene.py", *sorted(folder.iterdir())]
+    return [FOLDER / "window" / "driver_scene.py", *sorted(folder.iterdir())]
 
 
 def _cut(source: Path, path: Path, n_frames: int) -> None:

@@ -25,7 +25,7 @@ def run(zip_path: Path, driver: Path, given: list[Path], picture: Path) -> tuple
     """Install the extension for a new user and run a driver; return its status and the log."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for path in (*given, driver.with_name("bgui.py")):
+        for path in (*given, Path(__file__).with_name("bgui.py")):
             copy = shutil.copytree if path.is_dir() else shutil.copy
             copy(path, folder / path.name)
         shutil.copy(driver, folder / "driver.py")

@@ -70,6 +70,18 @@ def until_done():
     raise AssertionError(f"{job.message} {job.fraction}")
 
 
+def open_preferences():
+    """Show those of the extension in a window of their own."""
+    bpy.ops.screen.userpref_show("INVOKE_DEFAULT")
+    yield 1.0
+    window = bpy.context.window_manager.windows[-1]
+    bpy.context.preferences.active_section = "ADDONS"
+    bpy.context.window_manager.addon_search = "mocap"
+    with bpy.context.temp_override(window=window):
+        bpy.ops.preferences.addon_expand(module=PACKAGE)
+    yield 1.5
+
+
 def import_noisy_walk():
     """Make a walk with jitter, spikes, sliding feet and a missing arm, and import it."""
     samples = import_module(f"{PACKAGE}.solvers.samples")
@@ -149,9 +161,14 @@ def large_action():
     return armature
 
 
-def ours(name):
+def load(name):
     """Return a module of the extension."""
-    return import_module(f"{PACKAGE}.mocap_assist.{name}")
+    return import_module(f"{PACKAGE}.{name}")
+
+
+def ours(name):
+    """Return a module of its folder mocap_assist."""
+    return load(f"mocap_assist.{name}")
 
 
 def made_up_confidence(armature):
