@@ -37,6 +37,8 @@ def unfold_alone(name):
         bpy.utils.unregister_class(panel)
         if each == f"{PANELS}{name}":
             panel.bl_options = set()
+            if hasattr(panel, "bl_parent_id"):
+                del panel.bl_parent_id
         else:
             panel.poll = classmethod(lambda cls, context: False)
         bpy.utils.register_class(panel)
