@@ -124,6 +124,7 @@ IN_ONE_BLENDER = {
     "variation/test_variants.py": (4, 5),
     "variation/test_vary.py": (5, 2),
     "variation/test_vary_rigify.py": (5, 2),
+    "ui/test_label_widths.py": (5, 2),
 }
 """Long tests, each file of which runs in one of the two Blenders; the others run in both."""
 

@@ -71,9 +71,10 @@ def steps():
     yield from settle(pointer=AWAY)
     bgui.shot("2-planted.png")
     assert armature["mocap_contact_left_hand"] == 1
-    look_at(armature, hand.last + 10.0)
+    look_at(armature, hand.first - 10.0)
     yield from settle(pointer=AWAY)
-    bgui.shot("3-lifted.png")
+    bgui.shot("3-before-contact.png")
+    assert armature["mocap_contact_left_hand"] == 0
 
 
 bgui.run(steps, timeout=1500)

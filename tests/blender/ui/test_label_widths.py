@@ -1,0 +1,51 @@
+"""No translated label of a setting is cut where the English one is not."""
+
+import pytest
+
+GROUPS = (
+    "clean", "reconstruct", "track", "retrack", "retarget", "solve", "simulate", "vary", "find",
+    "live", "fix", "export",
+)  # fmt: skip
+"""Settings that panels draw with the name left of the value, or right of a check box."""
+FONT_PX = 11
+NAME_PX, BOX_PX = 90, 112
+"""Width of names and of check boxes at the sidebar's default width, as pictures of
+`make test-gui DRIVERS=languages` show it."""
+
+
+@pytest.fixture(scope="module")
+def width():
+    """Return a function that measures a text in the font of the interface."""
+    import blf
+
+    blf.size(0, FONT_PX)
+    return lambda text: blf.dimensions(0, text)[0]
+
+
+def labels(settings):
+    """Yield the labels of all groups, and the room that each has."""
+    for group in GROUPS:
+        for each in getattr(settings, group).bl_rna.properties:
+            if not each.is_hidden and each.type in {
+                "BOOLEAN",
+                "FLOAT",
+                "INT",
+                "ENUM",
+                "STRING",
+            }:
+                yield each.name, BOX_PX if each.type == "BOOLEAN" else NAME_PX
+
+
+def test_translated_labels_are_not_cut(load, blank, width):
+    languages = load("mocap_assist.languages")
+    shown = set(labels(blank.context.scene.mocap_assist))
+    assert len(shown) > 50
+
+    for language in languages.LANGUAGES:
+        texts = languages.read_catalog(languages.catalog_path(language))
+        cut = [
+            f"{english}: {texts[english]}"
+            for english, room in shown
+            if width(texts.get(english, "")) > max(room, width(english))
+        ]
+        assert not cut, language
