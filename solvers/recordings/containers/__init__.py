@@ -26,6 +26,7 @@ from .matroska import Matroska, Track, index_matroska, is_matroska
 from .names import MAX_NAME_LENGTH, UniqueNames, printable, shown
 from .png_header import PngHeader, is_png, read_png_header
 from .row_stream import stream_rows
+from .size_limits import check_n_joints, check_n_poses
 from .stored_arrays import (
     NPY_MAGIC,
     NUMBERS,
@@ -90,6 +91,8 @@ __all__ = [
     "archive_names",
     "array_from_json",
     "check_folder_access",
+    "check_n_joints",
+    "check_n_poses",
     "decode_text",
     "describe_frame_files",
     "files_below",

@@ -93,8 +93,6 @@ def listed(value: Any, location: str) -> list[Any]:
 
 def number(value: Any, location: str) -> float:
     """Return a number, which may be a text; NaN for null."""
-    if isinstance(value, str) and value.replace(".", "", 1).isdigit() and len(value) < 30:
-        return float(value)
     return float(array_from_json(value, (), location))
 
 

@@ -36,6 +36,14 @@ LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints
 RATE_KEYS = ("fps", "frame_rate", "framerate", "frameRate")
 TIME_KEYS = {"timestamp": None, "time": None, "timestamp_ms": 0.001, "time_ms": 0.001}
 """Seconds per unit of the time of a frame; None where the key does not state it."""
+MAX_SPREAD = 20
+"""Columns of named joints in all frames for each point in them, a ratio. It bounds the memory
+of files whose names differ between frames."""
+MAX_FEW_COLUMNS = 1 << 22
+"""Columns of named joints in all frames that any file may have. It bounds the memory: 130 MB."""
+MAX_NUMBER = 1e300
+"""Maximum of a time or a rate. It guards the conversion of whole numbers, which JSON does not
+limit."""
 HEAD = re.compile(
     rb"\s*\[\s*\[\s*\[\s*[-\d]|\s*[\[{].*?\"("
     + "|".join(POINT_KEYS).encode()
@@ -142,6 +150,7 @@ def _read_content(
     rate: float | None = None
     second: float | None = None
     names: list[str] = []
+    n_points = n_columns = 0
     for member in json_by_frame(members, path):
         if member.key in RATE_KEYS and _is_number(member.value):
             rate = float(member.value)
@@ -156,6 +165,11 @@ def _read_content(
             positions = _placed(person, columns.setdefault(person.identity, {}))
             unknown = np.full(len(positions), np.nan)
             found[person.identity] = BodyJoints(positions, unknown)
+            n_points, n_columns = n_points + len(person.positions), n_columns + len(positions)
+        if n_columns > max(MAX_FEW_COLUMNS, MAX_SPREAD * n_points):
+            raise InvalidFileError(
+                f"{path} has joints with other names in each frame. Export it again."
+            )
         by_key.setdefault(member.key, []).append(BodiesFrame(time, found, member.done))
         progress(0.8 * member.done, "Reading")
     return _Content(_frames(by_key), columns, rate, second, tuple(names))
@@ -241,4 +255,5 @@ def _recording(
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_number and abs(value) < MAX_NUMBER

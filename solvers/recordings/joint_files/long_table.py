@@ -14,6 +14,7 @@ from ...motion import JointRecording, Tracks
 from ...progress import Progress, unwatched, within
 from ..containers import (
     LineReader,
+    check_n_joints,
     decode_text,
     find_separator,
     shown,
@@ -27,6 +28,7 @@ from ..conventions import (
     recorded_seconds,
 )
 from ..point_bodies import second_of_times
+from .numbered_words import NUMBER, NumberedWords
 from .point_table import TIMES, recording_of_points
 from .table_titles import titles_of_line
 
@@ -40,7 +42,6 @@ PEOPLE = ("person", "person_id", "body", "body_id", "track_id", "subject", "skel
 IDENTITIES = ("id", "pid")
 """Titles of the person in tables that state a joint of a frame several times without it; others
 have a number of the line or of the joint there."""
-NUMBER = re.compile(rb"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?")
 AXES = ("x", "y", "z")
 AXIS_AFFIXES = ("{}", "pos_{}", "{}_pos", "position_{}", "{}_m", "world_{}", "{}_world", "{}3d")
 """Titles of coordinates, with the axis at the braces."""
@@ -51,6 +52,9 @@ MAX_SPREAD = 100
 body. It bounds the memory of damaged files."""
 MAX_POINTS = 1 << 27
 """Points of all people over all frames. It bounds the memory: 3 GB."""
+MAX_POINTS_OF_FEW_LINES = 1 << 24
+"""Points above which more than `MAX_SPREAD` for each line are refused. It bounds the memory of
+damaged files: 400 MB."""
 
 
 class _LongColumns(NamedTuple):
@@ -67,42 +71,13 @@ class _LongColumns(NamedTuple):
     axes: tuple[int, ...]
 
 
-class _Numbers:
-    """Numbers words as they appear, for the columns of a table; `1.0` is the word `1`."""
-
-    def __init__(self) -> None:
-        self._numbers: dict[bytes, int] = {}
-        self._converted: dict[bytes, bytes] = {b"": b""}
-
-    def __call__(self, cell: bytes) -> bytes:
-        if cell not in self._converted:
-            number = self._numbers.setdefault(_word(cell), len(self._numbers))
-            self._converted[cell] = b"%d" % number
-        return self._converted[cell]
-
-    def __len__(self) -> int:
-        return len(self._numbers)
-
-    def name(self, number: int) -> str:
-        """Return the word with this number."""
-        return next((decode_text(w) for w, k in self._numbers.items() if k == number), "1")
-
-    def in_order(self) -> tuple[tuple[str, ...], NDArray[np.intp]]:
-        """Return the words, numbers among them by size, and the index of each in that list."""
-        words = [*self._numbers]
-        if all(word.isdigit() for word in words):
-            words.sort(key=int)
-        order = np.array([words.index(word) for word in self._numbers])
-        return tuple(decode_text(word) for word in words), order
-
-
 class _LongTable(NamedTuple):
     """Lines of a file, with numbers for words."""
 
     rows: Array
     columns: _LongColumns
-    joints: _Numbers
-    people: _Numbers
+    joints: NumberedWords
+    people: NumberedWords
     """Words of the column of the person, otherwise of the one that may be it."""
 
 
@@ -147,6 +122,7 @@ def open_long_table(
             f"{path} has {len(table.joints)} different joints in its lines, too few for a body."
             " Export it again."
         )
+    check_n_joints(path, len(table.joints))
     names, order = table.joints.in_order()
     points = _points(path, table, frames, order)
     if times is not None:
@@ -176,7 +152,7 @@ def _read_table(path: Path | str, progress: Progress) -> _LongTable:
     columns = _columns(titles)
     if columns is None:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
-    joints, people = _Numbers(), _Numbers()
+    joints, people = NumberedWords(), NumberedWords()
     converters: dict[int, Callable[[bytes], bytes]] = {columns.joint: joints}
     person = columns.identity if columns.person is None else columns.person
     if person is not None:
@@ -205,7 +181,8 @@ def _points(
     if person is not None:
         cells = np.nan_to_num(rows[:, person]).astype(int), frames, joints
     shape = int(cells[0].max()) + 1, int(frames.max()) + 1, len(order)
-    if np.prod(shape, dtype=float) > MAX_POINTS:
+    max_points = min(MAX_POINTS, max(MAX_POINTS_OF_FEW_LINES, MAX_SPREAD * len(rows)))
+    if np.prod(shape, dtype=float) > max_points:
         raise InvalidFileError(
             f"{path} has {shape[2]} joints of {shape[0]} people in {shape[1]} frames, which"
             " does not fit its lines. Export it again."
@@ -230,14 +207,6 @@ def _repeated(cells: tuple[NDArray[np.intp], ...]) -> int | None:
     return int(order[1:][is_same].min()) if is_same.any() else None
 
 
-def _word(cell: bytes) -> bytes:
-    """Return a cell, a whole number without its decimals."""
-    if cell.isdigit() or NUMBER.fullmatch(cell) is None:
-        return cell
-    value = float(cell.replace(b",", b"."))
-    return b"%d" % value if value.is_integer() else cell
-
-
 def _frame_number(cell: bytes) -> bytes:
     """Return a number, or the last one in the name of a frame, such as `frame_0012.png`."""
     if NUMBER.fullmatch(cell):
@@ -256,9 +225,10 @@ def _frames(rows: Array, columns: _LongColumns) -> tuple[NDArray[np.intp], Array
     known = known[np.isfinite(known)]
     if columns.frame is not None and len(known) > 1:
         step = np.diff(known).min()
-        spread = np.rint((known - known[0]) / step).astype(int)
+        with np.errstate(over="ignore"):
+            spread = np.rint((known - known[0]) / step)
         if spread[-1] < len(known) * MAX_SPREAD:
-            index = np.append(spread, -1)[np.minimum(index, len(known))]
+            index = np.append(spread.astype(int), -1)[np.minimum(index, len(known))]
     frames = np.where(np.isfinite(key), index, -1)
     if columns.time is None or not len(known):
         return frames, None

@@ -155,6 +155,6 @@ def _read_frame(key: str, value: dict[str, Any], done: float, location: str) -> 
             )
         bodies.setdefault(name_of_body(body, ("id",), count), BodyJoints(positions, confidence))
     time = number(value.get("timestamp"), f"{location}, timestamp")
-    if np.isnan(time) and key.isdigit() and len(key) < 20:
+    if np.isnan(time) and key.isascii() and key.isdigit() and len(key) < 20:
         time = 1e6 * float(key)  # milliseconds
     return BodiesFrame(time, bodies, done)

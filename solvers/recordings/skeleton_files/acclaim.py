@@ -13,7 +13,7 @@ from ...errors import InvalidFileError, InvalidSettingError
 from ...motion import Motion, Skeleton
 from ...progress import Progress, unwatched, within
 from ...rotations import inverse, multiply, quaternion_from_euler
-from ..containers import Block, LineReader, parse_rows, shown
+from ..containers import Block, LineReader, check_n_poses, parse_rows, shown
 from ..conventions import (
     check_scale,
     file_conventions,
@@ -150,6 +150,7 @@ def _read_channels(
         progress(block.stop, "Reading")
     if not parts_by_bone:
         raise InvalidFileError(f"{path} is not an Acclaim recording: nothing moves in it.")
+    check_n_poses(path, n_frames, len(bones))
     return {bones[name].name: _table(parts, n_frames) for name, parts in parts_by_bone.items()}
 
 

@@ -10,7 +10,13 @@ import numpy as np
 from ...errors import InvalidFileError
 from ...motion import Motion
 from ...progress import Progress, Remark, unwatched, within
-from ..containers import LineReader, UniqueNames, stream_rows
+from ..containers import (
+    LineReader,
+    UniqueNames,
+    check_n_joints,
+    check_n_poses,
+    stream_rows,
+)
 from ..conventions import (
     MIN_BODY_JOINTS,
     Bodies,
@@ -124,6 +130,8 @@ def _read_bodies(
     """Read each body; the largest one shows unit and axes of all."""
     reader = LineReader(path)
     bodies = read_hierarchies(_hierarchy(reader, path), path)
+    n_joints = sum(map(len, bodies))
+    check_n_joints(path, n_joints)
     frame_rate, n_announced = _frame_rate(reader)
     widths = [sum(len(joint.channels) for joint in joints) for joints in bodies]
     if not sum(widths):
@@ -131,6 +139,7 @@ def _read_bodies(
     rows = stream_rows(reader, sum(widths), path, within(progress, 0.0, 0.7))
     if not len(rows):
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
+    check_n_poses(path, len(rows), n_joints)
     _check_header(len(rows), n_announced, frame_rate, progress)
     ends = np.cumsum(widths)
     columns = np.split(rows, ends[:-1], axis=1)
@@ -222,7 +231,7 @@ def _rate_from_time(word: str) -> float:
     try:
         exact = Decimal(word.replace(",", "."))
         time = float(exact)
-    except InvalidOperation:
+    except (InvalidOperation, ValueError):  # sNaN is a decimal, but no float
         return DEFAULT_RATE_HZ
     if not 1e-5 < time < 1e3:
         return DEFAULT_RATE_HZ
