@@ -40,7 +40,8 @@ MAX_SPREAD = 20
 """Columns of named joints in all frames for each point in them, a ratio. It bounds the memory
 of files whose names differ between frames."""
 MAX_FEW_COLUMNS = 1 << 22
-"""Columns of named joints in all frames that any file may have. It bounds the memory: 130 MB."""
+"""Columns of named joints in all frames that any file may have. It bounds the memory:
+130 MB."""
 MAX_NUMBER = 1e300
 """Maximum of a time or a rate. It guards the conversion of whole numbers, which JSON does not
 limit."""

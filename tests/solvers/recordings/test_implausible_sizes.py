@@ -83,6 +83,13 @@ def test_a_superscript_is_no_time(refused, program):
     assert "numbers are required" in refused(text)
 
 
+def test_a_superscript_as_the_name_of_a_frame_is_no_time(tmp_path):
+    text = re.sub(r'("timestamp": )\d+', r"\1null", EXPORTS["zed"].decode())
+    (tmp_path / "take").write_text(re.sub(r'"\d(\d{12})": {', r'"²\1": {', text))
+
+    assert read_recording(tmp_path / "take").tracks.frame_rate == 30.0
+
+
 def test_a_signaling_nan_is_no_frame_time(tmp_path):
     content = re.sub(rb"(Frame Time:).*", rb"\1 sNaN", WHOLE["bvh"])
     (tmp_path / "take.bvh").write_bytes(content)
