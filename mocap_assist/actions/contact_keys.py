@@ -1,4 +1,4 @@
-"""Contacts of feet, hands and knees, keyed on custom properties that the animator can edit."""
+"""Contacts of feet, hands, knees and hips, keyed on properties that the animator can edit."""
 
 import hashlib
 
@@ -20,6 +20,7 @@ SUPPORT_PROPERTIES = (
     "mocap_contact_right_hand",
     "mocap_contact_left_knee",
     "mocap_contact_right_knee",
+    "mocap_contact_hips",
 )
 """In the order of `SUPPORTS` of the solvers."""
 PROPERTIES = FOOT_PROPERTIES + SUPPORT_PROPERTIES
@@ -33,7 +34,7 @@ def read_contacts(
 ) -> Flags | None:
     """Return the contacts of the left and the right foot, shape (n_frames, 2).
 
-    With keys of a hand or knee the shape is (n_frames, 6), in the order of `PROPERTIES`. None
+    With keys of another part the shape is (n_frames, 7), in the order of `PROPERTIES`. None
     where the action has no keys of the feet for all of these frames: they were not cleaned yet.
     """
     curves = animated_curves(action, slot)
@@ -51,7 +52,7 @@ def read_contacts(
 
 
 def _bears(channel: Channel | None, frames: NDArray[np.float64]) -> Flags:
-    """Return when a hand or knee bears on the floor: keys hold until the next one."""
+    """Return when a part bears on the floor: keys hold until the next one."""
     if channel is None or not len(channel.keys):
         return np.zeros(len(frames), dtype=np.bool_)
     last = np.searchsorted(channel.keys[:, 0], frames, side="right") - 1
@@ -84,8 +85,8 @@ def write_contacts(
 ) -> None:
     """Key custom properties of the armature wherever a foot comes down or lifts off.
 
-    `contacts` have shape (n_frames, 2), or (n_frames, 6) with hands and knees, whose properties
-    are keyed only if one of them bears on the floor, or had keys.
+    `contacts` have shape (n_frames, 2), or (n_frames, 7) with hands, knees and hips, whose
+    properties are keyed only if one of them bears on the floor, or had keys.
 
     The keys are held until the next one: 1 the foot stands, 0 it does not. Few as they are,
     they are moved, added and removed like any others in the Dope Sheet. The first and the last

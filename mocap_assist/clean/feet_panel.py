@@ -1,4 +1,4 @@
-"""Panel: contacts of feet, hands and knees as editable keys."""
+"""Panel: contacts of feet, hands, knees and hips as editable keys."""
 
 from typing import ClassVar
 
@@ -18,6 +18,7 @@ LABELS = (
     "Right Hand Contact",
     "Left Knee Contact",
     "Right Knee Contact",
+    "Hips Contact",
 )
 HINT = "Key 1 while it bears on the floor, 0 while it moves, then press Plant Feet."
 

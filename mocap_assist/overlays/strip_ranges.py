@@ -37,6 +37,7 @@ class StripRow(Enum):
     RIGHT_HAND = "Right Hand"
     LEFT_KNEE = "Left Knee"
     RIGHT_KNEE = "Right Knee"
+    HIPS = "Hips"
 
 
 class Mark(Enum):
@@ -54,6 +55,7 @@ class Mark(Enum):
     RIGHT_HAND = "Right Hand"
     LEFT_KNEE = "Left Knee"
     RIGHT_KNEE = "Right Knee"
+    HIPS = "Hips"
 
 
 COLORS: Mapping[Mark, Color] = {
@@ -69,6 +71,7 @@ COLORS: Mapping[Mark, Color] = {
     Mark.RIGHT_HAND: (0.20, 0.70, 0.75, 1.0),
     Mark.LEFT_KNEE: (0.35, 0.80, 0.45, 1.0),
     Mark.RIGHT_KNEE: (0.20, 0.70, 0.75, 1.0),
+    Mark.HIPS: (0.30, 0.75, 0.60, 1.0),
 }
 ISSUE_ROWS: Mapping[str, StripRow] = {
     "spike": StripRow.SPIKES,
@@ -86,6 +89,7 @@ CONTACT_ROWS = (
     (StripRow.RIGHT_HAND, Mark.RIGHT_HAND),
     (StripRow.LEFT_KNEE, Mark.LEFT_KNEE),
     (StripRow.RIGHT_KNEE, Mark.RIGHT_KNEE),
+    (StripRow.HIPS, Mark.HIPS),
 )
 """In the order of the contact keys."""
 MARKS: Mapping[StripRow, tuple[Mark, ...]] = {

@@ -1,4 +1,4 @@
-"""Find out when hands and knees bear on the floor."""
+"""Find out when hands, knees and hips bear on the floor."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,12 +16,15 @@ from ..motion.humanoid import (
     measure_feet,
 )
 from ..motion.skeletons import ground_level
-from ..signals import two_state_probabilities
+from ..motion_fitting.goals import BonePoint
+from ..signals import smooth_gaussian, two_state_probabilities
 from .legs import SIDES, LegJoints
+from .pelvis import pelvis_points
 from .standing_feet import MIN_CONTACT_S, rests_on_hips, without_short_contacts
 
-SUPPORTS = ("leftHand", "rightHand", "leftKnee", "rightKnee")
-"""Columns of the contacts of hands and knees."""
+LIMBS = ("leftHand", "rightHand", "leftKnee", "rightKnee")
+SUPPORTS = (*LIMBS, "hips")
+"""Columns of the contacts of hands, knees and hips."""
 GROUND_ROLES = (
     "hips",
     "head",
@@ -44,37 +47,47 @@ MIN_SEAT_HEIGHT = 0.12
 """Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
 below which it bears the body. Chosen by hand: x0.5 holds hands of bodies that lie down and
 turns their arms twice as far, x2 lets go of hands while an actor gets down."""
+HIPS_SMOOTHING_S = 0.1
+"""Seconds over which the path of the pelvis is smoothed before it is judged. Chosen by hand, on
+actors who lie: without it half of the contact is lost where the root jitters by 1 cm, x2 and x3
+change nothing."""
 
 
 @dataclass(frozen=True)
 class SupportJoints:
-    """Joints of a hand or knee that may bear on the floor.
+    """Joints and points of a hand, a knee or the hips that may bear on the floor.
 
     Attributes
     ----------
     name : str
         One of `SUPPORTS`.
-    chain : three joints
-        Shoulder, elbow and wrist, or hip, knee and ankle.
-    points : pair of joints
-        Wrist and knuckles, or the knee twice.
+    chain : tuple of int
+        Shoulder, elbow and wrist, or hip, knee and ankle; empty for the hips, which move with
+        the root.
+    points : tuple of BonePoint
+        Wrist and knuckles, or the knee twice, or the surface of the pelvis.
     """
 
     name: str
-    chain: tuple[int, int, int]
-    points: tuple[int, int]
+    chain: tuple[int, ...]
+    points: tuple[BonePoint, ...]
 
     @property
     def is_arm(self) -> bool:
         """Whether the limb bears on its hand."""
         return self.name.endswith("Hand")
 
+    @property
+    def is_leg(self) -> bool:
+        """Whether the limb bears on its knee."""
+        return self.name.endswith("Knee")
+
 
 def find_supports(skeleton: Skeleton, humanoid: HumanoidMap) -> tuple[SupportJoints, ...]:
-    """Return the hands and knees that have a complete arm or leg."""
+    """Return the hands and knees that have a complete arm or leg, and the hips if known."""
     joints = humanoid.indices(skeleton)
     found = []
-    for name in SUPPORTS:
+    for name in LIMBS:
         side, is_hand = name.removesuffix("Hand").removesuffix("Knee"), name.endswith("Hand")
         roles = (
             ("UpperArm", "LowerArm", "Hand") if is_hand else ("UpperLeg", "LowerLeg", "Foot")
@@ -84,8 +97,11 @@ def find_supports(skeleton: Skeleton, humanoid: HumanoidMap) -> tuple[SupportJoi
             continue
         upper, middle, end = (joint for joint in chain if joint is not None)
         if middle in skeleton.subtree(upper)[1:] and end in skeleton.subtree(middle)[1:]:
-            points = (end, _knuckles(skeleton, end)) if is_hand else (middle, middle)
+            ends = (end, _knuckles(skeleton, end)) if is_hand else (middle, middle)
+            points = tuple(BonePoint(joint, np.zeros(3)) for joint in ends)
             found.append(SupportJoints(name, (upper, middle, end), points))
+    if pelvis := pelvis_points(skeleton, humanoid):
+        found.append(SupportJoints("hips", (), pelvis))
     return tuple(found)
 
 
@@ -97,19 +113,22 @@ def _knuckles(skeleton: Skeleton, wrist: int) -> int:
 
 
 def support_probabilities(motion: Motion, humanoid: HumanoidMap) -> Array:
-    """Return the probability that each of `SUPPORTS` bears on the floor, (n_frames, 4).
+    """Return the probability that each of `SUPPORTS` bears on the floor, (n_frames, 5).
 
-    The model of feet sees how fast wrist and knuckles (or the knee) are, and how high above the
-    ground, on which the lowest part of the body rests. A hand that swings, or rests on a thigh,
-    is too fast or too high. 0 where the limb is missing.
+    The model of feet sees how fast wrist and knuckles (or the knee, or the surface of the
+    pelvis) are, and how high above the ground, on which the lowest part of the body rests. A
+    hand that swings, or rests on a thigh, is too fast or too high, and so are hips on a chair.
+    0 where the part is missing.
     """
     poses = forward_kinematics(motion)
     size = leg_length(motion.skeleton, humanoid) / HUMAN_LEG_LENGTH_M
     ground = _ground(motion, poses, humanoid, size)
     probability = np.zeros((motion.n_frames, len(SUPPORTS)))
     for support in find_supports(motion.skeleton, humanoid):
-        points = poses.positions[:, [support.points]] / size
-        evidence = measure_feet(points, motion.frame_rate, ground).evidence(LEARNED)
+        path = np.stack([point.position(poses) for point in support.points], axis=1) / size
+        if not support.chain:
+            path = smooth_gaussian(path, HIPS_SMOOTHING_S * motion.frame_rate)
+        evidence = measure_feet(path[:, None], motion.frame_rate, ground).evidence(LEARNED)
         rates = motion.frame_rate, LEARNED.landing_rate, LEARNED.lift_rate
         column = SUPPORTS.index(support.name)
         probability[:, column] = two_state_probabilities(evidence, *rates)[:, 0]
@@ -126,12 +145,12 @@ def _ground(motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, size: floa
 
 
 def detect_supports(motion: Motion, humanoid: HumanoidMap, legs: Sequence[LegJoints]) -> Flags:
-    """Return when each of `SUPPORTS` bears on the floor, shape (n_frames, 4).
+    """Return when each of `SUPPORTS` bears on the floor, shape (n_frames, 5).
 
     Hands and knees of a body that sits or lies touch the floor, but bear little of its weight
     and may move, as its feet.
     """
     contacts = support_probabilities(motion, humanoid) > 0.5
     sits = rests_on_hips(motion, humanoid, legs, MIN_SEAT_HEIGHT)
-    contacts &= ~sits[:, None]
+    contacts[:, : len(LIMBS)] &= ~sits[:, None]
     return without_short_contacts(contacts, MIN_CONTACT_S * motion.frame_rate)

@@ -1,4 +1,4 @@
-"""Where hands and knees bear on the floor, and the goals of a fit that holds them in place."""
+"""Where hands, knees and hips bear on the floor, and the goals that hold them in place."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from ..motion_fitting.goals import (
 )
 from .body_supports import SUPPORTS, SupportJoints, find_supports
 from .plant_settings import PlantSettings
-from .sole import estimate_loads, measure_standing_heights
+from .sole import load_shares, measure_standing_heights, smoothed_paths
 from .support import Support, resting_steps
 
 SHOULDER_RAD, ELBOW_RAD = np.radians(4.0), np.radians(2.0)
@@ -39,9 +39,9 @@ x0.5 makes elbows accelerate 1.11 times, x2 changes nothing."""
 
 @dataclass(frozen=True, eq=False)
 class LimbContact(Support):
-    """How a hand or knee bears on the floor.
+    """How a hand, a knee or the pelvis bears on the floor.
 
-    Its points are wrist and knuckles, or the knee twice.
+    Its points are those of the limb.
 
     Attributes
     ----------
@@ -54,7 +54,11 @@ class LimbContact(Support):
 def find_limb_contacts(
     motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, supports: Flags
 ) -> list[LimbContact]:
-    """Return how hands and knees bear on the floor, of those that do at all.
+    """Return how hands, knees and hips bear on the floor, of those that do at all.
+
+    A pelvis rests on the lowest and slowest points of its surface: as it rolls from the seat to
+    the back, the load moves smoothly from one to the next. It may sink, as flesh does: hips
+    that keep their height jerk 1.7 times as much where an actor sits down.
 
     Parameters
     ----------
@@ -62,7 +66,7 @@ def find_limb_contacts(
     poses : WorldPoses
         Of the motion.
     humanoid : HumanoidMap
-    supports : bool, shape (n_frames, 4)
+    supports : bool, shape (n_frames, 5)
         When each of `SUPPORTS` is in contact.
     """
     size = leg_length(motion.skeleton, humanoid) / HUMAN_LEG_LENGTH_M
@@ -71,13 +75,17 @@ def find_limb_contacts(
         contact = supports[:, SUPPORTS.index(limb.name)]
         if not contact.any():
             continue
-        points = [BonePoint(joint, np.zeros(3)) for joint in limb.points]
-        positions = np.stack([point.position(poses) for point in points], axis=1)
-        level = measure_standing_heights(positions, contact, motion.frame_rate)
-        load = estimate_loads(positions, level, motion.frame_rate, size)
+        positions = np.stack([point.position(poses) for point in limb.points], axis=1)
+        level = np.zeros(len(limb.points))
+        if limb.chain:
+            level = measure_standing_heights(positions, contact, motion.frame_rate)
+        heights, speeds = smoothed_paths(positions, motion.frame_rate)
+        load = load_shares(heights - level, speeds, size)
         height = np.sum(load * (positions[..., 2] - level), axis=1)
         steps = resting_steps(height, contact, size)
-        found.append(LimbContact(size, contact, points, load, steps, limb))
+        if not limb.chain:
+            steps[:, 2] = 0.0
+        found.append(LimbContact(size, contact, limb.points, load, steps, limb))
     return found
 
 
@@ -95,7 +103,7 @@ def limb_tolerances(contacts: Sequence[LimbContact]) -> dict[int, float]:
 def limb_goals(
     fitted: FittedMotion, contacts: Sequence[LimbContact], settings: PlantSettings, creep: float
 ) -> list[Goal]:
-    """Return what hands and knees have to meet, and what keeps arms as they were recorded.
+    """Return what has to stay in place, and what keeps arms as they were recorded.
 
     `creep` is the distance in meters, for a leg of 0.9 m, that they may move in Max Contact
     Time.

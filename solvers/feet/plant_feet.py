@@ -1,4 +1,4 @@
-"""Stop feet, hands and knees from sliding: foot-skate cleanup."""
+"""Stop feet, hands, knees and hips from sliding: foot-skate cleanup."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -26,17 +26,17 @@ N_FEET = len(SIDES)
 
 @dataclass(frozen=True, eq=False)
 class Planted:
-    """A motion whose planted feet, hands and knees do not slide.
+    """A motion whose planted feet, hands, knees and hips do not slide.
 
     Attributes
     ----------
     motion : Motion
     contacts : bool, shape (n_frames, 2), left and right
         When each foot is in contact: as given, or as detected.
-    supports : bool, shape (n_frames, 4), or None
+    supports : bool, shape (n_frames, 5), or None
         When each of `SUPPORTS` is in contact; None where only feet are planted.
     slide_before, slide_after : float, meters
-        Distance that soles, hands and knees cover over the floor while in contact.
+        Distance that soles, hands, knees and hips cover over the floor while in contact.
     remarks : tuple of str
         What went wrong, such as feet that no leg can keep where they are.
     """
@@ -50,7 +50,7 @@ class Planted:
 
     @property
     def all_contacts(self) -> Flags:
-        """Contacts of feet, hands and knees, (n_frames, 6), or of feet alone, (n_frames, 2)."""
+        """Contacts of all parts, (n_frames, 7), or of feet alone, (n_frames, 2)."""
         if self.supports is None:
             return self.contacts
         return np.hstack([self.contacts, self.supports])
@@ -69,11 +69,11 @@ def plant_feet(
 
     As in Kovar et al. [1]_ footplants are met, and the motion is otherwise smooth and close to
     the original. A foot in contact may roll; only the loaded part of the sole, heel, ball or
-    both, must not move. Nor must hands and knees that bear on the floor, with
-    `settings.hands_and_knees`. The rotations of the legs, of such arms, and the position of
-    the root in all frames are found at once: they hold what is loaded with the least smooth
-    change of knees, feet, arms and root (`planting_goals`, `fit_motion`). Bones never stretch,
-    and no joint of the trunk rotates.
+    both, must not move. Nor must hands, knees and the pelvis that bear on the floor, with
+    `settings.hands_and_knees`; a pelvis rolls, and moves with the root alone. The rotations of
+    the legs, of such arms, and the position of the root in all frames are found at once: they
+    hold what is loaded with the least smooth change of knees, feet, arms and root
+    (`planting_goals`, `fit_motion`). Bones never stretch, and no joint of the trunk rotates.
     Segments of a joined take are planted separately; a segment of less than a quarter of a
     second has no contact.
 
@@ -81,7 +81,7 @@ def plant_feet(
     ----------
     motion : Motion
         Without gaps.
-    contacts : bool, shape (n_frames, 2) or (n_frames, 6)
+    contacts : bool, shape (n_frames, 2) or (n_frames, 7)
         When the left and the right foot, and each of `SUPPORTS`, are in contact; detected if
         not given. All False changes nothing.
     humanoid_map : HumanoidMap
@@ -144,7 +144,7 @@ def _find_contacts(
     legs: Sequence[LegJoints],
     settings: PlantSettings,
 ) -> Flags:
-    """Return the contacts of feet, hands and knees, as given or detected, (n_frames, 6)."""
+    """Return the contacts of all parts, as given or detected, (n_frames, 7)."""
     feet = detect_standing_feet(motion, humanoid_map, legs) if given is None else given
     if not settings.hands_and_knees:
         supports = np.zeros((motion.n_frames, len(SUPPORTS)), dtype=np.bool_)
@@ -164,18 +164,22 @@ def _plant_segment(
     settings: PlantSettings,
     progress: Progress,
 ) -> Planted:
-    """Plant feet, hands and knees of a motion without cuts; contacts are (n_frames, 6)."""
+    """Plant what bears on the floor of a motion without cuts; contacts are (n_frames, 7)."""
     if not contacts.any():
         progress(1.0, "No foot is in contact")
         return _planted(motion, contacts, settings)
     poses = forward_kinematics(motion)
     limbs = find_limb_contacts(motion, poses, humanoid_map, contacts[:, N_FEET:])
-    knees = {limb.limb.chain[1] for limb in limbs if not limb.limb.is_arm}
+    limbs = [each for each in limbs if each.limb.chain or settings.move_root]
+    knees = {each.limb.chain[1] for each in limbs if each.limb.is_leg}
     feet = [
         find_foot_contact(motion, poses, leg, contacts[:, SIDES.index(leg.side)])
         for leg in legs
         if leg.knee in knees or contacts[:, SIDES.index(leg.side)].any()
     ]
+    if not feet and not limbs:
+        progress(1.0, "Nothing that may move is in contact")
+        return _planted(motion, contacts, settings)
 
     def plant_piece(start: int, stop: int, progress: Progress) -> Motion:
         pieces = [foot.slice(start, stop) for foot in feet]
@@ -209,7 +213,7 @@ def _plant_piece(
     settings: PlantSettings,
     progress: Progress,
 ) -> Motion:
-    """Return the piece of a take with its feet, hands and knees planted."""
+    """Return the piece of a take with all that bears on the floor planted."""
     legs = [foot.leg for foot in feet]
     joints = [joint for leg in legs for joint in (*leg.chain, leg.toe) if joint is not None]
     joints += limb_tolerances(limbs)
@@ -260,7 +264,7 @@ def _check_contacts(contacts: Flags, motion: Motion) -> Flags:
     n_frames, widths = motion.n_frames, (N_FEET, N_FEET + len(SUPPORTS))
     if contacts.shape not in [(n_frames, width) for width in widths]:
         raise InvalidMotionError(
-            f"Contacts need shape ({n_frames}, 2), left and right, or ({n_frames}, 6) with"
-            f" hands and knees, not {contacts.shape}."
+            f"Contacts need shape ({n_frames}, 2), left and right, or ({n_frames}, 7) with"
+            f" hands, knees and hips, not {contacts.shape}."
         )
     return contacts

@@ -46,5 +46,7 @@ class PlantSettings(Settings):
         True, "Shift the hips slightly and smoothly where a leg cannot reach", label="Move Hips"
     )
     hands_and_knees: bool = setting(
-        True, "Also keep hands and knees in place while they bear on the floor"
+        True,
+        "Also keep hands, knees and hips in place while they bear on the floor",
+        label="Body Contacts",
     )

@@ -83,9 +83,18 @@ def estimate_loads(points: Array, standing: Array, frame_rate: float, size: floa
     size : float
         Of the body, 1 for a leg of 0.9 m.
     """
-    heights = gaussian_filter1d(points[..., 2] - standing, SMOOTHING_S * frame_rate, axis=0)
+    heights, speeds = smoothed_paths(points, frame_rate)
+    return instant_loads(heights - standing, speeds, size)
+
+
+def smoothed_paths(points: Array, frame_rate: float) -> tuple[Array, Array]:
+    """Return the smoothed heights in meters and speeds in meters per second of points.
+
+    Both have the shape (n_frames, n_points).
+    """
+    heights = gaussian_filter1d(points[..., 2], SMOOTHING_S * frame_rate, axis=0)
     speeds = _speeds(points, frame_rate) if len(points) > 1 else np.zeros_like(heights)
-    return instant_loads(heights, speeds, size)
+    return heights, speeds
 
 
 def instant_loads(heights: Array, speeds: Array, size: float) -> Array:
@@ -94,8 +103,16 @@ def instant_loads(heights: Array, speeds: Array, size: float) -> Array:
     Both have the shape (..., n_points), meters and meters per second, and so has the result.
     """
     is_beyond_ball = np.arange(heights.shape[-1]) >= 2
-    log_load = -(heights + MIN_RISE_M * size * is_beyond_ball) / (LOAD_FALLOFF_M * size)
-    log_load -= speeds / (SPEED_FALLOFF * size)
+    return load_shares(heights + MIN_RISE_M * size * is_beyond_ball, speeds, size)
+
+
+def load_shares(heights: Array, speeds: Array, size: float) -> Array:
+    """Return the fraction of the load on each of some points: the lowest and slowest carry it.
+
+    Heights in meters and speeds in meters per second have the shape (..., n_points), and so
+    has the result.
+    """
+    log_load = -heights / (LOAD_FALLOFF_M * size) - speeds / (SPEED_FALLOFF * size)
     fractions = np.exp(log_load - log_load.max(axis=-1, keepdims=True))
     return np.asarray(fractions / fractions.sum(axis=-1, keepdims=True))
 

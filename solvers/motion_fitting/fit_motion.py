@@ -69,7 +69,7 @@ def fit_motion(
         progress(number / (MAX_ROUNDS + 1), message)
         step = equations.step
         turns = step[:, 3 * fitted.root_moves :]
-        damping = min(damping, MAX_STEP_RAD / max(float(np.abs(turns).max()), 1e-9))
+        damping = min(damping, MAX_STEP_RAD / float(np.abs(turns).max(initial=1e-9)))
         for _ in range(MAX_HALVINGS):
             trial = fitted.moved(damping * step)
             tried = _equations(trial, goals)

@@ -138,13 +138,10 @@ class FittedMotion:
 
     def moved(self, step: Array) -> "FittedMotion":
         """Return the motion after a step of the variables, shape (n_frames, n_variables)."""
-        vectors = np.stack(
-            [
-                (self.axes_of(joint) @ step[:, self.columns(joint), None])[..., 0]
-                for joint in self.joints
-            ],
-            axis=1,
-        )
+        vectors = np.zeros((len(step), len(self.joints), 3))
+        for index, joint in enumerate(self.joints):
+            along = step[:, self.columns(joint), None]
+            vectors[:, index] = (self.axes_of(joint) @ along)[..., 0]
         chosen, rotations = list(self.joints), self.motion.rotations.copy()
         turns = quaternion_from_rotation_vector(vectors)
         rotations[:, chosen] = multiply(turns, rotations[:, chosen])

@@ -248,14 +248,17 @@ def _planted(planting_result: PlantingResult) -> list[str]:
     planted, remarks = planting_result.planted, planting_result.remarks
     if planted is None:
         return remarks
-    feet, hands, knees = np.split(planted.all_contacts.any(axis=0), (2, 4))
+    feet, hands, others = np.split(planted.all_contacts.any(axis=0), (2, 4))
     if hands.any():
         text = (
-            "Plant Feet keeps feet, hands and knees on the floor in place by moving legs,"
+            "Plant Feet keeps feet, hands, knees and hips on the floor in place by moving legs,"
             " arms and hips."
         )
-    elif knees.any():
-        text = "Plant Feet keeps feet and knees on the floor in place by moving legs and hips."
+    elif others.any():
+        text = (
+            "Plant Feet keeps feet, knees and hips on the floor in place by moving legs and"
+            " hips."
+        )
     elif feet.any():
         text = "Plant Feet keeps planted feet in place by moving legs and hips."
     else:

@@ -144,7 +144,7 @@ def fix_take(
     recording : Motion, Tracks, JointRecording, MotionFromJoints or DepthRecording
         NaN where nothing was observed.
     settings : FixSettings
-    contacts : bool, shape (n_frames, 2) or (n_frames, 6), as `plant_feet` takes them
+    contacts : bool, shape (n_frames, 2) or (n_frames, 7), as `plant_feet` takes them
         Contacts of the feet as keyed by an animator, for motions; detected by default.
     limits : JointLimits
         Joints beyond them count as issues; nothing is clamped.

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.arrays import Array, Flags
-from solvers.feet.body_supports import SUPPORTS
+from solvers.feet.body_supports import LIMBS, SUPPORTS
 from solvers.motion import Motion, ReachSettings, forward_kinematics, reach
 from solvers.rotations import inverse, multiply, quaternion_from_rotation_vector
 from solvers.rotations.representations import IDENTITY
@@ -42,7 +42,7 @@ class _Plan:
     thighs, shins : radians, (n_frames, 2)
         Tilt of the bones against the vertical, forward.
     wrists : shape (n_frames, 2, 3), meters; NaN lets the arms hang
-    contacts : shape (n_frames, 4)
+    contacts : shape (n_frames, 4), of `LIMBS`
     feet : radians
         Tilt of the left and the right foot.
     ankles : shape (n_frames, 2, 3), meters
@@ -60,7 +60,7 @@ class _Plan:
 
 
 def made_supports(frame_rate: float) -> dict[str, MadeTake]:
-    """Return all takes, whose contacts are those of `SUPPORTS`, (n_frames, 4)."""
+    """Return all takes, whose contacts are those of `SUPPORTS`, (n_frames, 5)."""
     time = np.arange(round(DURATION_S * frame_rate)) / frame_rate
     walk = walking_gait(GaitSettings(duration=DURATION_S, frame_rate=frame_rate))
     none = np.zeros((walk.n_frames, len(SUPPORTS)), np.bool_)
@@ -84,7 +84,9 @@ def _take(plan: _Plan, frame_rate: float) -> MadeTake:
         wrist = plan.wrists[:, number]
         if np.isfinite(wrist).all():
             motion = _with_hand(motion, side, wrist)
-    return MadeTake(motion, plan.contacts)
+    contacts = np.zeros((n_frames, len(SUPPORTS)), np.bool_)
+    contacts[:, : len(LIMBS)] = plan.contacts
+    return MadeTake(motion, contacts)
 
 
 def _with_foot(motion: Motion, side: str, ankle: Array, tilt: float) -> Motion:
@@ -232,6 +234,8 @@ PLANS: dict[str, Callable[[Array], _Plan]] = {
 
 
 def joints_of(support: str) -> Sequence[str]:
-    """Return the joints of a hand or knee in these bodies."""
+    """Return the joints of a hand or knee, or the hips, in these bodies."""
+    if support == "hips":
+        return ("Hips",)
     side = "Left" if support.startswith("left") else "Right"
     return (f"{side}Hand", f"{side}Hand_end") if support.endswith("Hand") else (f"{side}Leg",)

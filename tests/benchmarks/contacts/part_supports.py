@@ -24,7 +24,7 @@ from .part_takes import INPUTS, acceleration_ratio
 
 RATE_HZ = 30.0
 """Hertz."""
-PARTS = {"hands": slice(0, 2), "knees": slice(2, 4)}
+PARTS = {"hands": slice(0, 2), "knees": slice(2, 4), "hips": slice(4, 5)}
 """Columns of `SUPPORTS`."""
 HEIGHT_M = 0.1
 """Meters above the lowest joint of the take, of the peer."""

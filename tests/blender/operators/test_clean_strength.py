@@ -61,7 +61,7 @@ def test_hands_are_held_only_if_the_arms_are_chosen(blank, clean, keys_of, load)
     action = armature.animation_data.action
     first, last = map(int, action.frame_range)
     frames = np.arange(first, last + 1.0)
-    contacts = np.zeros((len(frames), 6), bool)
+    contacts = np.zeros((len(frames), 7), bool)
     contacts[: len(frames) // 2] = True
     source = action, armature.animation_data.action_slot
     contact_keys.write_contacts(armature, *source, frames, contacts)

@@ -93,9 +93,10 @@ def test_gap_is_filled_and_spike_is_corrected(blank, reading, actor):
 
 @pytest.fixture
 def stepping(load, actor):
-    """Feet are down from frame 10 to 20 and from frame 31 on, a hand in the first 10 frames."""
-    contacts = np.zeros((60, 6), bool)
-    contacts[9:20, 0] = contacts[30:, 1] = contacts[:10, 3] = True
+    """Feet are down from frame 10 to 20 and from frame 31 on, hand and hips in the first 10."""
+    contacts = np.zeros((60, 7), bool)
+    contacts[9:20, 0] = contacts[30:, 1] = True
+    contacts[:10, [3, 6]] = True
     load("mocap_assist.actions.contact_keys").write_contacts(
         actor, *played(actor), np.arange(1.0, 61.0), contacts
     )
@@ -107,6 +108,7 @@ def test_contacts_are_those_of_the_keys(blank, reading, stepping):
         "LEFT_FOOT": [(10, 20)],
         "RIGHT_FOOT": [(31, 60)],
         "RIGHT_HAND": [(1, 10)],
+        "HIPS": [(1, 10)],
     }
 
 

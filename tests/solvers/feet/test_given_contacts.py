@@ -13,7 +13,7 @@ from solvers.samples import GaitSettings, walking_gait
 WALK = walking_gait(GaitSettings(duration=1.5, frame_rate=60.0))
 
 
-@pytest.mark.parametrize("n_columns", [2, 6])
+@pytest.mark.parametrize("n_columns", [2, 7])
 def test_given_contacts_reach_past_a_separate_pose(n_columns):
     """Such as the one frame of a T-pose with which takes of CMU begin."""
     pose = np.random.default_rng(7).normal(scale=0.3, size=(1, WALK.n_joints, 3))
@@ -28,7 +28,7 @@ def test_given_contacts_reach_past_a_separate_pose(n_columns):
 
     planted = plant_feet(motion, contacts)
 
-    assert planted.supports.shape == (61, 4)
+    assert planted.supports.shape == (61, 5)
     assert (planted.contacts == contacts[:, :2]).all()
     assert (planted.motion.rotations[0] == motion.rotations[0]).all()
 

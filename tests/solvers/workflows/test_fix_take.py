@@ -110,7 +110,7 @@ def test_feet_stay_as_they_are_on_request(noisy):
 
 
 def test_contacts_of_the_animator_are_used(noisy):
-    contacts = np.zeros((noisy.n_frames, 6), bool)
+    contacts = np.zeros((noisy.n_frames, 7), bool)
     contacts[20:40, [0, 3]] = True
 
     result = fix_take(noisy, contacts=contacts)
