@@ -67,6 +67,8 @@ def report_submitted(
     """Return the message for the status bar."""
     message = f"Submitted {submitted.n_takes} takes of {takes.name} to {submitted.job.page}."
     if submitted.n_left_out:
-        left_out = f"{submitted.n_left_out} files need Blender and were left out"
-        message += f" {left_out}; press Fix Folder for these."
+        message += (
+            f" {submitted.n_left_out} files need Blender and were left out. Press Fix Folder for"
+            " these."
+        )
     return message

@@ -15,7 +15,6 @@ from ...progress import Progress, unwatched, within
 from ..containers import (
     LineReader,
     check_n_joints,
-    decode_text,
     find_separator,
     shown,
     stream_cells,
