@@ -43,8 +43,8 @@ MAX_FEW_COLUMNS = 1 << 22
 """Columns of named joints in all frames that any file may have. It bounds the memory:
 130 MB."""
 MAX_NUMBER = 1e300
-"""Maximum of a time or a rate. It guards the conversion of whole numbers, which JSON does not
-limit."""
+"""Maximum time in seconds, or rate in hertz. It guards the conversion of whole numbers, which
+JSON does not limit."""
 HEAD = re.compile(
     rb"\s*\[\s*\[\s*\[\s*[-\d]|\s*[\[{].*?\"("
     + "|".join(POINT_KEYS).encode()
