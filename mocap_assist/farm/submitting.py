@@ -68,7 +68,7 @@ def report_submitted(
     message = f"Submitted {submitted.n_takes} takes of {takes.name} to {submitted.job.page}."
     if submitted.n_left_out:
         message += (
-            f" {submitted.n_left_out} files need Blender and were left out. Press Fix Folder for"
-            " these."
+            f" {submitted.n_left_out} files need Blender and were left out."
+            " Press Fix Folder for these."
         )
     return message
