@@ -25,7 +25,8 @@ MIN_JOINTS = 8
 """Number of joints of a person. It guards JSON of something else."""
 
 MAX_ROUNDING = 1e-3
-"""Difference of the length of rounded unit quaternions from 1."""
+"""Difference between the length of a unit quaternion and 1, as a ratio. It bounds the rounding
+to three decimals, by which quaternions differ from positions."""
 
 
 class JsonPerson(NamedTuple):

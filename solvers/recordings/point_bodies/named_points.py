@@ -102,8 +102,8 @@ def missing_limbs(names: Sequence[str]) -> list[str]:
         [each for each in LIMBS if each not in keypoints],
         [NAMES_OF_ROLES[role] for role in NEEDED_ROLES - roles_by_name(names).keys()],
     )
-    fewest = min(by_kind, key=len)
-    return sorted(fewest) if len(fewest) <= MAX_MISSING else []
+    shortest = min(by_kind, key=len)
+    return sorted(shortest) if len(shortest) <= MAX_MISSING else []
 
 
 def _keypoint(name: str) -> str:
