@@ -161,8 +161,9 @@ def _untouched(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> bool:
 
 def _digest(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> str:
     keys = [each.ravel().tolist() for each in contact_keys(action, slot)]
-    feet, others = keys[: len(FOOT_PROPERTIES)], keys[len(FOOT_PROPERTIES) :]
-    text = repr(keys if any(others) else feet)  # of feet alone it is as in earlier versions
+    n_feet = len(FOOT_PROPERTIES)
+    known = keys if keys[-1] else keys[:-1]  # Without hips it is as before they had keys,
+    text = repr(known if any(keys[n_feet:]) else keys[:n_feet])  # and of feet alone, too.
     return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -69,6 +69,6 @@ def report_submitted(
     if submitted.n_left_out:
         message += (
             f" {submitted.n_left_out} files need Blender and were left out."
-            " Press Fix Folder for these."
+            " Move them to another folder and press Fix Folder there."
         )
     return message

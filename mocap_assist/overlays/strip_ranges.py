@@ -173,7 +173,7 @@ def issue_ranges(
 
 
 def contact_ranges(keys: Array, end: float, step: float, mark: Mark) -> tuple[Range, ...]:
-    """Return the frames in which a foot, hand or knee is down.
+    """Return the frames in which a foot, hand or knee, or the hips, are down.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The goals of a fit that holds feet, hands and knees in place with the least change."""
+"""The goals of a fit that holds feet, hands, knees and hips in place with the least change."""
 
 from collections.abc import Sequence
 
@@ -61,7 +61,7 @@ def planting_goals(
 ) -> list[Goal]:
     """Return the goals for a motion that is not changed yet.
 
-    They come from the contacts of its feet, and of hands and knees.
+    They come from the contacts of its feet, and of hands, knees and hips.
     `ankle_weights` say for each foot how firmly its ankle keeps its path, shape (n_frames,).
     """
     poses = fitted.poses

@@ -144,7 +144,10 @@ def _find_contacts(
     legs: Sequence[LegJoints],
     settings: PlantSettings,
 ) -> Flags:
-    """Return the contacts of all parts, as given or detected, (n_frames, 7)."""
+    """Return the contacts of all parts, as given or detected, (n_frames, 7).
+
+    Hips bear on the floor only if they may move: nothing else could hold them.
+    """
     feet = detect_standing_feet(motion, humanoid_map, legs) if given is None else given
     if not settings.hands_and_knees:
         supports = np.zeros((motion.n_frames, len(SUPPORTS)), dtype=np.bool_)
@@ -152,7 +155,9 @@ def _find_contacts(
         supports = feet[:, N_FEET:]
     else:
         supports = detect_supports(motion, humanoid_map, legs)
-    return np.hstack([feet[:, :N_FEET], supports])
+    contacts = np.hstack([feet[:, :N_FEET], supports])
+    contacts[:, N_FEET + SUPPORTS.index("hips")] &= settings.move_root
+    return contacts
 
 
 def _plant_segment(
@@ -170,16 +175,12 @@ def _plant_segment(
         return _planted(motion, contacts, settings)
     poses = forward_kinematics(motion)
     limbs = find_limb_contacts(motion, poses, humanoid_map, contacts[:, N_FEET:])
-    limbs = [each for each in limbs if each.limb.chain or settings.move_root]
     knees = {each.limb.chain[1] for each in limbs if each.limb.is_leg}
     feet = [
         find_foot_contact(motion, poses, leg, contacts[:, SIDES.index(leg.side)])
         for leg in legs
         if leg.knee in knees or contacts[:, SIDES.index(leg.side)].any()
     ]
-    if not feet and not limbs:
-        progress(1.0, "Nothing that may move is in contact")
-        return _planted(motion, contacts, settings)
 
     def plant_piece(start: int, stop: int, progress: Progress) -> Motion:
         pieces = [foot.slice(start, stop) for foot in feet]

@@ -248,16 +248,22 @@ def _planted(planting_result: PlantingResult) -> list[str]:
     planted, remarks = planting_result.planted, planting_result.remarks
     if planted is None:
         return remarks
-    feet, hands, others = np.split(planted.all_contacts.any(axis=0), (2, 4))
+    feet, hands, knees, hips = np.split(planted.all_contacts.any(axis=0), (2, 4, 6))
     if hands.any():
         text = (
             "Plant Feet keeps feet, hands, knees and hips on the floor in place by moving legs,"
             " arms and hips."
         )
-    elif others.any():
+    elif knees.any():
         text = (
             "Plant Feet keeps feet, knees and hips on the floor in place by moving legs and"
             " hips."
+        )
+    elif hips.any():
+        text = (
+            "Plant Feet keeps feet and hips on the floor in place by moving legs and hips."
+            if feet.any()
+            else "Plant Feet keeps hips on the floor in place by moving the body."
         )
     elif feet.any():
         text = "Plant Feet keeps planted feet in place by moving legs and hips."

@@ -46,7 +46,7 @@ def load_two_samples():
 
 
 def name_the_farm(address):
-    preferences = ours("panels.preference_values").preferences()
+    preferences = ours("panel_parts.preference_values").preferences()
     preferences.flamenco_manager, preferences.flamenco_command = address, "mocap-assist"
 
 

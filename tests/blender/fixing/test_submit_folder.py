@@ -95,7 +95,7 @@ def test_window_goes_on_until_the_manager_answers(press, manager, folder, window
     page = f"{manager.address}/app/jobs/{JOB_ID}"
     message = (
         f"Submitted 3 takes of shoot to {page}. 2 files need Blender and were left out."
-        " Press Fix Folder for these."
+        " Move them to another folder and press Fix Folder there."
     )
     assert (status, window.reports) == ({"FINISHED"}, [({"INFO"}, message)])
 

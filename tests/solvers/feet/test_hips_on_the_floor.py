@@ -61,6 +61,7 @@ def test_hips_that_may_not_move_stay_as_they_are():
     planted = plant_feet(given, settings=PlantSettings(move_root=False))
 
     assert (planted.motion.root_positions == given.root_positions).all()
+    assert not planted.supports.any()
 
 
 @pytest.mark.parametrize("speed", [0.3, 0.6])

@@ -56,7 +56,12 @@ def test_feet_are_planted_until_the_actor_lies(recordings):
     assert contacts[lying].any(axis=0).all()
     assert not planted.contacts[lying].any()
     assert (planted.contacts[standing] == contacts[standing]).all()
-    legs = motion.skeleton.subtree(motion.skeleton.index("lhipjoint"))
+    skeleton = motion.skeleton
+    legs = [
+        joint
+        for side in ("lhipjoint", "rhipjoint")
+        for joint in skeleton.subtree(skeleton.index(side))
+    ]
     assert_allclose(
         planted.motion.rotations[400:, legs], motion.rotations[400:, legs], atol=1e-4
     )
