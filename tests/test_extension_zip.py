@@ -62,7 +62,7 @@ def shipped(tmp_path_factory) -> ZipFile:
     folder = tmp_path_factory.mktemp("zip")
     script = ROOT / ".ci" / "packages" / "build_extension.py"
     command = [sys.executable, str(script), "--plain", "--output", str(folder)]
-    built = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600)
+    built = subprocess.run(command, capture_output=True, text=True, check=True, timeout=500)
     with ZipFile(built.stdout.strip()) as archive:
         yield archive
 

@@ -50,7 +50,7 @@ class Machine:
     def run(self, *command: str) -> subprocess.CompletedProcess:
         return subprocess.run(
             [*command], cwd=ROOT, env=self.environment, capture_output=True, text=True,
-            check=False, timeout=600,
+            check=False, timeout=500,
         )  # fmt: skip
 
     def find_python(self, version: str = HERE) -> str | None:

@@ -161,7 +161,7 @@ def pytest_configure(config: pytest.Config) -> None:
         [sys.executable, "-c", INSTALL, str(zipped)],
         capture_output=True,
         text=True,
-        timeout=600,
+        timeout=500,
         check=False,
         cwd=config.stash[RESOURCES],
     )

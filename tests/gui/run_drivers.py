@@ -80,7 +80,7 @@ RECORDINGS = {
         )
     },
 }  # fmt: skip
-"""For each driver, the files copied next to it, and their sources, from ../shared/data on."""
+"""For each driver, the files copied next to it, and their paths, from ../shared/data on."""
 FIRST_FRAMES = {"track": 30}
 """Of a recording of depth: tracking a frame takes a second."""
 

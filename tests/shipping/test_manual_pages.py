@@ -59,7 +59,7 @@ def test_search_finds_the_best_section_first(tmp_path):
     script, queries = str(tmp_path / "search.js"), ["exit codes", "plantigrade zebra", ""]
     done = subprocess.run(
         ["node", "-e", SEARCH, script, *queries],
-        capture_output=True, text=True, check=True, timeout=600,
+        capture_output=True, text=True, check=True, timeout=500,
     )  # fmt: skip
 
     codes, nothing, empty = json.loads(done.stdout)

@@ -59,7 +59,7 @@ def package(folder, version, minimum="4.5.0"):
 def make_repository(zips, output):
     script = ROOT / ".ci" / "packages" / "build_repository.py"
     command = [sys.executable, str(script), "--zips", str(zips), "--output", str(output)]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=500)
 
 
 def test_blender_installs_from_the_folder_the_zip_that_suits_it(tmp_path):
@@ -80,7 +80,7 @@ def test_blender_installs_from_the_folder_the_zip_that_suits_it(tmp_path):
     address = (served / "index.json").as_uri()
     installed = subprocess.run(
         [sys.executable, "-c", INSTALL, address], capture_output=True, text=True, check=False,
-        timeout=600, env={**os.environ, "BLENDER_USER_RESOURCES": str(tmp_path / "user")},
+        timeout=500, env={**os.environ, "BLENDER_USER_RESOURCES": str(tmp_path / "user")},
     )  # fmt: skip
     assert "Enabled: 7.1.0" in installed.stdout, installed.stdout + installed.stderr
     assert installed.returncode == 0

@@ -15,8 +15,8 @@ MIN_GAP_S = 0.25
 """Seconds: the estimate by the take's own patterns fills shorter gaps. Chosen by hand on the
 development takes of the first press."""
 OWN_RIDGE = 100.0
-"""Evidence for the general relation, in frames at RATE, each counted N_OVERLAPS times. Chosen
-by hand on the development takes of the first press: x0.5 and x2 move 0.5 %."""
+"""Evidence for the general relation, in frames at TRIAL_RATE_HZ, each counted N_OVERLAPS
+times. Chosen by hand on the development takes of the first press: x0.5 and x2 move 0.5 %."""
 TRIAL_RATE_HZ = 30.0
 """Hertz: trial gaps of faster recordings are described at about this rate. By definition that
 of the patterns of Clean."""

@@ -180,7 +180,7 @@ def alarms() -> str:
 def made_streams() -> str:
     """Return detections of synthetic gestures under noise and dropouts."""
     rows: dict[str, list[str]] = {}
-    expected = {each: N_SEEDS * number for each, number in EXPECTED.items()}
+    expected = Counter({each: N_SEEDS * number for each, number in EXPECTED.items()})
     for name, sensor in SENSORS.items():
         detected, extra, delays_by_gesture = Counter[Gesture](), 0, {each: [] for each in DONE}
         for seed in range(N_SEEDS):

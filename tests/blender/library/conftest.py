@@ -202,7 +202,7 @@ def poll(load, monkeypatch):
                 time.sleep(0.02)
                 auto_update.update_libraries()
             for watcher in auto_update._watchers.values():
-                watcher._scan.result(timeout=600)
+                watcher._scan.result(timeout=500)
         return len(started)
 
     yield poll

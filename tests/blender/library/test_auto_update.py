@@ -88,7 +88,7 @@ def test_opening_a_file_delays_the_update(
     while not auto_update._running:
         auto_update.update_libraries()
         for watcher in auto_update._watchers.values():
-            watcher._scan.result(timeout=600)
+            watcher._scan.result(timeout=500)
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 
     assert poll(4) == 1

@@ -104,7 +104,7 @@ def test_two_blenders_can_index_one_library_at_once(
         subprocess.Popen(each, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         for each in calls
     ]
-    outputs = [each.communicate(timeout=600) for each in running]
+    outputs = [each.communicate(timeout=500) for each in running]
 
     assert all("READ" in out for out, _ in outputs), outputs
     found = entries()

@@ -1,4 +1,4 @@
-"""No translated label of a setting is cut where the English one is not."""
+"""No translated label left of its value is cut where the English one is not."""
 
 import pytest
 

@@ -42,10 +42,13 @@ def run(zip_path: Path, driver: Path, given: list[Path], picture: Path) -> tuple
             environment["DISPLAY"] = display
             log = ""
             for command in commands(zip_path.resolve(), folder):
-                ended = subprocess.run(
-                    command, cwd=folder, env=environment, timeout=SECONDS, check=False,
-                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                )  # fmt: skip
+                try:
+                    ended = subprocess.run(
+                        command, cwd=folder, env=environment, timeout=SECONDS, check=False,
+                        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                    )  # fmt: skip
+                except subprocess.TimeoutExpired:
+                    return 124, f"{log}Stopped after {SECONDS} s.\n"
                 log += ended.stdout
                 if ended.returncode:
                     return ended.returncode, log

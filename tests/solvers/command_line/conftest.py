@@ -40,7 +40,7 @@ def start():
         streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
         return subprocess.run(
             [sys.executable, "-B", *map(str, program), *map(str, words)],
-            cwd=ROOT, timeout=600, text=True, check=False,
+            cwd=ROOT, timeout=500, text=True, check=False,
             env=os.environ | {"PYTHONWARNINGS": "error"}, **streams,
         )  # fmt: skip
 

@@ -222,7 +222,7 @@ def test_two_processes_can_add_to_a_new_file_at_once(tmp_path):
     path = tmp_path / "shared.clips"
     processes = [adding(name, path, 12) for name in ("wave", "kick", "squat")]
     for process in processes:
-        _, errors = process.communicate(timeout=600)
+        _, errors = process.communicate(timeout=500)
         assert (process.returncode, errors) == (0, "")
 
     with load_clip_library(path) as library:

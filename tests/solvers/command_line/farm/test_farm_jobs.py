@@ -80,5 +80,5 @@ def run(*words, **environment):
     """Run a command in a folder that is not the checkout's."""
     return subprocess.run(
         [*map(str, words)], cwd="/", env=os.environ | environment, capture_output=True,
-        text=True, check=False, timeout=600,
+        text=True, check=False, timeout=500,
     )  # fmt: skip

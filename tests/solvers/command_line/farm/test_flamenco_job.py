@@ -62,7 +62,7 @@ def compiled():
         given = json.dumps(settings | {"words": words})
         done = subprocess.run(
             ["node", "-e", MANAGER, str(script_of(job_type)), given],
-            capture_output=True, text=True, check=True, timeout=600,
+            capture_output=True, text=True, check=True, timeout=500,
         )  # fmt: skip
         return json.loads(done.stdout)
 
@@ -80,7 +80,7 @@ def test_tasks_run_all_parts(compiled, small_batch, tmp_path, records_in):
     for task in job["tasks"]:
         (command,) = task["commands"]
         words = [command["parameters"]["exe"], *command["parameters"]["args"]]
-        subprocess.run(words, cwd=ROOT, check=True, capture_output=True, timeout=600)
+        subprocess.run(words, cwd=ROOT, check=True, capture_output=True, timeout=500)
 
     assert [(task["name"], task["type"]) for task in job["tasks"]] == [
         ("part 1/2", "misc"), ("part 2/2", "misc"),

@@ -28,7 +28,7 @@ def in_blender(tmp_path):
     def imported(path: Path) -> tuple[list[str], np.ndarray]:
         target = tmp_path / "found.npz"
         command = [sys.executable, SCRIPT, path, target, str(STEP)]
-        subprocess.run(command, check=True, capture_output=True, timeout=600)
+        subprocess.run(command, check=True, capture_output=True, timeout=500)
         with np.load(target) as found:
             return found["names"].tolist(), found["positions"]
 
