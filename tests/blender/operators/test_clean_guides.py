@@ -1,6 +1,7 @@
 """What guides Clean besides the take: contacts, limits and examples."""
 
 import gc
+import hashlib
 import json
 import warnings
 
@@ -71,6 +72,22 @@ def test_contacts_are_detected_again_until_one_is_edited(walker, clean, load, bl
     third = clean(plant_feet=True)
     assert (contacts.read_contacts(third, third.slots[0], **played) == mine).all()
     assert (contacts.animators_contacts((third, third.slots[0]), **played) == mine).all()
+
+
+def test_contacts_that_were_detected_before_hips_had_keys_are_detected_again(walker, load):
+    contacts = load("mocap_assist.actions.contact_keys")
+    action, frames = walker.animation_data.action, np.arange(1.0, 31.0)
+    source = (action, action.slots[0])
+    found = np.zeros((30, 7), bool)
+    found[:10, 0] = found[5:20, 2] = True
+    contacts.write_contacts(walker, *source, frames, found, detected=True)
+    bag = action.layers[0].strips[0].channelbag(action.slots[0])
+    bag.fcurves.remove(bag.fcurves.find('["mocap_contact_hips"]', index=0))
+    feet_hands_knees = [each.ravel().tolist() for each in contacts.contact_keys(*source)][:6]
+    former = hashlib.sha256(repr(feet_hands_knees).encode()).hexdigest()
+    action[contacts.DETECTED] = former
+
+    assert contacts.animators_contacts(source, frames) is None
 
 
 def test_plant_feet_detects_contacts_again_until_a_key_is_edited(walker, load, blank):
