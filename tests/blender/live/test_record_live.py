@@ -101,8 +101,8 @@ def check_contacts(load, rig, frames):
     """The feet of a walk come down and lift off, as detected: Plant Feet may detect again."""
     keys, data = load("mocap_assist.actions.contact_keys"), rig.animation_data
     channels = keys.contact_keys(data.action, data.action_slot)
-    channels, others = channels[:2], channels[2:]  # of feet; of hands and knees
-    assert len(others) == 4 and not any(map(len, others))
+    channels, others = channels[:2], channels[2:]  # of feet; of other parts
+    assert len(others) == 5 and not any(map(len, others))
     for channel in channels:
         assert channel[[0, -1], 0] == pytest.approx(frames, abs=0.5)
     assert {value for channel in channels for value in channel[:, 1]} == {0.0, 1.0}
