@@ -52,10 +52,15 @@ HEAD = re.compile(
     re.DOTALL,
 )
 JOINT = re.compile(
-    rb"(?i)\"[^\"]*(hip|pelvi|spine|head|neck|nose|should|arm|elbow|wrist|hand|leg|knee|ankle|foot"
-    rb"|root)[^\"]*\"\s*:\s*(\{\s*\"(x|pos\w*)\"\s*:\s*\[?|(\[\s*){1,2})\s*[-\d]"
+    # The word begins the name, or follows a sign, a lower-case letter or a word of its own.
+    rb"\"(?:[^\"]*(?:[^\"a-zA-Z]|(?<=[a-z])(?=[A-Z])))?"
+    rb"(?i:left|right|upper|lower|up|low|fore|mid|[lr])*"
+    rb"(?i:hips?|pelvis|spine|head|neck|nose|shoulder|arm|elbow|wrist|hand|leg|knee|ankle|foot|root)"
+    rb"(?i:left|right|joint|center|top|base|tip)*(?![a-z])[^\"]*\"\s*:\s*"
+    rb"(?:\{\s*\"(?i:pos\w*)\"\s*:\s*)?"
+    rb"(?:\{\s*\"[xX]\"\s*:\s*\[?\s*[-\d]"
+    rb"|\[\s*(?:null\s*,\s*)*(?:\[\s*)?-?\d[^\s,\[\]]*(?:\s*,\s*-?\d[^\s,\[\]]*){2})"
 )
-"""A joint with its place, or with the first one of its places."""
 NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*\[\s*\[\s*[-\d]")
 """The first frame of those that are keyed by their number."""
 

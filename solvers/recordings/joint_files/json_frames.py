@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import pairwise
+from itertools import chain, groupby, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +13,8 @@ from .json_people import MIN_JOINTS, is_place
 
 FRAME_KEY = re.compile(r"(?i)\s*(?:frame|f|t)?[\s_\-]*(\d+(?:\.\d+)?)\s*")
 """Key of a frame: its number, or its time in seconds."""
-MAX_GAP_FRAMES = 1000
-"""Missing numbers in a row, frames, up to which they are frames without a body. It bounds the
-memory of damaged files."""
+MAX_MISSING_FRAMES = 100_000
+"""Missing numbers, frames, that a file may have. It bounds the memory of damaged files."""
 TIME = "time"
 
 
@@ -31,26 +30,53 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
         Joints have different numbers of frames.
     """
     places: dict[str, list[Any]] = {}
-    numbered: dict[str, JsonMember] = {}
-    done = 1.0
-    for member in members:
-        done = member.done
-        if member.key and is_place(member.value):
-            places.setdefault(member.key, []).append(member.value)
-        elif FRAME_KEY.fullmatch(member.key) and isinstance(member.value, Mapping):
-            numbered[member.key] = member
-        elif isinstance(member.value, Mapping) and _is_keyed(member.value):
-            yield from _regrouped(member, path)
-        else:
-            yield member
-    yield from _by_number("", {key: each.value for key, each in numbered.items()}, done)
-    yield from _regrouped(JsonMember("", places, done), path)
+    numbered: dict[str, Any] = {}
+    for key, group in groupby(members, lambda member: member.key):
+        first, rest = _with_nulls(group)
+        value = first[-1].value
+        if key and value is not None and is_place(value):
+            for member in chain(first, rest):
+                if is_place(member.value):
+                    places.setdefault(key, []).append(member.value)
+                else:
+                    yield member
+            continue
+        if FRAME_KEY.fullmatch(key) and isinstance(value, Mapping):
+            people = [member.value for member in rest]
+            numbered[key] = [value, *people] if people else value
+            continue
+        second = next(rest, None)
+        is_alone = len(first) == 1 and second is None
+        if is_alone and isinstance(value, Mapping) and _is_keyed(value, bool(key)):
+            yield from _regrouped(first[0], path)
+            continue
+        yield from first
+        if second is not None:
+            yield second
+        yield from rest
+    yield from _by_number("", numbered, 1.0, path)
+    yield from _regrouped(JsonMember("", places, 1.0), path)
 
 
-def _is_keyed(values: Mapping[str, Any]) -> bool:
-    """Return whether a mapping has a frame for each number, or a path for each joint."""
+def _with_nulls(group: Iterator[JsonMember]) -> tuple[list[JsonMember], Iterator[JsonMember]]:
+    """Return the members up to the first one that is not null, and all others."""
+    first = []
+    for member in group:
+        first.append(member)
+        if member.value is not None:
+            break
+    return first, group
+
+
+def _is_keyed(values: Mapping[str, Any], may_be_numbered: bool) -> bool:
+    """Return whether a mapping has a frame for each number, or a path for each joint.
+
+    The numbers in an element of a list are those of people.
+    """
     if len(values) > 1 and all(FRAME_KEY.fullmatch(key) for key in values):
-        return all(isinstance(value, Mapping | list) for value in values.values())
+        return may_be_numbered and all(
+            isinstance(value, Mapping | list) for value in values.values()
+        )
     return sum(_path(value) is not None for value in values.values()) >= MIN_JOINTS
 
 
@@ -73,7 +99,7 @@ def _regrouped(member: JsonMember, path: Path | str) -> Iterator[JsonMember]:
     lengths = sorted({len(found) for found in paths.values()})
     is_numbered = len(values) > 1 and all(FRAME_KEY.fullmatch(key) for key in values)
     if is_numbered and not (has_layout(len(paths)) and not has_layout(lengths[-1])):
-        yield from _by_number(member.key, values, member.done)
+        yield from _by_number(member.key, values, member.done, path)
     elif len(paths) >= MIN_JOINTS:
         if len(lengths) > 1:
             short, full = (next(k for k, v in paths.items() if len(v) == n)
@@ -88,7 +114,9 @@ def _regrouped(member: JsonMember, path: Path | str) -> Iterator[JsonMember]:
             yield JsonMember(member.key, value, member.done)
 
 
-def _by_number(key: str, values: Mapping[str, Any], done: float) -> Iterator[JsonMember]:
+def _by_number(
+    key: str, values: Mapping[str, Any], done: float, path: Path | str
+) -> Iterator[JsonMember]:
     """Yield values in the order of the numbers in their keys, None for missing numbers."""
     found = {name: FRAME_KEY.fullmatch(name) for name in values}
     numbers = {float(match[1]): values[name] for name, match in found.items() if match}
@@ -100,10 +128,13 @@ def _by_number(key: str, values: Mapping[str, Any], done: float) -> Iterator[Jso
             yield JsonMember(key, timed, done)
         return
     step = min((after - before for before, after in pairwise(ordered)), default=1.0)
-    before = None
-    for number in ordered:
-        n_missing = 0 if before is None else round((number - before) / step) - 1
-        for _ in range(n_missing if n_missing <= MAX_GAP_FRAMES else 0):
+    missing = [round((after - before) / step) - 1 for before, after in pairwise(ordered)]
+    if sum(missing) > MAX_MISSING_FRAMES:
+        raise InvalidFileError(
+            f"{path} lacks {sum(missing)} frames between {ordered[0]:.0f} and"
+            f" {ordered[-1]:.0f}. Number the frames without large gaps, and export it again."
+        )
+    for n_missing, number in zip([0, *missing], ordered, strict=False):
+        for _ in range(n_missing):
             yield JsonMember(key, None, done)
         yield JsonMember(key, numbers[number], done)
-        before = number

@@ -75,9 +75,12 @@ def _person(body: Mapping[str, Any], count: int) -> Iterator[JsonPerson]:
 
 
 def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
-    """Yield who has a place for each joint, by its name, without a key for all of them."""
+    """Yield who has a place for each joint, by its name, or who is keyed by name or number."""
     nested = {key: value for key, value in body.items() if isinstance(value, Mapping)}
     for name, joints in {identity: body, **nested}.items():
+        if any(map(joints.get, POINT_KEYS)):
+            yield from (each._replace(identity=name) for each in _person(joints, 0))
+            continue
         places = {str(key): place_of(value) for key, value in joints.items() if value}
         for width in (3, 4):
             found = {key: place for key, place in places.items() if _width(place) == width}
@@ -88,7 +91,12 @@ def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson
 
 
 def is_place(value: Any) -> bool:
-    """Return whether a value is x, y and z, perhaps with a fourth number, or null."""
+    """Return whether a value is x, y and z, perhaps with a fourth number, or null.
+
+    An object with joints or people is a frame, which may have the place of its camera, too.
+    """
+    if isinstance(value, Mapping) and not value.keys().isdisjoint((*POINT_KEYS, *PEOPLE_KEYS)):
+        return False
     return value is None or _width(place_of(value)) in {3, 4}
 
 

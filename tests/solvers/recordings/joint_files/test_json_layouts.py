@@ -7,7 +7,7 @@ import pytest
 
 from solvers.errors import InvalidFileError
 from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics, roles_by_name
-from solvers.recordings import list_bodies, read_recording
+from solvers.recordings import detect_format, list_bodies, read_recording
 from solvers.samples import walking_gait
 
 F = 30
@@ -210,3 +210,86 @@ def test_unknown_names_apart_from_the_positions_are_ignored(tmp_path, walk):
     path.write_text(json.dumps({"names": [f"J{k}" for k in range(17)], "positions": positions}))
 
     assert "left_elbow" in read_recording(path).names
+
+
+def named(walk, k):
+    return {name: walk[role][k].tolist() for name, role in LANDMARKS.items()}
+
+
+def test_null_among_frames_is_a_frame_without_a_body(tmp_path, walk):
+    frames = [None if k in {0, 7} else named(walk, k) for k in range(F)]
+
+    recording = read_recording(write(tmp_path / "take.json", {"fps": 30, "frames": frames}))
+
+    missing = np.isnan(recording.tracks.positions).all(axis=(1, 2))
+    assert (len(missing), np.flatnonzero(missing).tolist()) == (F, [0, 7])
+
+
+def test_null_at_the_begin_of_the_path_of_a_joint_is_a_missing_place(tmp_path, walk):
+    content = {name: [None, *walk[role][1:].tolist()] for name, role in LANDMARKS.items()}
+
+    recording = read_recording(write(tmp_path / "take.json", content))
+
+    missing = np.isnan(recording.tracks.positions).all(axis=(1, 2))
+    assert (len(missing), np.flatnonzero(missing).tolist()) == (F, [0])
+
+
+def test_frame_with_a_place_of_its_own_is_no_joint(tmp_path, walk):
+    frames = [{"translation": [0, 0, 1], "joints": named(walk, k)} for k in range(F)]
+
+    recording = read_recording(write(tmp_path / "take.json", {"frames": frames}))
+
+    assert recording.tracks.n_frames == F
+
+
+@pytest.mark.parametrize("inside", [lambda joints: joints, lambda joints: {"joints": joints}])
+@pytest.mark.parametrize("wrap", [
+    lambda frames: frames,
+    lambda frames: {"frames": [None, *frames[1:]]},
+    lambda frames: {"frames": {str(k): frame for k, frame in enumerate(frames)}},
+    lambda frames: {str(k): frame for k, frame in enumerate(frames)},
+    lambda frames: {
+        str(k): [{"id": who, "joints": joints.get("joints", joints)}
+                 for who, joints in frame.items()]
+        for k, frame in enumerate(frames)
+    },
+])  # fmt: skip
+def test_numbers_in_a_frame_are_those_of_people(tmp_path, walk, wrap, inside):
+    """Before, two people could be one who jumps."""
+    frames = [{who: inside(named(walk, k)) for who in ("1", "2")} for k in range(F)]
+
+    bodies = list_bodies(write(tmp_path / "take.json", wrap(frames)))
+
+    assert [body.name for body in bodies] == ["1", "2"]
+    assert {body.n_frames for body in bodies} <= {F - 1, F}
+
+
+def test_very_large_gaps_between_numbers_are_refused(tmp_path, walk):
+    content = {str(k): named(walk, 0) for k in (0, 1, 2_000, 1_000_000)}
+
+    with pytest.raises(InvalidFileError, match="lacks 999997 frames between 0 and 1000000"):
+        read_recording(write(tmp_path / "take.json", content))
+
+
+def test_a_long_gap_keeps_its_length(tmp_path, walk):
+    content = {str(k): named(walk, k % F) for k in (*range(9), *range(1509, 1520))}
+
+    assert read_recording(write(tmp_path / "take.json", content)).tracks.n_frames == 1520
+
+
+@pytest.mark.parametrize("content", [
+    {"legend": [1, 2, 3]}, {"handles": [[1, 2, 3]]}, {"headers": {"x": 1}},
+    {"alarm": [1, 2, 3]}, {"ship": [1, 2, 3]}, {"hand": [1, 2]}, {"spine": 3},
+])  # fmt: skip
+def test_words_that_contain_a_joint_are_no_joints(tmp_path, content):
+    assert detect_format(write(tmp_path / "take.json", content)) is None
+
+
+@pytest.mark.parametrize("name", [
+    "hips_joint", "left_upLeg_joint", "LeftForeArm", "mixamorig:LeftUpLeg", "upperarm_l",
+    "spine_01", "lhip", "RKnee", "SpineBase", "headtop", "LOWER_LEG", "Bip01 L Foot", "PELVIS",
+])  # fmt: skip
+def test_names_of_joints_are_found(tmp_path, name):
+    for place in ([0.1, 1, -2e-3], [None, [1, 2, 3]], {"X": 1}, {"pos": {"x": 1.0}}):
+        found = detect_format(write(tmp_path / "take.json", {name: place}))
+        assert found is not None and found.name == "JSON of joints"
