@@ -15,6 +15,7 @@ from .containers import (
 )
 from .format_description import Format, one_body
 from .joint_files import (
+    MAX_TITLE_LINES,
     is_azure_csv,
     is_azure_json,
     is_frame_json,
@@ -81,8 +82,6 @@ from .skeleton_files import (
 HEAD_BYTES = 4096
 MAX_TITLES_BYTES = 1 << 17
 """Of the first lines of a table, where these are longer than the head of other files."""
-N_TITLE_LINES = 4
-"""Lines of a table that its head must have: names, axes, units and a frame."""
 MAX_DIRECTORY_BYTES = 1 << 16
 """Of the end of an archive, where the names of its members are."""
 MAX_JSON_BYTES = 1 << 22
@@ -107,7 +106,7 @@ def _is_wide_table(head: bytes) -> bool:
     """Return whether a head is text with long lines of cells; JSON has no such lines."""
     is_text = len(head) >= HEAD_BYTES - len(BYTE_ORDER_MARK) and b"\0" not in head
     is_json = head.lstrip()[:1] in {b"{", b"["}
-    return is_text and not is_json and len(head.splitlines()) <= N_TITLE_LINES
+    return is_text and not is_json and len(head.splitlines()) <= MAX_TITLE_LINES
 
 
 FORMATS = (

@@ -11,7 +11,7 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
 from ...progress import READING, Progress, Remark, unwatched, within
-from ..containers import LineReader, stream_cells
+from ..containers import LineReader, shown, stream_cells
 from ..conventions import (
     DEFAULT_FRAME_RATE,
     Bodies,
@@ -126,7 +126,7 @@ def open_point_table(
     else:
         times = times * (columns.second or second_of_times(times, progress))
     unit = columns.unit if scale is None else scale
-    people = _people(columns.names, points)
+    people = _people(columns.names, points, progress) if np.isfinite(points).any() else []
     duration = len(points) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
     listed = tuple(
         observed_body(
@@ -148,14 +148,25 @@ def open_point_table(
     return Bodies(str(path), listed, read)
 
 
-def _people(names: tuple[str, ...], points: Array) -> list[MarkerSubject]:
+def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[MarkerSubject]:
     """Return the people whose names begin those of the points; empty for a single one."""
-    people = [
-        each
-        for each in split_subjects(names)
-        if body_of_named_points(each.names, points[:, each.columns]) is not None
-    ]
-    return people if len(people) > 1 else []
+    people, others = list[MarkerSubject](), list[str]()
+    for each in split_subjects(names):
+        if body_of_named_points(each.names, points[:, each.columns]) is None:
+            others.append(each.name)
+        else:
+            people.append(each)
+    if len(people) < 2:
+        return []
+    if others:
+        progress(
+            0.8,
+            Remark(
+                f"Left out, since they are no complete bodies: {shown(', '.join(others))}. To"
+                " import their points as markers, store each in a table of its own"
+            ),
+        )
+    return people
 
 
 def recording_of_points(

@@ -11,7 +11,7 @@ from solvers.motion import (
     forward_kinematics,
     roles_by_name,
 )
-from solvers.recordings import list_bodies, read_recording
+from solvers.recordings import detect_format, list_bodies, read_recording
 from solvers.samples import walking_gait
 
 F = 40
@@ -181,3 +181,43 @@ def test_other_names_above_the_axes_are_markers(tmp_path, walk):
 
     assert isinstance(recording, Tracks)
     assert len(recording.names) == len(NAMES)
+
+
+def titles_of(people):
+    """Return the titles of people with these joints."""
+    titles = [(who, name, axis) for who, names in people for name in names for axis in "xyz"]
+    return ",".join(f"{who}:{name}_{axis}" for who, name, axis in titles)
+
+
+def test_titles_of_people_without_frames_are_refused(tmp_path):
+    content = titles_of([("Anna", NAMES), ("Ben", NAMES)]) + "\n\n"
+
+    with pytest.raises(InvalidFileError, match="no points that are observed in any frame"):
+        read(tmp_path / "take.csv", content)
+
+
+def test_names_of_who_is_no_complete_body_are_reported(tmp_path, walk):
+    people = [("A", NAMES), ("B", NAMES), ("Carl", [*NAMES][:-1]), ("Box", ["P1", "P2"])]
+    rows = [
+        ",".join(f"{value:.5f}" for _, names in people for name in names
+                 for value in walk[NAMES.get(name, "hips")][frame])
+        for frame in range(F)
+    ]  # fmt: skip
+
+    recording, said = read(tmp_path / "take.csv", "\n".join([titles_of(people), *rows]) + "\n")
+
+    check(recording, walk)
+    assert any("no complete bodies: Carl, Box." in text for text in said)
+
+
+def test_long_titles_below_other_lines_are_recognized(tmp_path):
+    names = [f"marker{number:03d}" for number in range(300)]
+    above = [f"# line {number}" for number in range(4)]
+    axes = ",".join(["x", "y", "z"] * len(names))
+    frame = ",".join(["1.0"] * 3 * len(names))
+    path = tmp_path / "take.csv"
+    path.write_text("\n".join([*above, ",".join(repeated([], names)), axes, frame]) + "\n")
+
+    found = detect_format(path)
+
+    assert found is not None and found.name == "table of points"
