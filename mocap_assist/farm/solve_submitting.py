@@ -18,10 +18,11 @@ from ...solvers.command_line.files import (
     scene_files_in,
     unique_targets,
 )
-from ...solvers.command_line.fix_verb import add_fix_options, list_takes
+from ...solvers.command_line.fix_verb import add_fix_options
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import reason_of, write_atomically
 from ...solvers.progress import Progress
+from ...solvers.recordings import takes_in
 from ...solvers.workflows import FixSettings
 from ..track.pose_previews import Show, no_preview
 
@@ -73,7 +74,7 @@ def submit_takes(problem: Submission, progress: Progress, show: Show = no_previe
         The Flamenco Manager does not accept the job.
     """
     progress(0.0, "Listing")
-    found = find_recordings([problem.takes], problem.output_folder, list_takes)
+    found = find_recordings([problem.takes], problem.output_folder, takes_in)
     n_left_out = len(scene_files_in(problem.takes, problem.output_folder))
     targets = unique_targets([name for _, name in found], [MOTIONS] * len(found))
     lines = [

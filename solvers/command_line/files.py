@@ -19,6 +19,7 @@ from ..recordings import (
     open_bodies,
     read_as,
     recordings_in,
+    takes_in,
     write_bvh,
     write_c3d,
     write_trc,
@@ -38,6 +39,8 @@ RECORDED = {**FOR_MOTIONS, **dict.fromkeys(POINTS, "points")}
 POINTS_BY_DEFAULT = ".trc"
 MAX_NAME_BYTES = 255
 """Bytes in the name of a file; on Windows, units of two bytes."""
+LISTING_ALL = (recordings_in, takes_in)
+"""Lists of recordings of any kind, which would have those of files that need Blender, too."""
 LEARNED = {".npz": "learned patterns"}
 
 
@@ -145,7 +148,8 @@ def find_recordings(
         if excluded is not None:
             inside = [each for each in inside if real_path(excluded) not in each[1].parents]
         if not inside:
-            raise InvalidFileError(_no_recording(path, excluded))
+            needing = scene_files_in(path, excluded) if list_recordings in LISTING_ALL else []
+            raise InvalidFileError(_no_recording(path, needing))
         is_single = len(paths) == 1 and inside != [(path, root)]
         base = root if is_single else root.parent
         found += [(file, path.relative_to(base)) for file, path in inside]
@@ -162,15 +166,14 @@ def scene_files_in(folder: Path, excluded: Path | None = None) -> list[Path]:
     ]
 
 
-def _no_recording(folder: Path, excluded: Path | None) -> str:
+def _no_recording(folder: Path, needing: Sequence[Path]) -> str:
     """Return that a folder has no recordings, and the way if it has files that need Blender."""
-    needing = scene_files_in(folder, excluded)
     if not needing:
         return f"There is no recording in the folder {folder}."
     return (
         f"There is no recording in the folder {folder}, but files that need Blender, such as"
-        f" {needing[0].name}. Press Fix Folder there, or run blender --background --command"
-        " mocap_assist each FOLDER --output-folder DIR -- import."
+        f" {needing[0].name}. In Blender, press Fix Folder, or run blender --background"
+        f" --command mocap_assist each {folder} --output-folder DIR -- import."
     )
 
 

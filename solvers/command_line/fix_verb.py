@@ -1,13 +1,12 @@
 """`fix`: fix takes of any origin with the steps that suit each."""
 
 import argparse
-from pathlib import Path
 
 from ..depth_scene import DepthRecording
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, within
-from ..recordings import depth_takes_in, is_depth_recording, read_depth, recordings_in
+from ..recordings import is_depth_recording, read_depth
 from ..workflows import (
     FixedTake,
     FixSettings,
@@ -43,16 +42,6 @@ def perform_fix(task: Task, prepared: None, progress: Progress) -> Outcome:
     fixed = fix_take(recording, settings=settings, progress=within(progress, 0.1, 0.95))
     write(fixed.recording, task.target, within(progress, 0.95, 1.0))
     return Outcome(_summary(fixed), _figures(fixed))
-
-
-def list_takes(folder: Path) -> list[Path]:
-    """Return the recordings in a folder and below, depth images included, by name.
-
-    A folder of depth images is one recording: files in it are none.
-    """
-    depth = depth_takes_in(folder)
-    others = [path for path in recordings_in(folder) if not {path, *path.parents} & set(depth)]
-    return sorted([*others, *depth])
 
 
 def _read(task: Task, progress: Progress) -> Motion | Tracks | JointRecording | DepthRecording:

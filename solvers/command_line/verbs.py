@@ -10,12 +10,12 @@ from ..denoising import (
     measure_quality,
 )
 from ..progress import Progress, within
-from ..recordings import FloorPlacementSettings, depth_takes_in
+from ..recordings import FloorPlacementSettings, depth_takes_in, takes_in
 from .batch import report_folder
 from .capture_verb import add_capture_options, perform_capture, read_body
 from .denoise_verb import add_denoise_options, learn_prior, perform_denoise
 from .files import add_reading_options, convert, read, read_all
-from .fix_verb import add_fix_options, list_takes, perform_fix
+from .fix_verb import add_fix_options, perform_fix
 from .library_verbs import add_find_options, add_index_options, perform_find, perform_index
 from .options import arguments_from, settings_from_arguments
 from .postures_verb import add_postures_options, perform_postures
@@ -96,7 +96,7 @@ VERBS = {
         add_fix_options,
         perform_fix,
         writes_motions=True,
-        list_recordings=list_takes,
+        list_recordings=takes_in,
     ),
     "denoise": Verb(
         "Remove jitter, spikes and gaps from recordings, and plant standing feet.",

@@ -25,6 +25,7 @@ from .folders import (
     may_contain_motion,
     one_path_per_take,
     recordings_in,
+    takes_in,
 )
 from .formats import detect_format
 from .joint_files import (
@@ -106,6 +107,7 @@ __all__ = [
     "refuse_stand_ins",
     "settle",
     "suffix_by_content",
+    "takes_in",
     "write_bvh",
     "write_c3d",
     "write_joint_csv",

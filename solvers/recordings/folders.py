@@ -85,3 +85,13 @@ def depth_takes_in(
     return [
         path for path in paths if is_folder(path) or attempt(path, is_depth_recording, path)
     ]
+
+
+def takes_in(folder: Path) -> list[Path]:
+    """Return the recordings in a folder and below, depth images included, by name.
+
+    A folder of depth images is one recording: files in it are none.
+    """
+    depth = depth_takes_in(folder)
+    others = [path for path in recordings_in(folder) if not {path, *path.parents} & set(depth)]
+    return sorted([*others, *depth])

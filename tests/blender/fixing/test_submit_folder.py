@@ -115,7 +115,9 @@ def test_folder_of_files_that_need_blender_names_the_way(blank, manager, folder)
         path.with_suffix(".fbx").write_bytes(b"Kaydara FBX Binary")
         path.unlink()
 
-    with pytest.raises(RuntimeError, match=r"such as a\.fbx\. Press Fix Folder there, or run"):
+    with pytest.raises(
+        RuntimeError, match=r"such as a\.fbx\. In Blender, press Fix Folder, or"
+    ):
         blank.ops.mocap_assist.submit_folder(directory=str(folder))
 
     assert not manager.requests

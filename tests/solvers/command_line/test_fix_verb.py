@@ -7,9 +7,8 @@ import pytest
 from depth_files import depth_npz
 from marked_bodies import markers_on
 
-from solvers.command_line.fix_verb import list_takes
 from solvers.motion import Tracks
-from solvers.recordings import read_bvh, write_bvh, write_c3d, write_trc
+from solvers.recordings import read_bvh, takes_in, write_bvh, write_c3d, write_trc
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
 
@@ -71,7 +70,7 @@ def test_fix_refuses_points_of_no_marker_set_in_one_sentence(call, tmp_path):
 def test_takes_of_a_folder_include_depth_images(walk_file, tmp_path):
     (tmp_path / "depth.npz").write_bytes(depth_npz(np.full((2, 6, 8), 4000, np.uint16)))
 
-    assert list_takes(tmp_path) == [tmp_path / "depth.npz", walk_file]
+    assert takes_in(tmp_path) == [tmp_path / "depth.npz", walk_file]
 
 
 def test_fix_names_a_marker_that_is_never_seen(call, walk, tmp_path):

@@ -123,7 +123,11 @@ def test_a_folder_of_files_that_need_blender_names_the_way(call, tmp_path):
     status, _, error_output = call("quality", tmp_path / "shots")
 
     assert status == 2
-    assert "such as walk.fbx. Press Fix Folder there, or run blender" in error_output
+    assert "such as walk.fbx. In Blender, press Fix Folder, or run blender" in error_output
+    assert f" each {tmp_path / 'shots'} --output-folder DIR -- import." in error_output
+
+    of_depth = call("capture", tmp_path / "shots", "--output-folder", tmp_path / "out")
+    assert of_depth[2] == f"There is no recording in the folder {tmp_path / 'shots'}.\n"
 
 
 def test_a_report_needs_a_folder(call, leg_file, tmp_path):
