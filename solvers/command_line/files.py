@@ -14,6 +14,7 @@ from ..progress import Progress, within
 from ..recordings import (
     FloorPlacement,
     ReadingSettings,
+    describe_no_recording,
     detect_format,
     is_scene_file,
     open_bodies,
@@ -149,7 +150,7 @@ def find_recordings(
             inside = [each for each in inside if real_path(excluded) not in each[1].parents]
         if not inside:
             needing = scene_files_in(path, excluded) if list_recordings in LISTING_ALL else []
-            raise InvalidFileError(_no_recording(path, needing))
+            raise InvalidFileError(describe_no_recording(path, needing))
         is_single = len(paths) == 1 and inside != [(path, root)]
         base = root if is_single else root.parent
         found += [(file, path.relative_to(base)) for file, path in inside]
@@ -164,17 +165,6 @@ def scene_files_in(folder: Path, excluded: Path | None = None) -> list[Path]:
         for path in files_below(folder)
         if is_scene_file(path) and outside not in real_path(path).parents
     ]
-
-
-def _no_recording(folder: Path, needing: Sequence[Path]) -> str:
-    """Return that a folder has no recordings, and the way if it has files that need Blender."""
-    if not needing:
-        return f"There is no recording in the folder {folder}."
-    return (
-        f"There is no recording in the folder {folder}, but files that need Blender, such as"
-        f" {needing[0].name}. In Blender, press Fix Folder, or run blender --background"
-        f" --command mocap_assist each {folder} --output-folder DIR -- import."
-    )
 
 
 def read_all(

@@ -22,6 +22,7 @@ from .depth_files import (
 )
 from .folders import (
     depth_takes_in,
+    describe_no_recording,
     may_contain_motion,
     one_path_per_take,
     recordings_in,
@@ -75,6 +76,7 @@ __all__ = [
     "ReadingSettings",
     "Unit",
     "depth_takes_in",
+    "describe_no_recording",
     "detect_depth_format",
     "detect_format",
     "is_depth_folder",

@@ -95,3 +95,16 @@ def takes_in(folder: Path) -> list[Path]:
     depth = depth_takes_in(folder)
     others = [path for path in recordings_in(folder) if not {path, *path.parents} & set(depth)]
     return sorted([*others, *depth])
+
+
+def describe_no_recording(folder: Path, needing_blender: Sequence[Path]) -> str:
+    """Return that a folder has no recordings, and the way if it has files that need Blender."""
+    text = f"There is no recording in the folder {folder}."
+    if needing_blender:
+        file = needing_blender[0].name
+        text += (
+            f" To import files such as {file}, press Fix Folder in Blender, or run"
+            f" blender --background --command mocap_assist each {folder} --output-folder DIR"
+            " -- import."
+        )
+    return text

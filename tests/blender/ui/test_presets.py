@@ -43,4 +43,4 @@ def test_own_preset_is_stored_where_blender_stores_presets(blank):
     ops.script.execute_preset(filepath=str(folder / "Mine.py"), menu_idname=kind.__name__)
     assert (clean.strength, clean.joint_limits, clean.examples) == (0.25, "CONSTRAINTS", "jump")
     assert ops.mocap_assist.clean_preset_add(name="Mine", remove_name=True) == {"FINISHED"}
-    assert not list(folder.iterdir())
+    assert not list(folder.glob("*.py"))
