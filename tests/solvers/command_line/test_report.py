@@ -123,7 +123,7 @@ def test_a_folder_of_files_that_need_blender_names_the_way(call, tmp_path):
     status, _, error_output = call("quality", tmp_path / "shots")
 
     assert status == 2
-    assert "such as walk.fbx. In Blender, press Fix Folder, or run blender" in error_output
+    assert "such as walk.fbx, press Fix Folder in Blender, or run blender" in error_output
     assert f" each {tmp_path / 'shots'} --output-folder DIR -- import." in error_output
 
     of_depth = call("capture", tmp_path / "shots", "--output-folder", tmp_path / "out")
