@@ -115,9 +115,7 @@ def test_folder_of_files_that_need_blender_names_the_way(blank, manager, folder)
         path.with_suffix(".fbx").write_bytes(b"Kaydara FBX Binary")
         path.unlink()
 
-    with pytest.raises(
-        RuntimeError, match=r"such as a\.fbx, press Fix Folder in Blender, or"
-    ):
+    with pytest.raises(RuntimeError, match=r"such as a\.fbx, press Fix Folder in Blender, or"):
         blank.ops.mocap_assist.submit_folder(directory=str(folder))
 
     assert not manager.requests
