@@ -1,4 +1,4 @@
-"""Hands and knees on the floor: detected against known ones, and held in place."""
+"""Hands, knees and hips on the floor: detected against known ones, and held in place."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
@@ -28,10 +28,10 @@ PARTS = {"hands": slice(0, 2), "knees": slice(2, 4), "hips": slice(4, 5)}
 """Columns of `SUPPORTS`."""
 HEIGHT_M = 0.1
 """Meters above the lowest joint of the take, of the peer."""
-OURS, FEET_ALONE, GIVEN = "feet, hands and knees", "feet alone", "as given"
+OURS, FEET_ALONE, GIVEN = "all parts", "feet alone", "as given"
 COLUMNS = (
     "frames in contact", "slide, cm/s", "worst drift, mm", "elbow, times given",
-    "largest change, deg",
+    "largest change, deg", "root to the truth, cm",
 )  # fmt: skip
 Planter = Callable[[Motion], Motion]
 
@@ -48,7 +48,7 @@ def support_tables(actors: Iterable[str], movements: Iterable[takes.Take]) -> li
         _detection_table(),
         _movement_table(movements),
         *(
-            _slide_table(f"{title}, {what}", map(spoil, motions))
+            _slide_table(f"{title}, {what}", motions, spoil)
             for title, motions in (
                 ("Made bodies on hands and knees", made),
                 ("HDM05, actors lie down", captured),
@@ -79,7 +79,7 @@ def _detection_table() -> str:
         rows[f"all, {part}"] = [
             _precision_and_recall(*totals[method, part]) for method in detectors
         ]
-    title = f"**Hands and knees of made bodies: precision and recall, {RATE_HZ:g} Hz**"
+    title = f"**Hands, knees and hips of made bodies: precision and recall, {RATE_HZ:g} Hz**"
     return f"{title}\n\n{table(['take', *detectors], rows)}\n"
 
 
@@ -93,7 +93,7 @@ def _movement_table(movements: Iterable[takes.Take]) -> str:
         else:
             others += 1
     rows[f"{others} other takes"] = ["0"] * len(SUPPORTS)
-    title = "**All kinds of movement: frames in which a hand or knee is detected**"
+    title = "**All kinds of movement: frames in which a part is detected**"
     return f"{title}\n\n{table(['take', *SUPPORTS], rows)}\n"
 
 
@@ -121,9 +121,12 @@ def _below_thresholds(motion: Motion) -> Flags:
     return np.stack(found, axis=1)
 
 
-def _slide_table(title: str, inputs: Iterable[Motion]) -> str:
+def _slide_table(
+    title: str, truths: Iterable[Motion], spoil: Callable[[Motion], Motion]
+) -> str:
     figures: dict[str, list[list[float]]] = defaultdict(list)
-    for given in inputs:
+    for truth in truths:
+        given = spoil(truth)
         planted = plant_feet(given)
         assert planted.supports is not None
         if not planted.supports.any():
@@ -132,11 +135,11 @@ def _slide_table(title: str, inputs: Iterable[Motion]) -> str:
         for name, motion in (
             (OURS, planted.motion), (FEET_ALONE, alone.motion), (GIVEN, given)
         ):  # fmt: skip
-            figures[name].append(_figures(given, motion, planted.supports))
+            figures[name].append(_figures(truth, given, motion, planted.supports))
     rows = {
         name: [number(float(value)) for value in (
             np.sum(of_takes, axis=0)[0], np.mean(of_takes, axis=0)[1],
-            *np.max(of_takes, axis=0)[2:],
+            *np.max(of_takes, axis=0)[2:-1], np.nanmean([each[-1] for each in of_takes]),
         )]
         for name, of_takes in figures.items()
     }  # fmt: skip
@@ -144,7 +147,7 @@ def _slide_table(title: str, inputs: Iterable[Motion]) -> str:
     return f"**{title}, {n_takes} takes**\n\n{table(['planted', *COLUMNS], rows)}\n"
 
 
-def _figures(given: Motion, motion: Motion, supports: Flags) -> list[float]:
+def _figures(truth: Motion, given: Motion, motion: Motion, supports: Flags) -> list[float]:
     """Return the figures of `COLUMNS`."""
     humanoid, poses = find_humanoid_map(given.skeleton), forward_kinematics(given)
     limbs = find_limb_contacts(given, poses, humanoid, supports)
@@ -155,7 +158,10 @@ def _figures(given: Motion, motion: Motion, supports: Flags) -> list[float]:
     roles = humanoid.indices(given.skeleton)
     elbows = acceleration_ratio(given, motion, [roles[f"{side}LowerArm"] for side in SIDES])
     change = np.degrees(angle_between(motion.rotations, given.rotations)).max()
-    return [n_frames, slide, drift, elbows, float(change)]
+    sits = supports[:, SUPPORTS.index("hips")]
+    away = 100.0 * (motion.root_positions - truth.root_positions)[sits, :2]
+    root = np.sqrt((away**2).sum(axis=1).mean()) if sits.any() else np.nan
+    return [n_frames, slide, drift, elbows, float(change), float(root)]
 
 
 def _drift(limb: Support, poses: WorldPoses) -> float:
