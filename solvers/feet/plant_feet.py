@@ -146,7 +146,10 @@ def _find_contacts(
 ) -> Flags:
     """Return the contacts of all parts, as given or detected, (n_frames, 7).
 
-    Hips bear on the floor only if they may move: nothing else could hold them.
+    Hips are held only where contacts are given, such as those that an animator keyed: hips of
+    real actors who lie shift by some centimeters, and to hold all that is detected moves clean
+    takes by 1.8 cm (docs/benchmarks/contacts.md). They must be free to move, as nothing else
+    could hold them.
     """
     feet = detect_standing_feet(motion, humanoid_map, legs) if given is None else given
     if not settings.hands_and_knees:
@@ -155,6 +158,7 @@ def _find_contacts(
         supports = feet[:, N_FEET:]
     else:
         supports = detect_supports(motion, humanoid_map, legs)
+        supports[:, SUPPORTS.index("hips")] = False
     contacts = np.hstack([feet[:, :N_FEET], supports])
     contacts[:, N_FEET + SUPPORTS.index("hips")] &= settings.move_root
     return contacts

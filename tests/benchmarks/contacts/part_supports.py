@@ -28,7 +28,8 @@ PARTS = {"hands": slice(0, 2), "knees": slice(2, 4), "hips": slice(4, 5)}
 """Columns of `SUPPORTS`."""
 HEIGHT_M = 0.1
 """Meters above the lowest joint of the take, of the peer."""
-OURS, FEET_ALONE, GIVEN = "all parts", "feet alone", "as given"
+OURS, HIPS_KEYED = "feet, hands and knees", "hips too, if keyed"
+FEET_ALONE, GIVEN = "feet alone", "as given"
 COLUMNS = (
     "frames in contact", "slide, cm/s", "worst drift, mm", "elbow, times given",
     "largest change, deg", "root to the truth, cm",
@@ -127,15 +128,16 @@ def _slide_table(
     figures: dict[str, list[list[float]]] = defaultdict(list)
     for truth in truths:
         given = spoil(truth)
-        planted = plant_feet(given)
-        assert planted.supports is not None
-        if not planted.supports.any():
+        supports = _detected(given)
+        if not supports.any():
             continue
         alone = plant_feet(given, settings=PlantSettings(hands_and_knees=False))
+        keyed = plant_feet(given, np.hstack([alone.contacts, supports]))
         for name, motion in (
-            (OURS, planted.motion), (FEET_ALONE, alone.motion), (GIVEN, given)
+            (OURS, plant_feet(given).motion), (HIPS_KEYED, keyed.motion),
+            (FEET_ALONE, alone.motion), (GIVEN, given),
         ):  # fmt: skip
-            figures[name].append(_figures(truth, given, motion, planted.supports))
+            figures[name].append(_figures(truth, given, motion, supports))
     rows = {
         name: [number(float(value)) for value in (
             np.sum(of_takes, axis=0)[0], np.mean(of_takes, axis=0)[1],
