@@ -69,11 +69,12 @@ def plant_feet(
 
     As in Kovar et al. [1]_ footplants are met, and the motion is otherwise smooth and close to
     the original. A foot in contact may roll; only the loaded part of the sole, heel, ball or
-    both, must not move. Nor must hands, knees and the pelvis that bear on the floor, with
-    `settings.hands_and_knees`; a pelvis rolls, and moves with the root alone. The rotations of
-    the legs, of such arms, and the position of the root in all frames are found at once: they
-    hold what is loaded with the least smooth change of knees, feet, arms and root
-    (`planting_goals`, `fit_motion`). Bones never stretch, and no joint of the trunk rotates.
+    both, must not move. Nor must hands and knees that bear on the floor, and the pelvis where
+    its contact is given, with `settings.hands_and_knees`; a pelvis rolls with the root. The
+    rotations of the legs, of such arms, and the position of the root in all frames are found
+    at once: they hold what is loaded with the least smooth change of knees, feet, arms and
+    root (`planting_goals`, `fit_motion`). Bones never stretch, and no joint of the
+    trunk rotates.
     Segments of a joined take are planted separately; a segment of less than a quarter of a
     second has no contact.
 

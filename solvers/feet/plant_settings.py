@@ -47,6 +47,6 @@ class PlantSettings(Settings):
     )
     hands_and_knees: bool = setting(
         True,
-        "Also keep hands, knees and hips in place while they bear on the floor",
+        "Also keep hands and knees on the floor in place, and hips where they are keyed",
         label="Body Contacts",
     )

@@ -251,14 +251,11 @@ def _planted(planting_result: PlantingResult) -> list[str]:
     feet, hands, knees, hips = np.split(planted.all_contacts.any(axis=0), (2, 4, 6))
     if hands.any():
         text = (
-            "Plant Feet keeps feet, hands, knees and hips on the floor in place by moving legs,"
-            " arms and hips."
+            "Plant Feet keeps feet, hands and knees on the floor in place by moving legs, arms"
+            " and hips."
         )
     elif knees.any():
-        text = (
-            "Plant Feet keeps feet, knees and hips on the floor in place by moving legs and"
-            " hips."
-        )
+        text = "Plant Feet keeps feet and knees on the floor in place by moving legs and hips."
     elif hips.any():
         text = (
             "Plant Feet keeps feet and hips on the floor in place by moving legs and hips."

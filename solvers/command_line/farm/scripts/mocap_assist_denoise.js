@@ -40,7 +40,7 @@ const JOB_TYPE = {
     {"key": "window", "type": "string", "default": "", "required": false, "description": "Length of the motion patterns; longer patterns cover more of a movement [s, 0.1 to 3, default 0.666667]"},
     {"key": "blend", "type": "string", "default": "", "required": false, "description": "Time to blend a planted foot back to its own motion; higher is softer and longer [s, 0.02 to 2, default 0.3]"},
     {"key": "floor", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Level planted feet that are near the floor, all at one height [default yes]"},
-    {"key": "hands_and_knees", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Also keep hands, knees and hips in place while they bear on the floor [default yes]"},
+    {"key": "hands_and_knees", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Also keep hands and knees on the floor in place, and hips where they are keyed [default yes]"},
     {"key": "hold", "type": "string", "default": "", "required": false, "description": "Longest time a sliding foot stays fixed before it may slide on; higher is stricter [s, 0.5 to 1000, default 10]"},
     {"key": "hold_rotation", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Also keep feet that stand flat from turning and tilting [default yes]"},
     {"key": "move_root", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Shift the hips slightly and smoothly where a leg cannot reach [default yes]"},
