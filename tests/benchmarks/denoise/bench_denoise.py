@@ -20,8 +20,6 @@ from collections.abc import Callable, Mapping, Sequence
 from time import perf_counter
 from typing import Any
 
-from threadpoolctl import threadpool_limits
-
 from ..markers.part_markers import FILLERS as MARKER_FILLERS
 from ..markers.part_markers import compare_markers
 from ..shared import clips
@@ -50,11 +48,10 @@ def main() -> None:
     chosen = _arguments()
     started = perf_counter()
     report = Report(chosen.docs)
-    with threadpool_limits(1):
-        for name, part in PARTS.items():
-            if name in chosen.part or "all" in chosen.part:
-                began = perf_counter()
-                report.part(name, part(chosen), perf_counter() - began)
+    for name, part in PARTS.items():
+        if name in chosen.part or "all" in chosen.part:
+            began = perf_counter()
+            report.part(name, part(chosen), perf_counter() - began)
     print(f"{perf_counter() - started:.0f} s in all")
 
 

@@ -11,7 +11,6 @@ from functools import partial
 from time import perf_counter, process_time
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.tables import JOINTS
@@ -103,8 +102,7 @@ def main() -> None:
         if chosen.only and name not in chosen.only.split(","):
             continue
         started = perf_counter()
-        with threadpool_limits(1):
-            texts = part()
+        texts = part()
         report.part(name, texts, perf_counter() - started)
 
 

@@ -15,7 +15,6 @@ from collections.abc import Iterable, Sequence
 from time import perf_counter
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import number, table
@@ -135,9 +134,8 @@ def main() -> None:
         if not (chosen.quick and name == PUBLISHED) and (not chosen.only or name in chosen.only)
     ]
     started = perf_counter()
-    with threadpool_limits(1):
-        scores = run(takes, methods)
-        drawn = _draw(scores, takes) if chosen.pictures else []
+    scores = run(takes, methods)
+    drawn = _draw(scores, takes) if chosen.pictures else []
     seconds = perf_counter() - started
     Report(chosen.docs, DOCUMENT).part("first press", [*scores.tables(), *drawn], seconds)
     print(f"{seconds:.0f} s")

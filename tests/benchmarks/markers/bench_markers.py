@@ -11,8 +11,6 @@ import argparse
 from collections.abc import Callable, Sequence
 from time import perf_counter
 
-from threadpoolctl import threadpool_limits
-
 from ..shared.report import DOCS, Report
 from ..shared.tables import Scores
 from .part_rigid import compare_rigid
@@ -43,10 +41,9 @@ def main() -> None:
     )
     chosen = parser.parse_args()
     report = Report(chosen.docs, DOCS / "benchmarks" / "markers.md")
-    with threadpool_limits(1):
-        for name in [chosen.part] if chosen.part else PARTS:
-            started = perf_counter()
-            report.part(name, PARTS[name](), perf_counter() - started)
+    for name in [chosen.part] if chosen.part else PARTS:
+        started = perf_counter()
+        report.part(name, PARTS[name](), perf_counter() - started)
 
 
 if __name__ == "__main__":

@@ -23,7 +23,6 @@ from time import perf_counter, process_time
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from solvers.motion import (
     Motion,
@@ -79,11 +78,9 @@ def main() -> None:
     parser.add_argument("--docs", action="store_true", help="rewrite docs/manual/physics.md")
     chosen = parser.parse_args()
     started = perf_counter()
-    with threadpool_limits(1):
-        tables = [
-            means(title, list(clips(title, 12 if chosen.full else 6)))
-            for title in (*SETS, SHAKEN)
-        ]
+    tables = [
+        means(title, list(clips(title, 12 if chosen.full else 6))) for title in (*SETS, SHAKEN)
+    ]
     report = Report(chosen.docs, DOCS / "manual" / "physics.md")
     report.part("physics", tables, perf_counter() - started)
 

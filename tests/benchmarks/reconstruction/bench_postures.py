@@ -15,7 +15,6 @@ import sys
 from time import perf_counter
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from solvers.arrays import Single
 from solvers.motion.humanoid.body_size import ADULT_BONE_LENGTHS_M
@@ -52,20 +51,18 @@ def main() -> None:
     started = perf_counter()
     tables: list[Scores | str] = []
     if chosen.search:
-        with threadpool_limits(1):
-            found_tables = [growth()]
+        found_tables = [growth()]
         report.part("posture search", found_tables, perf_counter() - started)
         return
-    with threadpool_limits(1):
-        optical, kinect = part.optical_clips(chosen.dev), part.kinect_clips(chosen.dev)
-        titles = f"{len(optical)} CMU and HDM05 clips", f"{len(kinect)} Kinect takes"
-        for title, found in zip(titles, (optical, kinect), strict=True):
-            tables.append(part.parts_used(title, found))
-        tables.append(part.energies(optical[::3]))
-        _report_done("parts, energies")
-        for title, found in zip(titles, (optical, kinect), strict=True):
-            tables += part.missing_joints(title, found)
-            _report_done(f"missing joints, {title}")
+    optical, kinect = part.optical_clips(chosen.dev), part.kinect_clips(chosen.dev)
+    titles = f"{len(optical)} CMU and HDM05 clips", f"{len(kinect)} Kinect takes"
+    for title, found in zip(titles, (optical, kinect), strict=True):
+        tables.append(part.parts_used(title, found))
+    tables.append(part.energies(optical[::3]))
+    _report_done("parts, energies")
+    for title, found in zip(titles, (optical, kinect), strict=True):
+        tables += part.missing_joints(title, found)
+        _report_done(f"missing joints, {title}")
     report.part("postures", tables, perf_counter() - started)
 
 

@@ -11,8 +11,6 @@ import argparse
 from collections.abc import Callable, Sequence
 from time import perf_counter
 
-from threadpoolctl import threadpool_limits
-
 from ..shared.report import DOCS, Report
 from . import (
     part_blender,
@@ -59,8 +57,7 @@ def main() -> None:
             report_reliability(chosen.docs)
             continue
         started = perf_counter()
-        with threadpool_limits(1):
-            tables = PARTS[name](chosen.takes)
+        tables = PARTS[name](chosen.takes)
         report.part(name, tables, perf_counter() - started)
 
 

@@ -16,7 +16,6 @@ from itertools import pairwise
 from time import perf_counter
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from solvers.motion import JointRecording
 from solvers.motion.skeletons.joint_recording import TRACKED
@@ -63,9 +62,8 @@ def main() -> None:
 def report_reliability(docs: bool) -> None:
     """Print the tables; into docs/technical/reliability.md, with its picture, if so."""
     started = perf_counter()
-    with threadpool_limits(1):
-        pairs = read_pairs(KINECT / "ui_prmd")
-        tables = [areas(pairs), calibration(pairs), flags()]
+    pairs = read_pairs(KINECT / "ui_prmd")
+    tables = [areas(pairs), calibration(pairs), flags()]
     report = Report(docs, DOCS / "technical" / "reliability.md")
     report.part("reliability", tables, perf_counter() - started)
     if docs:

@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator
 from time import perf_counter
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map, leg_length
 from solvers.recordings import read_acclaim
@@ -46,13 +45,12 @@ def main() -> None:
     parser.add_argument("--docs", action="store_true", help="rewrite the document")
     chosen = parser.parse_args()
     started = perf_counter()
-    with threadpool_limits(1):
-        tables = [
-            scores.markdown()
-            for title, motions in _inputs(chosen.dev).items()
-            for scores in _retargeted(title, list(motions))
-        ]
-        tables.append(_speed())
+    tables = [
+        scores.markdown()
+        for title, motions in _inputs(chosen.dev).items()
+        for scores in _retargeted(title, list(motions))
+    ]
+    tables.append(_speed())
     report = Report(chosen.docs, DOCS / "benchmarks" / "retargeting.md")
     report.part("retarget", tables, perf_counter() - started)
     started = perf_counter()

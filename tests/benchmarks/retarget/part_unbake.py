@@ -3,7 +3,6 @@
 from time import perf_counter
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from solvers.motion import Motion, find_humanoid_map
 from solvers.retargeting import reduce_keys, retarget
@@ -59,8 +58,7 @@ def to_and_fro(motion: Motion, n_frames: int) -> Motion:
 
 def _row(motion: Motion, tolerance: float, other: dict[str, float]) -> list[str]:
     start = perf_counter()
-    with threadpool_limits(1):
-        sparse = reduce_keys(motion, tolerance)
+    sparse = reduce_keys(motion, tolerance)
     seconds = perf_counter() - start
     moving = sum(len(curve.frames) > 0 for curve in sparse.rotations)
     cells = [str(motion.n_frames * (4 * moving + 3)), str(sparse.n_keys)]

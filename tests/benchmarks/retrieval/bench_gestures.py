@@ -14,7 +14,6 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from solvers.gestures.events import Gesture, GestureEvent
 from solvers.gestures.settings import GestureSettings
@@ -108,8 +107,7 @@ def main() -> None:
     )
     chosen = parser.parse_args()
     started = perf_counter()
-    with threadpool_limits(1):
-        tables = [detections(), alarms(), made_streams(), speed()]
+    tables = [detections(), alarms(), made_streams(), speed()]
     report = Report(chosen.docs, DOCS / "benchmarks" / "retrieval.md")
     report.part("gestures", tables, perf_counter() - started)
 

@@ -15,8 +15,6 @@ import sys
 from collections.abc import Callable
 from time import perf_counter
 
-from threadpoolctl import threadpool_limits
-
 from ..shared.report import DOCS, Report
 from . import part_retrieval as part
 from .part_retrieval_choice import choose
@@ -46,8 +44,7 @@ def main() -> None:
     }  # fmt: skip
     requested = {"choice": chosen.choose, "pursuit": chosen.pursuit, "times": chosen.times}
     for name in [name for name, wanted in requested.items() if wanted]:
-        with threadpool_limits(1):
-            tables = [separate[name]()]
+        tables = [separate[name]()]
         report.part(name, tables, perf_counter() - started)
         return
     names = [name for name in METHODS if chosen.method.lower() in name.lower()]

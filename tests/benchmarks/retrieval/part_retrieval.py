@@ -11,7 +11,6 @@ from tempfile import TemporaryDirectory
 from time import process_time
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from ..shared.report import BENCHMARK_PICTURES, show
 from ..shared.tables import number, table
@@ -95,16 +94,15 @@ def found_by(name: str) -> Found:
     """Ask one method everything; damaged queries are of the test classes only."""
     clips = library()
     pending = [clip for clip in clips if clip.label not in TRAINING]
-    with threadpool_limits(1):
-        started = process_time()
-        prepared = METHODS[name].prepare([clip.tracks for clip in clips])
-        found = Found(process_time() - started, megabytes(prepared))
-        for kind, damage in DAMAGES.items():
-            of = clips if kind == "clean" else pending[::QUERY_STEP]
-            found.answers[kind] = answer(prepared, clips, queries(clips, of, damage))
-        others = queries(clips, pending, DAMAGES["clean"], other_actors=True)
-        found.answers[OTHERS] = answer(prepared, clips, others)
-        found.kinect = answer(prepared, clips, _kinect(clips))
+    started = process_time()
+    prepared = METHODS[name].prepare([clip.tracks for clip in clips])
+    found = Found(process_time() - started, megabytes(prepared))
+    for kind, damage in DAMAGES.items():
+        of = clips if kind == "clean" else pending[::QUERY_STEP]
+        found.answers[kind] = answer(prepared, clips, queries(clips, of, damage))
+    others = queries(clips, pending, DAMAGES["clean"], other_actors=True)
+    found.answers[OTHERS] = answer(prepared, clips, others)
+    found.kinect = answer(prepared, clips, _kinect(clips))
     return found
 
 

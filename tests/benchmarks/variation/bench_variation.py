@@ -13,7 +13,6 @@ from functools import partial
 from time import perf_counter
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from solvers.feet import PlantSettings
 from solvers.motion import Motion
@@ -68,8 +67,7 @@ def main() -> None:
     for name in chosen.part or PARTS:
         part = parts[name]
         started = perf_counter()
-        with threadpool_limits(1):
-            texts = part(sets)
+        texts = part(sets)
         report.part(name, texts, perf_counter() - started)
 
 

@@ -19,7 +19,6 @@ from collections.abc import Callable, Mapping
 from time import perf_counter
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from solvers.arrays import Array
 from solvers.denoising import denoise, plant_feet
@@ -55,13 +54,12 @@ def main() -> None:
     parser.add_argument("--clips", type=int, default=None, help="at most this many clips")
     chosen = parser.parse_args()
     started = perf_counter()
-    with threadpool_limits(1):
-        captures = dict(list(truths().items())[: chosen.clips])
-        tables: list[Scores | str] = [
-            compare(title, captures, faults) for title, faults in WHOLE.items()
-        ]
-        tables.append(compare_faults(dict(list(captures.items())[:: len(captures) // 6 or 1])))
-        tables.append(compare_real())
+    captures = dict(list(truths().items())[: chosen.clips])
+    tables: list[Scores | str] = [
+        compare(title, captures, faults) for title, faults in WHOLE.items()
+    ]
+    tables.append(compare_faults(dict(list(captures.items())[:: len(captures) // 6 or 1])))
+    tables.append(compare_real())
     texts = [each.markdown() if isinstance(each, Scores) else each for each in tables]
     report = Report(chosen.docs, DOCS / "benchmarks" / "video.md")
     report.part("video", texts, perf_counter() - started)

@@ -1,0 +1,16 @@
+"""Benchmarks of all methods beside their peers.
+
+They compute with one thread and one kernel of linear algebra on every machine. Where a tracker
+that all but fails starts anew is decided by the last digits, so another kernel of the same
+library moves such rows: with 80 columns of depth from 4.70 cm to 5.67.
+"""
+
+import os
+
+# Before numpy is imported.
+for variable, value in {
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "OPENBLAS_CORETYPE": "Haswell",  # runs on every x86 processor since 2013
+}.items():
+    os.environ.setdefault(variable, value)
