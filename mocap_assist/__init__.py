@@ -10,10 +10,10 @@ def register() -> None:
     from .actions import contact_keys
     from .check import delta_influence, raw_view
     from .depth import depth_preview
+    from .find_similar import gallery_drawing, ghost_drawing, previews, properties
     from .library import auto_update, background
     from .live import listening
     from .runtime import watch
-    from .search import gallery_drawing, ghost_drawing, previews, properties
     from .track import body_overlay
 
     scene_properties.register()
@@ -41,11 +41,11 @@ def unregister() -> None:
     from .actions import contact_keys
     from .check import delta_influence, raw_view
     from .depth import depth_preview
+    from .find_similar import gallery_drawing, ghost_drawing, previews, properties
     from .library import auto_update, background
     from .live import listening
     from .panel_parts import solver_ready
     from .runtime import watch
-    from .search import gallery_drawing, ghost_drawing, previews, properties
     from .track import body_overlay
 
     ui.unregister()

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..mocap_assist.search.gallery_operator import BrowseOperator
+from ..mocap_assist.find_similar.gallery_operator import BrowseOperator
 
 
 class MOCAP_OT_browse_matches(BrowseOperator, bpy.types.Operator):

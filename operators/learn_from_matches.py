@@ -5,8 +5,12 @@ from typing import ClassVar
 import bpy
 
 from ..mocap_assist.blender.act_operator import ActOperator
-from ..mocap_assist.search.examples_from_matches import CLEAN, RECONSTRUCT, learn_from_best
-from ..mocap_assist.search.searches import why_none
+from ..mocap_assist.find_similar.examples_from_matches import (
+    CLEAN,
+    RECONSTRUCT,
+    learn_from_best,
+)
+from ..mocap_assist.find_similar.searches import why_none
 
 
 class MOCAP_OT_learn_from_matches(ActOperator, bpy.types.Operator):

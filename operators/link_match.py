@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..mocap_assist.blender.act_operator import ActOperator
-from ..mocap_assist.search.linking import take_chosen, why_not_link
+from ..mocap_assist.find_similar.linking import take_chosen, why_not_link
 
 
 class MOCAP_OT_link_match(ActOperator, bpy.types.Operator):

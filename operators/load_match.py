@@ -3,9 +3,9 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.find_similar.loading import read_loading, why_not_load, write_loaded
 from ..mocap_assist.library.button_settings import LoadBundle
 from ..mocap_assist.runtime.solver_operator import SolverOperator
-from ..mocap_assist.search.loading import read_loading, why_not_load, write_loaded
 
 
 @settings_from(LoadBundle)

@@ -4,8 +4,8 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.search.mark_operator import MarkOperator
-from ..mocap_assist.search.marking import mark_played, why_not_mark
+from ..mocap_assist.find_similar.mark_operator import MarkOperator
+from ..mocap_assist.find_similar.marking import mark_played, why_not_mark
 
 
 class MOCAP_OT_mark_asset(MarkOperator, bpy.types.Operator):

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.search.mark_operator import MarkOperator
+from ..mocap_assist.find_similar.mark_operator import MarkOperator
 from ..mocap_assist.variants.listing import why_none
 from ..mocap_assist.variants.marking import mark_variants
 

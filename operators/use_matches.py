@@ -3,9 +3,9 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.find_similar.varying import read_best, why_not_use, write_best
 from ..mocap_assist.library.button_settings import UseBundle
 from ..mocap_assist.runtime.solver_operator import SolverOperator
-from ..mocap_assist.search.varying import read_best, why_not_use, write_best
 
 
 @settings_from(UseBundle)

@@ -14,13 +14,13 @@ from ...solvers.command_line.screen import Screen, printable
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path, write_atomically
 from ...solvers.progress import Progress
+from ..find_similar import searches
+from ..find_similar.finding import list_found, read_finding
+from ..find_similar.solve_finding import Found
 from ..library.background import message_of
 from ..library.button_settings import FindBundle, LibraryChoices
 from ..library.solve_indexing import IndexProblem, Source, index_sources
 from ..library.sources import asset_folders, background_blender, library_path
-from ..search import searches
-from ..search.finding import list_found, read_finding
-from ..search.solve_finding import Found
 from .bundles import add_bundle_options, bundle_from_arguments
 from .saving import STDOUT
 from .solving import solve_in_subprocess

@@ -11,8 +11,8 @@ import bpy
 
 from ...solvers.gestures import Gesture, GestureEvent
 from ...solvers.motion import JointRecording
+from ..find_similar.performing import choose, news, page, search_with, show_all, show_library
 from ..overlays.view_control import rotate_views, zoom_views
-from ..search.performing import choose, news, page, search_with, show_all, show_library
 
 STARTED = "Perform what you search for, then clap."
 

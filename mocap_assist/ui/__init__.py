@@ -4,6 +4,8 @@ from .. import languages
 from ..check import issue_views, key_map, renewing
 from ..clean import example_list
 from ..exporting import export_menu
+from ..find_similar import match_grid, source_list
+from ..find_similar import panel as library_panel
 from ..importing import import_menu
 from ..overlays import (
     color_icons,
@@ -15,8 +17,6 @@ from ..overlays import (
 from ..panel_parts import presets
 from ..retarget import bone_highlight, bone_list, rest_preview
 from ..retarget import panel as retarget_panel
-from ..search import match_grid, source_list
-from ..search import panel as library_panel
 from ..variants import panel as vary_panel
 from . import diagnostics, manual, menus, preferences, sidebar
 

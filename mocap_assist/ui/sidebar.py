@@ -6,6 +6,7 @@ from ..check.compare_panel import ComparePanel
 from ..check.panel import CheckPanel, MOCAP_UL_issues
 from ..clean.feet_panel import FeetPanel
 from ..clean.panel import CleanPanel
+from ..find_similar.panel import LibraryPanel
 from ..fix.panel import FixPanel, MOCAP_UL_takes
 from ..importing.panel import ImportPanel
 from ..live.panel import PerformPanel
@@ -14,7 +15,6 @@ from ..panel_parts.preference_values import preferred
 from ..physics.panel import PhysicsPanel
 from ..reconstruct.panel import ReconstructPanel
 from ..retarget.panel import RetargetPanel
-from ..search.panel import LibraryPanel
 from ..track.panel import TrackPanel
 from ..variants.panel import VaryPanel
 

@@ -8,9 +8,9 @@ from mathutils import Euler
 
 from ...solvers.errors import InvalidMotionError
 from ..actions.armature_write import check_writable
+from ..find_similar.nla import add_strip
 from ..scene.scene_rate import scene_rate
 from ..scene.units import unit_of
-from ..search.nla import add_strip
 from . import listing
 from .button_settings import CrowdBundle, CrowdChoices
 from .tags import is_variant

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..search.marking import catalog_number, clip_tags, mark
+from ..find_similar.marking import catalog_number, clip_tags, mark
 from . import listing
 
 TAG = "variant"

@@ -8,12 +8,12 @@ from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
 from ..blender.mixins import PanelMixin
 from ..blender.name_lists import split_names
+from ..find_similar import searches
 from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
 from ..panel_parts.presets import draw_presets
 from ..panel_parts.visibility import shows_armature
 from ..retarget.panel import TICK
 from ..runtime.selection import selected_armature
-from ..search import searches
 from .listing import chosen
 from .reading import candidates, why_not_vary
 from .tags import short_name

@@ -10,9 +10,9 @@ from ..actions.armature_write import check_writable
 from ..blender import compat
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
+from ..find_similar.previews import give_picture
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
-from ..search.previews import give_picture
 from . import listing
 from .button_settings import VaryBundle
 from .keys import BaseExample, hold_others, without_still

@@ -1,9 +1,9 @@
 """Fit motions to goals, such as soles in place, with the least and smoothest change."""
 
+from .fit_in_pieces import fit_in_pieces
 from .fit_motion import Fit, fit_motion
 from .goal import Goal
 from .normal_equations import NormalEquations
-from .pieces import fit_in_pieces
 from .variables import FittedMotion
 
 __all__ = [

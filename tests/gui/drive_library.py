@@ -121,8 +121,8 @@ def browse():
     """The matches over the view: one plays under the pointer, a click selects it."""
     yield from press("mocap_assist.browse_matches")
     view = bgui.area()
-    cells = import_module(f"{PACKAGE}.mocap_assist.search.gallery_drawing")
-    layout = import_module(f"{PACKAGE}.mocap_assist.search.gallery")
+    cells = import_module(f"{PACKAGE}.mocap_assist.find_similar.gallery_drawing")
+    layout = import_module(f"{PACKAGE}.mocap_assist.find_similar.gallery")
     pixels = import_module(f"{PACKAGE}.mocap_assist.overlays.pixel_drawing")
     space = pixels.free_space(view)
     scale = bpy.context.preferences.system.ui_scale

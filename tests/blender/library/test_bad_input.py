@@ -57,7 +57,7 @@ def test_clips_of_one_to_three_frames_are_indexed(
 
     strip = armature.animation_data.nla_tracks[-1].strips[0]
     assert strip.frame_end > strip.frame_start
-    assert load("mocap_assist.search.ghost_drawing").ghost_now(blank.context) is not None
+    assert load("mocap_assist.find_similar.ghost_drawing").ghost_now(blank.context) is not None
 
 
 def test_find_accepts_a_query_of_one_frame(find, newcomer, blank):

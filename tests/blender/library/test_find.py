@@ -35,7 +35,7 @@ def test_find_leaves_out_the_source_of_the_query(find, bring, clip_files):
 
 def test_selected_bones_limit_the_search_to_their_parts(find, newcomer, blank, load):
     armature = newcomer("wave")
-    parts = load("mocap_assist.search.chosen_parts")
+    parts = load("mocap_assist.find_similar.chosen_parts")
     compat = load("mocap_assist.blender.compat")
     for bone in armature.pose.bones:
         compat.select_bone(bone, bone.name in {"RightArm", "RightHand", "Spine"})
@@ -59,7 +59,7 @@ def test_preview_range_limits_the_query(find, newcomer, blank, bring, load, tmp_
 
     find(frame_range="PREVIEW")
 
-    search = load("mocap_assist.search.searches").listed(blank.context)
+    search = load("mocap_assist.find_similar.searches").listed(blank.context)
     assert (search.start, search.step) == (61.0, 1.0)
     assert len(search.finding.stage.positions) == 60
     assert search.query == armature.animation_data.action.name
@@ -68,7 +68,7 @@ def test_preview_range_limits_the_query(find, newcomer, blank, bring, load, tmp_
 def test_alignment_covers_query_and_match(find, newcomer, blank, load):
     newcomer("squat")
     find()
-    search = load("mocap_assist.search.searches").listed(blank.context)
+    search = load("mocap_assist.find_similar.searches").listed(blank.context)
 
     for found in search.finding.found:
         pairs = found.pairs
@@ -80,7 +80,7 @@ def test_alignment_covers_query_and_match(find, newcomer, blank, load):
 def test_thumbnails_show_the_clip(find, newcomer, blank, load):
     newcomer("squat")
     find()
-    search = load("mocap_assist.search.searches").listed(blank.context)
+    search = load("mocap_assist.find_similar.searches").listed(blank.context)
     pictures = [found.picture for found in search.finding.found]
 
     assert {picture.shape for picture in pictures} == {(128, 128, 3)}

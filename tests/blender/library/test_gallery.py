@@ -8,7 +8,7 @@ import pytest
 
 @pytest.fixture
 def gallery(load):
-    return load("mocap_assist.search.gallery")
+    return load("mocap_assist.find_similar.gallery")
 
 
 @pytest.mark.parametrize("n_matches", [1, 5, 24, 60])
@@ -49,7 +49,7 @@ def test_figure_stands_in_its_cell_and_the_clip_repeats(gallery):
 def test_nothing_stays_over_the_view_where_blender_ends_the_button(
     load, window, blank, monkeypatch, end
 ):
-    drawing = load("mocap_assist.search.gallery_drawing")
+    drawing = load("mocap_assist.find_similar.gallery_drawing")
     monkeypatch.setattr(
         drawing, "bpy", SimpleNamespace(context=window.context, types=blank.types)
     )

@@ -7,7 +7,7 @@ import pytest
 @pytest.fixture
 def ghost(load, blank):
     """The lines of the ghost at a frame."""
-    drawing = load("mocap_assist.search.ghost_drawing")
+    drawing = load("mocap_assist.find_similar.ghost_drawing")
 
     def lines(frame):
         blank.context.scene.frame_set(frame)
@@ -54,8 +54,8 @@ def test_there_is_no_ghost_without_a_match(ghost, blank):
 
 def test_ghost_frames_follow_the_alignment(load):
     ghost, finding = (
-        load("mocap_assist.search.ghost"),
-        load("mocap_assist.search.solve_finding"),
+        load("mocap_assist.find_similar.ghost"),
+        load("mocap_assist.find_similar.solve_finding"),
     )
     retrieval = load("solvers.retrieval")
     pairs = np.array([[0, 10], [1, 10], [2, 10], [3, 12], [3, 14], [4, 16]])

@@ -5,7 +5,7 @@ import pytest
 
 @pytest.fixture
 def performing(load):
-    return load("mocap_assist.search.performing")
+    return load("mocap_assist.find_similar.performing")
 
 
 @pytest.fixture
@@ -42,8 +42,8 @@ def test_library_is_browsed_and_a_clip_searched_with(
     shown = performing.show_all(blank.context)
 
     assert shown.startswith("1 of 6: ") and "%" not in shown and len(listed.rows) == 6
-    search = load("mocap_assist.search.searches").listed(blank.context)
-    ghost, found = load("mocap_assist.search.ghost"), search.finding.found[0]
+    search = load("mocap_assist.find_similar.searches").listed(blank.context)
+    ghost, found = load("mocap_assist.find_similar.ghost"), search.finding.found[0]
     last = (found.entry.n_frames - 1) / found.entry.frame_rate * 30.0
     assert ghost.clip_frame(found, last) == pytest.approx(found.entry.n_frames - 1, abs=1.0)
     assert len(ghost.ghost_lines(search.finding.stage, found, 3.0)) == 19
@@ -57,7 +57,7 @@ def test_library_is_browsed_and_a_clip_searched_with(
     assert performing.choose(blank.context).startswith("1 of 5: ")
     assert listed.query == name and name not in [row.name for row in listed.rows]
 
-    monkeypatch.setattr(load("mocap_assist.search.solve_finding"), "MAX_MATCHES", 4)
+    monkeypatch.setattr(load("mocap_assist.find_similar.solve_finding"), "MAX_MATCHES", 4)
     monkeypatch.setattr(performing, "MAX_MATCHES", 4)
     monkeypatch.setattr(performing, "run", lambda solve: solve())
     performing.show_all(blank.context)
@@ -68,7 +68,7 @@ def test_library_is_browsed_and_a_clip_searched_with(
 
     shrunk = performing.show_all(blank.context, first=48, is_last_chosen=True)
     assert shrunk.startswith("4 of 6: ")
-    cache = load("mocap_assist.search.searches")._cache.values()
+    cache = load("mocap_assist.find_similar.searches")._cache.values()
     assert [each.is_ranked for each in cache].count(False) == 1
 
 
@@ -118,7 +118,7 @@ def jobs(performing, monkeypatch, tmp_path):
 def test_the_newest_command_fills_the_list_and_reports_its_end(
     performing, performance, jobs, blank, load
 ):
-    finding = load("mocap_assist.search.solve_finding").Finding((), None, 0)
+    finding = load("mocap_assist.find_similar.solve_finding").Finding((), None, 0)
     damaged = load("solvers.errors").InvalidFileError("The library is damaged.")
     listed = blank.context.window_manager.mocap_assist_matches
 

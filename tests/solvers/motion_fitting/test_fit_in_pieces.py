@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from solvers.denoising import plant_feet
 from solvers.motion import detect_contacts
 from solvers.motion_fitting import pieces
-from solvers.motion_fitting.pieces import join_pieces, piece_ranges
+from solvers.motion_fitting.fit_in_pieces import join_pieces, piece_ranges
 from solvers.samples import GaitSettings, walking_gait
 
 
