@@ -12,7 +12,7 @@ from ..panel_parts.preference_values import preferred
 from .color_icons import draw_marks
 from .confidence_colors import ColoredBones, available_terms, colored_bones_at
 from .strip_ranges import MARKS, StripRow
-from .view_drawing import ViewDrawing, redraw, visible_active
+from .view_drawing import ViewDrawing, draw_in_front, redraw, visible_active
 
 WIDTH_FACTOR = 2.0
 """Line width relative to the comparison overlay, so that bones do not hide the lines."""
@@ -85,22 +85,10 @@ def _draw(context: bpy.types.Context) -> None:
 
 
 def _draw_colored_bones(bones: ColoredBones, matrix: Any, width: float) -> None:
-    """Draw bones and joints in front of all objects."""
-    from gpu_extras.batch import batch_for_shader
-
     points = np.ascontiguousarray(bones.ends.reshape(-1, 3))
     colors = np.ascontiguousarray(bones.colors.reshape(-1, 4))
     lines = gpu.shader.from_builtin("POLYLINE_SMOOTH_COLOR")
-    batch = batch_for_shader(lines, "LINES", {"pos": points, "color": colors})
-    lines.bind()
-    lines.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
-    lines.uniform_float("lineWidth", width)
-    gpu.state.blend_set("ALPHA")
-    gpu.state.depth_test_set("NONE")
-    with gpu.matrix.push_pop():
-        gpu.matrix.multiply_matrix(matrix)
-        batch.draw(lines)
-    gpu.state.blend_set("NONE")
+    draw_in_front(lines, {"pos": points, "color": colors}, matrix, width)
 
 
 def register() -> None:

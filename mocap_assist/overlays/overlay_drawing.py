@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..actions.markers import holder_of
 from . import marker_overlay, onion_skin, overlay, raw_curves_switch, strip_drawing
-from .view_drawing import ViewDrawing, redraw, visible_active
+from .view_drawing import ViewDrawing, draw_in_front, redraw, visible_active
 from .wipe import clipped, draw_wipe_line
 
 Color = tuple[float, float, float, float]
@@ -106,7 +106,7 @@ def draw_faded(faded: onion_skin.FadedLines, matrix: Any, color: Color, width: f
     colors[..., 3] *= faded.alphas
     shader = gpu.shader.from_builtin("POLYLINE_SMOOTH_COLOR")
     content = {"pos": faded.lines.reshape(-1, 3), "color": colors.reshape(-1, 4)}
-    _draw_in_front(shader, content, matrix, width)
+    draw_in_front(shader, content, matrix, width)
 
 
 def draw_lines(
@@ -117,24 +117,7 @@ def draw_lines(
     points = np.ascontiguousarray(lines.reshape(-1, 3), dtype=np.float32)
     shader.bind()
     shader.uniform_float("color", color)
-    _draw_in_front(shader, {"pos": points}, matrix, width)
-
-
-def _draw_in_front(
-    shader: Any, content: dict[str, NDArray[np.float32]], matrix: Any, width: float
-) -> None:
-    from gpu_extras.batch import batch_for_shader
-
-    batch = batch_for_shader(shader, "LINES", content)
-    shader.bind()
-    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
-    shader.uniform_float("lineWidth", width)
-    gpu.state.blend_set("ALPHA")
-    gpu.state.depth_test_set("NONE")
-    with gpu.matrix.push_pop():
-        gpu.matrix.multiply_matrix(matrix)
-        batch.draw(shader)
-    gpu.state.blend_set("NONE")
+    draw_in_front(shader, {"pos": points}, matrix, width)
 
 
 @handlers.persistent

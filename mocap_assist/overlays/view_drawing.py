@@ -1,10 +1,13 @@
-"""Draw handlers of the 3D Views, and redrawing."""
+"""Draw handlers of the 3D Views, lines in front of all objects, and redrawing."""
 
 from collections.abc import Callable
 from typing import Any
 
 import bpy
+import gpu
+import numpy as np
 from bpy.types import SpaceView3D
+from numpy.typing import NDArray
 
 
 class ViewDrawing:
@@ -43,6 +46,24 @@ def visible_active(context: bpy.types.Context) -> bpy.types.Object | None:
     if active is None or not active.visible_get(viewport=context.space_data):
         return None
     return active
+
+
+def draw_in_front(
+    shader: Any, content: dict[str, NDArray[np.float32]], matrix: Any, width: float
+) -> None:
+    """Draw lines with a shader in front of all objects, `width` pixels wide."""
+    from gpu_extras.batch import batch_for_shader
+
+    batch = batch_for_shader(shader, "LINES", content)
+    shader.bind()
+    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+    shader.uniform_float("lineWidth", width)
+    gpu.state.blend_set("ALPHA")
+    gpu.state.depth_test_set("NONE")
+    with gpu.matrix.push_pop():
+        gpu.matrix.multiply_matrix(matrix)
+        batch.draw(shader)
+    gpu.state.blend_set("NONE")
 
 
 def redraw(context: bpy.types.Context, kind: str = "") -> None:
