@@ -4,6 +4,7 @@ Each function returns a sentence to show.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple, Self
@@ -37,7 +38,7 @@ PERFORMED = "your performance"
 THE_LIBRARY = "the library"
 NO_LIBRARY = "There is no library yet. Add folders, then press Build Library."
 
-_jobs: list[Job[Finding]] = []  # the newest one, until it has ended
+_pending: list["_PendingList"] = []  # the newest one, until it has ended
 _news: list[str] = []
 
 
@@ -56,21 +57,25 @@ def show_library(context: bpy.types.Context) -> str:
     return show_all(context)
 
 
-def show_all(context: bpy.types.Context, first: int = 0, is_last_chosen: bool = False) -> str:
-    """List clips of the library from an index on, and choose the first or last of them."""
+def show_all(context: bpy.types.Context, first: int = 0, row: int = 0) -> str:
+    """List clips of the library from an index on, and choose one; row -1 is the last."""
     library = _library()
     if library is None:
         return NO_LIBRARY
     solve = partial(list_clips, str(library), first)
-    listing = _Listing.of(THE_LIBRARY, BROWSED_HZ, is_last_chosen)
+    listing = _Listing.of(THE_LIBRARY, BROWSED_HZ, row)
     return _list_later(solve, listing, "Reading the library...")
 
 
 def page(context: bpy.types.Context, step: int) -> str:
     """Choose the next or previous match; the first follows the last.
 
-    In a library with more clips than are listed, the next ones follow.
+    In a library with more clips than are listed, the next ones follow. While they are read,
+    further calls count from the clip that will be chosen.
     """
+    if _pending and _pending[0].listing.query == THE_LIBRARY:
+        _pending[0].waves += step
+        return ""
     listed, search = bpy.context.window_manager.mocap_assist_matches, searches.listed(context)
     if not listed.rows:
         return chosen_sentence()
@@ -78,7 +83,7 @@ def page(context: bpy.types.Context, step: int) -> str:
     if search is not None and not search.is_ranked and not 0 <= index < len(listed.rows):
         finding = search.finding
         if finding.n_clips > len(listed.rows):
-            return show_all(context, _next_first(finding, step), step < 0)
+            return show_all(context, _next_first(finding, step), -1 if step < 0 else 0)
     listed.active = index % len(listed.rows)
     redraw(bpy.context)
     return chosen_sentence()
@@ -157,8 +162,8 @@ def _list_later(solve: Callable[..., Finding], listing: "_Listing", waiting: str
     """
     if in_background():
         return listing.fill(run(solve))
-    if _jobs:
-        older = _jobs.pop()
+    if _pending:
+        older = _pending.pop().job
         older.cancel()
         older.tidy_up()
     _news.clear()
@@ -166,8 +171,9 @@ def _list_later(solve: Callable[..., Finding], listing: "_Listing", waiting: str
         job: Job[Finding] = Job(solve)
     except MocapAssistError as error:
         return str(error)
-    _jobs.append(job)
-    timers.register(partial(_poll_search, job, listing), first_interval=POLL_INTERVAL_S)
+    pending = _PendingList(job, listing, searches.newest())
+    _pending.append(pending)
+    timers.register(partial(_poll, pending), first_interval=POLL_INTERVAL_S)
     return waiting
 
 
@@ -177,33 +183,48 @@ class _Listing(NamedTuple):
     query: str
     grid: tuple[float, float]
     meters: float
-    is_last_chosen: bool
+    row: int
+    """Index of the clip to choose; -1: the last."""
 
     @classmethod
-    def of(cls, query: str, frame_rate: float, is_last_chosen: bool = False) -> Self:
+    def of(cls, query: str, frame_rate: float, row: int = 0) -> Self:
         """Return the list for a query that begins at the current frame."""
         scene = bpy.context.scene
         step = scene.render.fps / scene.render.fps_base / frame_rate
-        return cls(query, (float(scene.frame_current), step), unit_of(scene), is_last_chosen)
+        return cls(query, (float(scene.frame_current), step), unit_of(scene), row)
 
-    def fill(self, finding: Finding) -> str:
+    def fill(self, finding: Finding, waves: int = 0) -> str:
         """List the clips; return a sentence that names the chosen one."""
         fill_list(bpy.context, searches.keep(self.query, self.grid, self.meters, finding))
-        if self.is_last_chosen:
-            last = max(len(finding.found) - 1, 0)
-            bpy.context.window_manager.mocap_assist_matches.active = last
+        row = (self.row + waves) % max(len(finding.found), 1)
+        bpy.context.window_manager.mocap_assist_matches.active = row
         return chosen_sentence()
 
 
-def _poll_search(job: Job[Finding], listing: _Listing) -> float | None:
+@dataclass(eq=False)
+class _PendingList:
+    """A list that a job makes in the background."""
+
+    job: Job[Finding]
+    listing: _Listing
+    newest: int
+    """Number of the newest search when the job began."""
+    waves: int = 0
+    """Clips to go on from the one that would be chosen."""
+
+
+def _poll(pending: _PendingList) -> float | None:
     """Fill the list once the job has ended; otherwise return the seconds to the next call."""
-    if job not in _jobs:  # it was cancelled
+    if pending not in _pending:  # it was cancelled
         return None
-    if not job.done():
+    if not pending.job.done():
         return POLL_INTERVAL_S
-    _jobs.remove(job)
+    _pending.remove(pending)
     try:
-        _news[:] = [listing.fill(job.result())]
+        finding = pending.job.result()
+        if searches.newest() != pending.newest:  # Find Similar was pressed meanwhile
+            return None
+        _news[:] = [pending.listing.fill(finding, pending.waves)]
     except MocapAssistError as error:
         _news[:] = [str(error)]
         bpy.context.window_manager.mocap_assist_indexing.report = str(error)

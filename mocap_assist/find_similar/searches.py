@@ -51,6 +51,11 @@ def keep(query: str, grid: tuple[float, float], meters: float, finding: Finding)
     return search
 
 
+def newest() -> int:
+    """Return the number of the newest search; 0 before the first."""
+    return _last[0]
+
+
 def listed(context: bpy.types.Context) -> Search | None:
     """Return the search whose matches are listed, if it is still known."""
     return _cache.get(context.window_manager.mocap_assist_matches.search)

@@ -1,5 +1,7 @@
 """What gestures do with the library."""
 
+from dataclasses import replace
+
 import pytest
 
 
@@ -66,7 +68,7 @@ def test_library_is_browsed_and_a_clip_searched_with(
     assert back == ["6 of 6", "5 of 6", "4 of 6"]
     assert performing.page(blank.context, 1).startswith("5 of 6: ")
 
-    shrunk = performing.show_all(blank.context, first=48, is_last_chosen=True)
+    shrunk = performing.show_all(blank.context, first=48, row=-1)
     assert shrunk.startswith("4 of 6: ")
     cache = load("mocap_assist.find_similar.searches")._cache.values()
     assert [each.is_ranked for each in cache].count(False) == 1
@@ -131,6 +133,39 @@ def test_the_newest_command_fills_the_list_and_reports_its_end(
     performing.show_all(blank.context)
     assert jobs(finding, finding, damaged) == 0
     assert performing.news() == "The library is damaged." and performing.news() == ""
+
+
+def test_waves_while_a_page_is_read_count_from_its_first_or_last_clip(
+    find, newcomer, performing, jobs, blank, load
+):
+    newcomer("walk")
+    find()
+    listed = blank.context.window_manager.mocap_assist_matches
+    found = load("mocap_assist.find_similar.searches").listed(blank.context).finding
+    page = replace(found, first=0)
+
+    performing.show_all(blank.context)
+    assert [performing.page(blank.context, step) for step in (1, 1)] == ["", ""]
+    assert jobs(page) == 0 and listed.active == 2
+
+    performing.show_all(blank.context, row=-1)
+    performing.page(blank.context, -1)
+    assert jobs(page, page) == 0 and listed.active == len(listed.rows) - 2
+
+
+def test_list_of_find_similar_stays_when_an_older_command_ends(
+    find, newcomer, performing, performance, jobs, blank, load
+):
+    newcomer("walk")
+    performing.search_with(blank.context, performance)
+
+    find()
+
+    listed = blank.context.window_manager.mocap_assist_matches
+    names, query = [row.name for row in listed.rows], listed.query
+    nothing = load("mocap_assist.find_similar.solve_finding").Finding((), None, 0)
+    assert jobs(nothing) == 0
+    assert [row.name for row in listed.rows] == names and listed.query == query
 
 
 def test_show_library_turns_on_the_ghost(performing, blank):
