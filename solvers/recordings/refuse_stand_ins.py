@@ -79,8 +79,7 @@ def _is_video(head: bytes) -> bool:
 
 
 def _is_opensim(head: bytes) -> bool:
-    is_table = b"endheader" in head and (b"inDegrees" in head or b"nColumns" in head)
-    return is_table or OPENSIM_BODIES.match(head) is not None
+    return b"endheader" in head or OPENSIM_BODIES.match(head) is not None
 
 
 def _is_pickle(head: bytes) -> bool:

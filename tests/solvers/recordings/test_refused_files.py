@@ -46,6 +46,7 @@ def object_array() -> bytes:
             OPENSIM,
         ),
         ("grf\r\nversion=1\r\nnRows=9\r\nnColumns=3\r\nendheader\r\ntime\tFx\r\n", OPENSIM),
+        ("name grf.mot\ndatacolumns 3\ndatarows 9\nendheader\ntime Fx Fy\n", OPENSIM),
         (
             "# times, pelvis_x, pelvis_y, pelvis_z, pelvis_rotx\n0,1\n",
             OPENSIM,
