@@ -48,6 +48,11 @@ class Reliability:
     kinematics: NDArray[np.float64]
     tracking: NDArray[np.float64]
 
+    @property
+    def behaviour(self) -> NDArray[np.float64]:
+        """`behavior`, by the name of the interface's first version."""
+        return self.behavior
+
 
 def measure_reliability(
     recording: JointRecording,

@@ -162,7 +162,7 @@ def flags() -> str:
 
 
 MEASURES: dict[str, Callable[..., np.ndarray]] = {
-    "behaviour term": lambda found: found.behavior,
+    "behavior term": lambda found: found.behavior,
     "kinematics term": lambda found: found.kinematics,
     "default": lambda found: found.combined,
 }

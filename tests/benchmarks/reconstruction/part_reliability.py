@@ -83,7 +83,7 @@ def error_scores(pairs: list[Pair], causal: bool) -> Iterator[tuple[str, list[Ar
         settings = ReliabilitySettings(method=method, causal=causal)
         by_method[method].append(measure_reliability(pair.recording, settings=settings))
     published = by_method[ReliabilityMethod.PUBLISHED]
-    yield "behaviour term", [1.0 - found.behavior for found in published]
+    yield "behavior term", [1.0 - found.behavior for found in published]
     yield "kinematics term", [1.0 - found.kinematics for found in published]
     yield (
         "published: minimum of the terms, window",

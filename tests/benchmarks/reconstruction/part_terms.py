@@ -54,7 +54,7 @@ TERMS = {
 }
 SIGNS = {
     "no reliability": (),
-    "behaviour": ("behavior",),
+    "behavior": ("behavior",),
     "kinematics": ("kinematics",),
     "both, published": ("behavior", "kinematics"),
 }

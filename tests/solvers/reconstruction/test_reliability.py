@@ -178,6 +178,12 @@ def test_missing_joints_have_no_reliability_and_others_keep_theirs(walk, setting
     assert found.combined[45:, joint_index("HandRight")].min() > 0.7
 
 
+def test_behavior_has_its_former_name(walk):
+    found = measure_reliability(recorded(walk))
+
+    assert found.behaviour is found.behavior
+
+
 def test_input_stays_unchanged_and_progress_is_reported(walk):
     recording = recorded(vibrating(walk, "HandLeft"))
     before = recording.tracks.positions.copy()
