@@ -9,6 +9,7 @@ import numpy as np
 from bpy.app import handlers
 
 from ...solvers.arrays import Array
+from ..blender.redrawing import redraw
 from ..languages import translated
 from ..overlays.pixel_drawing import (
     TEXT_COLOR,
@@ -22,7 +23,6 @@ from ..overlays.pixel_drawing import (
     write,
 )
 from ..overlays.strip_ranges import Color
-from ..overlays.view_drawing import redraw
 from .gallery import GAP_PX, LABEL_PX, cell_at, cells_in, figure_lines, posture_row
 from .ghost_drawing import COLOR
 from .match_grid import GOOD_SCORE

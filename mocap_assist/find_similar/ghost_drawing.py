@@ -5,8 +5,9 @@ from mathutils import Matrix
 
 from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
+from ..blender.redrawing import redraw_views
 from ..overlays.overlay_drawing import Color, draw_lines
-from ..overlays.view_drawing import ViewDrawing, redraw
+from ..overlays.view_drawing import ViewDrawing
 from . import searches
 from .ghost import ghost_lines
 
@@ -35,10 +36,6 @@ def _draw(context: bpy.types.Context) -> None:
         draw_lines(lines, Matrix.Identity(4), COLOR, LINE_WIDTH_PX)
 
 
-def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    redraw(context, "VIEW_3D")
-
-
 def register() -> None:
     """Add the switch, which starts off."""
     bpy.types.WindowManager.mocap_assist_ghost = bpy.props.BoolProperty(
@@ -46,7 +43,7 @@ def register() -> None:
         description=(
             "Draw the selected clip as a stick figure at the query, in the query's timing"
         ),
-        update=_switched,
+        update=redraw_views,
     )
     _drawing.append(ViewDrawing(_draw))
 

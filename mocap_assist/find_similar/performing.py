@@ -16,10 +16,10 @@ from bpy.app import timers
 from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion import JointRecording, Tracks
 from ...solvers.motion.humanoid import POSTURE_JOINTS
+from ..blender.redrawing import redraw
 from ..jobs.job import Job, run
 from ..library.solve_prior import Own
 from ..library.sources import library_path
-from ..overlays.view_drawing import redraw
 from ..runtime.solver_operator import in_background
 from ..scene.units import unit_of
 from . import searches

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import bpy
 
+from ..blender.redrawing import redraw
 from ..jobs.job import Job
-from ..overlays.view_drawing import redraw
 from ..runtime.file_change_handlers import ends_with_file
 from .solve_indexing import Indexed
 

@@ -19,9 +19,9 @@ from ..actions.limits import target_limits
 from ..actions.reliability_curves import write_reliability
 from ..blender import compat
 from ..blender.block_references import BlockReference
+from ..blender.redrawing import redraw
 from ..blender.stored_json import store_json
 from ..jobs.protocol import PreviewSolve
-from ..overlays.view_drawing import redraw
 from ..rigs.control_plan import Limbs
 from ..rigs.target_read import find_roles, read_target
 from ..runtime.selection import selected_armature

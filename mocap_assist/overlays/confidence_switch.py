@@ -7,12 +7,13 @@ import gpu
 import numpy as np
 
 from ..actions.reliability_curves import Term
+from ..blender.redrawing import redraw_views
 from ..panel_parts.panel_layout import draw_sentence
 from ..panel_parts.preference_values import preferred
 from .color_icons import draw_marks
 from .confidence_colors import ColoredBones, available_terms, colored_bones_at
 from .strip_ranges import MARKS, StripRow
-from .view_drawing import ViewDrawing, draw_in_front, redraw, visible_active
+from .view_drawing import ViewDrawing, draw_in_front, visible_active
 
 WIDTH_FACTOR = 2.0
 """Line width relative to the comparison overlay, so that bones do not hide the lines."""
@@ -66,10 +67,6 @@ def _missing(available: frozenset[Term]) -> list[str]:
     return [MISSING[term] for term in MISSING if term not in available]
 
 
-def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    redraw(context, "VIEW_3D")
-
-
 def _draw(context: bpy.types.Context) -> None:
     if not context.window_manager.mocap_assist_confidence:
         return
@@ -99,7 +96,7 @@ def register() -> None:
             "Color bones by the confidence in their joints at this frame; blue is high, red is"
             " low"
         ),
-        update=_switched,
+        update=redraw_views,
     )
     bpy.types.WindowManager.mocap_assist_confidence_term = bpy.props.EnumProperty(
         name="Confidence Source",
@@ -108,7 +105,7 @@ def register() -> None:
             (term.name, label, description, number)
             for number, (term, label, description) in enumerate(TERMS)
         ],
-        update=_switched,
+        update=redraw_views,
     )
     _drawing.append(ViewDrawing(_draw))
 

@@ -11,8 +11,9 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 
 from ..actions.markers import holder_of
+from ..blender.redrawing import redraw
 from . import marker_overlay, onion_skin, overlay, raw_curves_switch, strip_drawing
-from .view_drawing import ViewDrawing, draw_in_front, redraw, visible_active
+from .view_drawing import ViewDrawing, draw_in_front, visible_active
 from .wipe import clipped, draw_wipe_line
 
 Color = tuple[float, float, float, float]

@@ -2,11 +2,11 @@
 
 import bpy
 
+from ..blender.redrawing import redraw_views
 from ..panel_parts.preference_values import preferences, preferred
 from . import overlay_drawing
 from .onion_skin import Onion
 from .raw_curves_switch import SWITCH as RAW_CURVES
-from .view_drawing import redraw
 
 PREFIX = "mocap_assist_"
 SWITCHES = ("overlay", "onion", "wipe")
@@ -43,12 +43,8 @@ def _draw_colors(column: bpy.types.UILayout) -> None:
         name.label(text=text)
 
 
-def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+def _refresh_drawing(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
     overlay_drawing.refresh()
-
-
-def _changed(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    redraw(context, "VIEW_3D")
 
 
 def current_look(manager: bpy.types.WindowManager) -> overlay_drawing.Look:
@@ -77,12 +73,12 @@ PROPERTIES = {
             "Draw the recorded and the cleaned motion over the 3D View; constraints are not"
             " evaluated"
         ),
-        update=_switched,
+        update=_refresh_drawing,
     ),
     "onion": bpy.props.BoolProperty(
         name="Onion Skin",
         description="Draw ghosts of nearby frames and trails of hands and feet, raw and clean",
-        update=_switched,
+        update=_refresh_drawing,
     ),
     "onion_ghosts": bpy.props.IntProperty(
         name="Ghosts",
@@ -90,7 +86,7 @@ PROPERTIES = {
         default=3,
         min=1,
         max=20,
-        update=_changed,
+        update=redraw_views,
     ),
     "onion_step": bpy.props.IntProperty(
         name="Step",
@@ -98,12 +94,12 @@ PROPERTIES = {
         default=5,
         min=1,
         max=50,
-        update=_changed,
+        update=redraw_views,
     ),
     "wipe": bpy.props.BoolProperty(
         name="Wipe",
         description="Draw the recorded motion left of a line in the 3D View, the clean right",
-        update=_switched,
+        update=_refresh_drawing,
     ),
     "wipe_position": bpy.props.FloatProperty(
         name="Position",
@@ -112,7 +108,7 @@ PROPERTIES = {
         default=0.5,
         min=0.0,
         max=1.0,
-        update=_changed,
+        update=redraw_views,
     ),
 }
 

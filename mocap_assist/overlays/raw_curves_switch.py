@@ -8,9 +8,9 @@ import gpu
 from bpy.types import SpaceGraphEditor
 
 from ...solvers.errors import InvalidMotionError
+from ..blender.redrawing import redraw
 from ..panel_parts.preference_values import preferred
 from .raw_curves import CurvePair, curve_lines, displayed_values, shown_pairs
-from .view_drawing import redraw
 
 SWITCH = "mocap_assist_raw_curves"
 OPACITY = 0.7
@@ -77,7 +77,7 @@ def _batch_of(pair: CurvePair, shader: Any) -> Any:
     return _batches[key]
 
 
-def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+def _redraw_graphs(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
     redraw(context, "GRAPH_EDITOR")
 
 
@@ -93,7 +93,7 @@ def register() -> None:
         name="Raw Curves",
         description="Draw the recorded curves behind those of the result in the Graph Editor",
         default=True,
-        update=_switched,
+        update=_redraw_graphs,
     )
     setattr(bpy.types.WindowManager, SWITCH, described)
     _handles.append(SpaceGraphEditor.draw_handler_add(_draw, (), "WINDOW", "PRE_VIEW"))

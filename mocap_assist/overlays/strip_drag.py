@@ -6,10 +6,10 @@ import bpy
 
 from ..actions.frames import FrameRange
 from ..blender.act_operator import ActOperator
+from ..blender.redrawing import redraw
 from .strip_drawing import EDITORS, MODES, strip_height, visible_frames
 from .strip_reading import strip_of
 from .strip_switch import SWITCH
-from .view_drawing import redraw
 
 GROUPS = ("clean", "reconstruct")
 """Settings of the buttons that change the frames of a range only."""

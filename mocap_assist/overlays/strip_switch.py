@@ -5,12 +5,12 @@ from typing import Any
 import bpy
 from bpy.types import SpaceDopeSheetEditor, SpaceGraphEditor
 
+from ..blender.redrawing import redraw
 from ..panel_parts.panel_layout import draw_sentence
 from .color_icons import draw_marks
 from .strip_drawing import EDITORS, draw_strip
 from .strip_ranges import MARKS, StripRow
 from .strip_reading import strip_of
-from .view_drawing import redraw
 
 SWITCH = "mocap_assist_strip"
 SPACES = (SpaceDopeSheetEditor, SpaceGraphEditor)
@@ -38,7 +38,7 @@ def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) ->
     draw_marks(column, dict.fromkeys(others), columns=2)
 
 
-def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+def _redraw_strips(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
     for editor in EDITORS:
         redraw(context, editor)
 
@@ -58,7 +58,7 @@ def register() -> None:
             " armature"
         ),
         default=True,
-        update=_switched,
+        update=_redraw_strips,
     )
     _handles.extend(
         (space, space.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL")) for space in SPACES

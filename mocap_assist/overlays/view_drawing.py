@@ -1,4 +1,4 @@
-"""Draw handlers of the 3D Views, lines in front of all objects, and redrawing."""
+"""Draw handlers of the 3D Views, and lines in front of all objects."""
 
 from collections.abc import Callable
 from typing import Any
@@ -64,11 +64,3 @@ def draw_in_front(
         gpu.matrix.multiply_matrix(matrix)
         batch.draw(shader)
     gpu.state.blend_set("NONE")
-
-
-def redraw(context: bpy.types.Context, kind: str = "") -> None:
-    """Redraw all areas, or those of a kind, for example VIEW_3D."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if kind in {"", area.type}:
-                area.tag_redraw()

@@ -6,8 +6,9 @@ import bpy
 import numpy as np
 
 from ...solvers.arrays import Single
+from ..blender.redrawing import redraw_views
 from ..overlays.overlay_drawing import Color, draw_lines
-from ..overlays.view_drawing import ViewDrawing, redraw
+from ..overlays.view_drawing import ViewDrawing
 from ..panel_parts.preference_values import preferred
 from ..runtime.selection import select_only_bone
 from .bone_map import SIDES, listed_armature
@@ -71,10 +72,6 @@ def _draw(context: bpy.types.Context) -> None:
             draw_lines(line, armature.matrix_world, COLOR, width)
 
 
-def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    redraw(context, "VIEW_3D")
-
-
 def register() -> None:
     """Add the switch, which starts on."""
     setattr(
@@ -84,7 +81,7 @@ def register() -> None:
             name="Highlight",
             description="Draw both bones of the selected row over the 3D View",
             default=True,
-            update=_switched,
+            update=redraw_views,
         ),
     )
     _drawing.append(ViewDrawing(_draw))

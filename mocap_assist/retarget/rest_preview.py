@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from ...solvers.arrays import Array
+from ..blender.redrawing import redraw_views
 from ..overlays.color_icons import square_icon
 from ..overlays.confidence_colors import UNKNOWN
 from ..overlays.pixel_drawing import (
@@ -17,7 +18,7 @@ from ..overlays.pixel_drawing import (
     write,
 )
 from ..overlays.strip_ranges import COLORS, Color, confidence_mark
-from ..overlays.view_drawing import ViewDrawing, redraw
+from ..overlays.view_drawing import ViewDrawing
 from ..panel_parts.preference_values import preferred
 from .bone_highlight import COLOR as HIGHLIGHT
 from .bone_map import SIDES, listed_armature
@@ -122,10 +123,6 @@ def _draw(context: bpy.types.Context) -> None:
         write(figure.name, corner, size - 2 * margin, TEXT_COLOR)
 
 
-def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    redraw(context, "VIEW_3D")
-
-
 def register() -> None:
     """Add the switch, which starts off."""
     described = bpy.props.BoolProperty(
@@ -133,7 +130,7 @@ def register() -> None:
         description=(
             "Draw both rigs in their rest poses at the bottom of 3D Views, in these colors"
         ),
-        update=_switched,
+        update=redraw_views,
     )
     setattr(bpy.types.WindowManager, SWITCH, described)
     _drawing.append(ViewDrawing(_draw, in_pixels=True))

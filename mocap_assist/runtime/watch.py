@@ -5,8 +5,8 @@ from time import monotonic
 
 import bpy
 
+from ..blender.redrawing import redraw
 from ..languages import translated
-from ..overlays.view_drawing import redraw
 from .file_change_handlers import ends_with_file
 
 TIMER_INTERVAL_S = 0.05

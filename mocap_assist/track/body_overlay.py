@@ -8,9 +8,10 @@ import numpy as np
 from ...solvers.depth_tracking.body import CAPSULE_SEGMENTS, SEGMENTS, capsule_surface
 from ...solvers.errors import MocapAssistError
 from ..actions.reliability_curves import reliability_at
+from ..blender.redrawing import redraw_views
 from ..overlays.body_drawing import Solid, draw_solid, solid
 from ..overlays.confidence_colors import color_from_reliability, reliability_source
-from ..overlays.view_drawing import ViewDrawing, redraw, visible_active
+from ..overlays.view_drawing import ViewDrawing, visible_active
 from .tracked_body import TrackedBody, bones_of, is_tracked, posed_frames
 
 NEUTRAL_COLOR = np.array([0.62, 0.72, 0.85, 1.0])
@@ -64,10 +65,6 @@ def _draw(context: bpy.types.Context) -> None:
         draw_solid(drawn, context.region_data)
 
 
-def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    redraw(context, "VIEW_3D")
-
-
 def register() -> None:
     """Add the switch, which starts off."""
     bpy.types.WindowManager.mocap_assist_body = bpy.props.BoolProperty(
@@ -75,7 +72,7 @@ def register() -> None:
         description=(
             "Draw the tracked body in the armature's pose; blue is high confidence, red is low"
         ),
-        update=_switched,
+        update=redraw_views,
     )
     _drawing.append(ViewDrawing(_draw))
 
