@@ -52,10 +52,10 @@ class ArmatureReading(NamedTuple):
         references = Played.of(scene, armature)
         recorded = history.cleaned_from(played_source(armature))
         raw = yield from read_take.steps(armature, scene, choices.frame_range, recorded)
-        return cls._found(references, raw)
+        return cls._resolve(references, raw)
 
     @classmethod
-    def _found(cls, references: Played, raw: ArmatureTake) -> "ArmatureReading":
+    def _resolve(cls, references: Played, raw: ArmatureTake) -> "ArmatureReading":
         """Look up all data again: pointers are stale after a time slice."""
         scene, armature, played = references.find()
         return cls(scene, armature, history.cleaned_from(played), played, raw, references)
@@ -92,7 +92,7 @@ class ArmatureReading(NamedTuple):
     ) -> Steps[tuple[str, int]]:
         """Write a new action and play it; return its name and how many curves were modified."""
         take = yield from in_thread.steps(partial(self.raw.with_recordings, cleaned.recordings))
-        now = self._found(self.references, self.raw)
+        now = self._resolve(self.references, self.raw)
         n_modified = count_modified(now.played, cleaned.moved)
         action, slot = yield from write_take.steps(
             now.armature,
@@ -102,7 +102,7 @@ class ArmatureReading(NamedTuple):
             types,
             recorded=RecordedChannels(self.raw, SourceReference.of(now.recorded)),
         )
-        now = self._found(self.references, self.raw)
+        now = self._resolve(self.references, self.raw)
         if cleaned.planted is not None:
             contacts, detected = cleaned.planted.all_contacts, now.contacts() is None
             write_contacts(now.armature, action, slot, take.frames, contacts, detected=detected)
@@ -111,7 +111,7 @@ class ArmatureReading(NamedTuple):
             made = SourceReference.of((action, slot))
             with removed_on_failure(action):
                 delta = yield from write_delta.steps(now.armature, now.recorded, (action, slot))
-                now, (action, slot) = self._found(self.references, self.raw), made.find()
+                now, (action, slot) = self._resolve(self.references, self.raw), made.find()
             lay_delta(now.armature, now.recorded, delta)
         else:
             assign_result(now.armature, action, slot, Output[choices.result_as.name])

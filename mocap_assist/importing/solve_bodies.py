@@ -67,10 +67,10 @@ def describe_left_out(takes: Sequence[LeftOut]) -> tuple[str, ...]:
         largest = 100.0 * max(shifting.values())
         found.append(
             "Bones change their distance to their parents, which is left out:"
-            f" {_listed(shifting)}, by up to {largest:.0f} cm"
+            f" {_join_names(shifting)}, by up to {largest:.0f} cm"
         )
     if growing:
-        found.append(f"Bones change their size, which is left out: {_listed(growing)}")
+        found.append(f"Bones change their size, which is left out: {_join_names(growing)}")
     return tuple(found)
 
 
@@ -112,6 +112,6 @@ def _body(name: str, group: list[BlendClip], longest: int) -> Body:
     )
 
 
-def _listed(names: Mapping[str, object]) -> str:
+def _join_names(names: Mapping[str, object]) -> str:
     more = len(names) - MAX_LISTED
     return ", ".join([*names][:MAX_LISTED]) + (f" and {more} more" if more > 0 else "")

@@ -171,7 +171,7 @@ class _ClipAdder:
                 sentence = known_empty[origin]
                 self._refused += [sentence] * bool(sentence)
                 continue
-            known = attempt(blend.path, self._known, blend)
+            known = attempt(blend.path, self._is_unchanged, blend)
             if isinstance(known, Failure):
                 self._refused.append(known.sentence)
             elif not known:
@@ -183,7 +183,7 @@ class _ClipAdder:
                 self._replace(blend, read)
             done += len(batch)
 
-    def _known(self, blend: _Blend) -> bool:
+    def _is_unchanged(self, blend: _Blend) -> bool:
         """Whether all clips of the file are as they were, and have all the tags."""
         entries = self._entries(blend).values()
         states = {(each.origin.size, each.origin.modified) for each in entries if each.origin}

@@ -209,7 +209,7 @@ def _fitting_slot(
 def _read(here: Subject, settings: RetargetBundle) -> Steps[RetargetScene]:
     choices = settings.choices
     scene, source = here.find()
-    target_called(scene, choices.target, source)  # or it cannot be used, and all is in vain
+    target_called(scene, choices.target, source)  # refuse an unusable target before reading
     lasting = [SourceReference.of(each) for each in chosen_sources(source, choices)]
     takes = []
     for each in lasting:
@@ -249,7 +249,7 @@ def _roles(
     """Return the bones of both armatures by role, and those that show the source's body."""
     files = (choices.source_map_file, choices.target_map_file)
     maps = maps_for(scene, source, target, files)
-    known = _known(maps.source, source)
+    known = _existing_bones(maps.source, source)
     shows = is_rigify(source.data.bones)
     return maps, body_bones(known, source.data.bones) if shows else known
 
@@ -266,7 +266,7 @@ def _wanted(maps: BoneMaps) -> HumanoidMap:
     return HumanoidMap(kept, maps.target.score)
 
 
-def _known(roles: HumanoidMap, source: bpy.types.Object) -> HumanoidMap:
+def _existing_bones(roles: HumanoidMap, source: bpy.types.Object) -> HumanoidMap:
     """Return the roles of bones that the armature has."""
     bones = source.data.bones
     return HumanoidMap(

@@ -133,7 +133,7 @@ def _write(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str, ...]
     pending = [entry for entry in entries if entry.figures is None and not entry.failure]
     done = len(entries) - len(failed) - len(pending)
     counts = {"done": done, "failed": len(failed), "not come to": len(pending)}
-    listed = [_listed(folder, entry) for entry in entries]
+    listed = [_report_entry(folder, entry) for entry in entries]
     with write_atomically(folder / FIGURES) as part:
         content = {"verb": verb, **counts, "files": listed}
         part.write_text(json.dumps(content, indent=1, allow_nan=False), encoding="utf-8")
@@ -153,13 +153,13 @@ def _write(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str, ...]
 
 def _checked(folder: Path, entry: Entry) -> None:
     """Format an entry as both reports do, to detect failures before writing."""
-    json.dumps(_listed(folder, entry), allow_nan=False)
+    json.dumps(_report_entry(folder, entry), allow_nan=False)
     _severity(entry)
     _overview([entry])
     _section(folder, entry, 0)
 
 
-def _listed(folder: Path, entry: Entry) -> dict[str, Any]:
+def _report_entry(folder: Path, entry: Entry) -> dict[str, Any]:
     listed: dict[str, Any] = {"input": entry.source, "output": entry.target}
     if entry.failure:
         listed["error"] = entry.failure

@@ -148,7 +148,7 @@ class _Indexing:
 
     def __init__(self, library: ClipLibrary, tags: tuple[str, ...]) -> None:
         self._library, self._tags = library, tags
-        self._known = dict(_clips_by_key(library))
+        self._indexed = dict(_clips_by_key(library))
         self._sources: dict[Key, ClipSource] = {}
         self._batch: list[DescribedClip] = []
         self._added, self._changed = list[str](), list[str]()
@@ -170,8 +170,8 @@ class _Indexing:
                 self._refused.append((str(source.path), sentence))
                 continue
             name, tags = next(iter(source.names())), self._tags
-            if _key(origin) in self._known:
-                _, known = self._known[_key(origin)]
+            if _key(origin) in self._indexed:
+                _, known = self._indexed[_key(origin)]
                 name, tags = known.name, tuple(dict.fromkeys(known.tags + tags))
                 if known.origin == origin and known.tags == tags:
                     self._unchanged.append(name)
@@ -186,12 +186,12 @@ class _Indexing:
         Clips of named bodies replace a clip of the default body.
         """
         bodies: dict[str, list[str]] = {}
-        for path, body in self._known:
+        for path, body in self._indexed:
             bodies.setdefault(path, []).append(body)
         for source in sources:
             known = [body for body in bodies.get(str(source.path), []) if body]
-            if source.body and (str(source.path), "") in self._known:
-                number, _ = self._known.pop((str(source.path), ""))
+            if source.body and (str(source.path), "") in self._indexed:
+                number, _ = self._indexed.pop((str(source.path), ""))
                 self._removed += self._library.discard([number])
             yield from (
                 [replace(source, body=body) for body in known]
@@ -206,8 +206,8 @@ class _Indexing:
             self._refused.append((request.origin.path, description.sentence))
             if description.is_permanent:
                 self._new_refusals.append((request.origin, description.sentence))
-            if _key(request.origin) in self._known:
-                self._removed += self._library.discard([self._known[_key(request.origin)][0]])
+            if _key(request.origin) in self._indexed:
+                self._removed += self._library.discard([self._indexed[_key(request.origin)][0]])
             return
         self._batch.append(description.clip)
         n_frames = sum(clip.postures.n_frames for clip in self._batch)
@@ -219,7 +219,7 @@ class _Indexing:
         names = self._library.add_described(self._batch, free_name=self._free_name)
         for clip, name in zip(self._batch, names, strict=True):
             origin = clip.entry.origin
-            known = origin is not None and _key(origin) in self._known
+            known = origin is not None and _key(origin) in self._indexed
             (self._changed if known else self._added).append(name)
         if self._new_refusals:
             self._library.remember_refused(version(), self._new_refusals)
@@ -229,7 +229,7 @@ class _Indexing:
         """Remove clips whose files were in these folders and are gone."""
         self._removed += self._library.discard([
             number
-            for (path, _), (number, _) in self._known.items()
+            for (path, _), (number, _) in self._indexed.items()
             if any(Path(path).is_relative_to(one) for one in folders) and is_missing(path)
         ])  # fmt: skip
 

@@ -30,7 +30,8 @@ def posture_library_from_clips(
     motions = [clip for clip in clips if isinstance(clip, Motion)]
     if not motions:
         raise InvalidMotionError(
-            "Postures are learned from the motions of skeletons; these clips are points."
+            "A posture library needs motions of skeletons; these clips are points."
+            " Choose clips with a skeleton."
         )
     source = "1 clip of your own" if len(motions) == 1 else f"{len(motions)} clips of your own"
     return build_posture_library(

@@ -48,7 +48,7 @@ def read_manifest(path: Path) -> list[Listed]:
     listed = []
     for position, entry in _entries(path, text):
         try:
-            listed.append(_listed(path.parent, entry))
+            listed.append(_parse_entry(path.parent, entry))
         except ValueError as error:
             raise InvalidFileError(f"The manifest {path}, {position}: {error}.") from None
     if not listed:
@@ -84,7 +84,7 @@ def _parsed(path: Path, text: str, first_line: int) -> Any:
         ) from None
 
 
-def _listed(folder: Path, entry: Any) -> Listed:
+def _parse_entry(folder: Path, entry: Any) -> Listed:
     """Return an entry; a ValueError says what is wrong with it."""
     if isinstance(entry, str):
         entry = {"input": entry}

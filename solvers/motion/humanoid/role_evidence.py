@@ -174,13 +174,13 @@ def describe_low_confidence(humanoid: HumanoidMap, evidence: Mapping[str, RoleEv
         if evidence[role].reason is Reason.TREE_DECIDES
     ]
     sentences = [
-        f"Bones with low confidence: {_listed(marked)}." * bool(marked),
-        f"Bone lengths overruled these names: {_listed(overruled)}." * bool(overruled),
+        f"Bones with low confidence: {_join_clauses(marked)}." * bool(marked),
+        f"Bone lengths overruled these names: {_join_clauses(overruled)}." * bool(overruled),
     ]
     return " ".join(filter(None, sentences))
 
 
-def _listed(clauses: Sequence[str]) -> str:
+def _join_clauses(clauses: Sequence[str]) -> str:
     more = len(clauses) - MAX_NAMED
     return "; ".join(clauses[:MAX_NAMED]) + f"; and {more} more" * (more > 0)
 

@@ -96,12 +96,12 @@ def describe_shots(recording: Motion | Tracks, cuts: tuple[int, ...]) -> str:
             unchanged.append(f"frames {start + 1} to {stop}")
     sentences = []
     if len(cleaned_starts) > 1:
-        starts = _listed(cleaned_starts[1:])
+        starts = _join_names(cleaned_starts[1:])
         sentences.append(
             f"The take has a cut before frame {starts}; its shots were cleaned separately."
         )
     if unchanged:
-        listed = _listed(unchanged).capitalize()
+        listed = _join_names(unchanged).capitalize()
         single = len(unchanged) == 1 and listed.startswith("Frame ")
         sentences.append(
             f"{listed} is a separate pose and was kept as recorded."
@@ -111,7 +111,7 @@ def describe_shots(recording: Motion | Tracks, cuts: tuple[int, ...]) -> str:
     return " ".join(sentences)
 
 
-def _listed(names: list[str]) -> str:
+def _join_names(names: list[str]) -> str:
     return " and ".join([", ".join(names[:-1]), names[-1]] if names[:-1] else names)
 
 

@@ -261,7 +261,7 @@ def _unmirrored(recording: JointRecording, progress: Progress) -> JointRecording
     shown = np.stack([*sides, np.zeros_like(front), front], axis=1)
     if not is_mirrored(shown, 0, 1, 2, 3):
         return recording
-    progress(1.0, Remark("Left and right are exchanged in the file; the take is mirrored"))
+    progress(1.0, Remark("Left and right are swapped in the file; the take is mirrored"))
     mirrored = points * np.array([-1.0, 1.0, 1.0])
     return recording.with_tracks(recording.tracks.with_positions(mirrored))
 

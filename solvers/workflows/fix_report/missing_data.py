@@ -40,11 +40,11 @@ def describe_missing_points(names: Sequence[str]) -> str:
     if not names:
         return ""
     if len(names) == 1:
-        return f"{names[0]} was never seen and left out."
+        return f"{names[0]} was never observed and is left out."
     listed = ", ".join(names[:MAX_NAMES])
     if more := names[MAX_NAMES:]:
-        return f"{listed} and {len(more)} more were never seen and left out."
-    return f"{listed} were never seen and left out."
+        return f"{listed} and {len(more)} more were never observed and are left out."
+    return f"{listed} were never observed and are left out."
 
 
 def describe_empty_frames(take: Take) -> str:

@@ -45,8 +45,8 @@ class TakeFigures:
     def figures(self) -> dict[str, Any]:
         """Return the figures as JSON-ready values with units in the names; None is unknown."""
         return {
-            "jitter_deg": _known(np.degrees(self.quality.rotation_noise)),
-            "longest_foot_slide_cm": _known(100.0 * self.quality.longest_foot_slide),
+            "jitter_deg": _finite_or_none(np.degrees(self.quality.rotation_noise)),
+            "longest_foot_slide_cm": _finite_or_none(100.0 * self.quality.longest_foot_slide),
             "spikes": self.n_spikes,
             "gaps": self.n_gaps,
             "issues": len(self.issues),
@@ -110,7 +110,7 @@ def _count(flags: list[Flags]) -> int:
     return sum(len(find_runs(each)) for each in flags)
 
 
-def _known(value: float) -> float | None:
+def _finite_or_none(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 

@@ -55,7 +55,10 @@ def measure_index(folder: Path) -> list[str]:
 
 def _throughput(folder: Path, walks: Sequence[Path]) -> str:
     """Return the table of clips per minute, with what a library differs in."""
-    takes, few = _listed(folder / "timed", walks), _listed(folder / "few", walks[:N_BEFORE])
+    takes, few = (
+        _link_walks(folder / "timed", walks),
+        _link_walks(folder / "few", walks[:N_BEFORE]),
+    )
     first, rows = b"", {}
     for n_workers in (1, 2):
         local, cluster = folder / f"local{n_workers}.clips", folder / f"{n_workers}.clips"
@@ -82,7 +85,7 @@ def _growth(folder: Path, walks: Sequence[Path]) -> str:
     """Return the table of one library that grows."""
     takes, library, before, rows = folder / "growing", folder / "growing.clips", 0, {}
     for size in SIZES:
-        _listed(takes, walks[before:size])
+        _link_walks(takes, walks[before:size])
         seconds, memory_mb = _index(library, takes, "--jobs", "2")
         with load_clip_library(library) as opened:
             search_ms = _search_ms(opened, walks)
@@ -181,7 +184,7 @@ def _write_walks(folder: Path, n_walks: int) -> list[Path]:
     return paths
 
 
-def _listed(folder: Path, walks: Sequence[Path]) -> Path:
+def _link_walks(folder: Path, walks: Sequence[Path]) -> Path:
     """Return a folder with links to walks."""
     folder.mkdir(exist_ok=True)
     for path in walks:

@@ -66,7 +66,7 @@ class Faults:
     rise_m: float = 0.0
     """How much higher the body is at the end of the take."""
     swaps_per_s: float = 0.0
-    """How often the legs are exchanged, for 2 to 6 frames."""
+    """How often the legs are swapped, for 2 to 6 frames."""
 
 
 PER_FRAME = Faults(
@@ -173,7 +173,7 @@ def slow_noise(motion: Motion, rng: np.random.Generator, shape: Sequence[int]) -
 def swapped(
     motion: Motion, per_second: float, rng: np.random.Generator
 ) -> list[tuple[int, int]]:
-    """Return first and last frame, exclusive, of exchanged legs."""
+    """Return first and last frame, exclusive, of swapped legs."""
     count = rng.poisson(per_second * motion.n_frames * motion.dt)
     starts = rng.integers(0, motion.n_frames, size=count)
     return [(int(start), int(start + rng.integers(2, 7))) for start in starts]

@@ -7,7 +7,7 @@ SENTENCE = "The knees of the source bend backward."
 
 @pytest.fixture
 def mirrored_walker(load, import_bvh, tmp_path):
-    """A walk without toes, with the names of left and right exchanged."""
+    """A walk without toes, with the names of left and right swapped."""
     samples, files = load("solvers.samples"), load("solvers.recordings")
     motion = load("solvers.motion")
     walk = samples.walking_gait(samples.GaitSettings(duration=2.0, frame_rate=30.0))

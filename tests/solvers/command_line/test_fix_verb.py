@@ -81,4 +81,4 @@ def test_fix_names_a_marker_that_is_never_seen(call, walk, tmp_path):
 
     status, _, err = call("fix", tmp_path / "markers.trc", tmp_path / "fixed.bvh")
 
-    assert status == 2 and "LKNE was never seen" in err
+    assert status == 2 and "LKNE was never observed" in err

@@ -13,7 +13,7 @@ N_FRAMES, RATE = 10, 5.0
 
 @pytest.fixture
 def tracks(rng):
-    """Marker b has two gaps, of one and of three frames, c one at the end; d is never seen."""
+    """Marker b has two gaps, of one and of three frames, c one at the end; d has no data."""
     positions = rng.normal(size=(N_FRAMES, 4, 3))
     positions[2, 1] = positions[5:8, 1] = positions[9, 2] = positions[:, 3] = np.nan
     positions[0, 0] = 0.0  # the origin is a place, here

@@ -60,7 +60,7 @@ def test_markers_that_are_never_seen_are_left_out(walk):
     result = fix_take(markers.with_positions(positions))
 
     assert result.origin is TakeOrigin.MARKERS and result.recording.observed.all()
-    assert "LFIN, RFIN were never seen and left out." in result.steps
+    assert "LFIN, RFIN were never observed and are left out." in result.steps
 
 
 def test_take_without_an_essential_marker_is_cleaned_as_points(walk):

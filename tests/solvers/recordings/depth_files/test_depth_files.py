@@ -252,7 +252,7 @@ def test_reading_joints_from_depth_reports_what_to_do(write):
 )
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_a_camera_that_was_held_otherwise_sees_the_same_points(write, held, mirrored):
-    """Turned about the axis of the camera, and their left and right exchanged."""
+    """Turned about the axis of the camera, and their left and right swapped."""
     path = write(depth_npz(pictures(), cx=2.0, cy=3.0))
     seen, turned = (
         read_depth(path),

@@ -86,7 +86,7 @@ def test_mirrored_axes_are_undone_and_reported(tmp_path, walk):
 
     recording, said = read(tmp_path, points * (-1.0, 1.0, 1.0))
 
-    assert "Left and right are exchanged" in said
+    assert "Left and right are swapped" in said
     assert np.allclose(recording.tracks.positions, points)
 
 
