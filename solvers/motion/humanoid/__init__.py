@@ -19,7 +19,7 @@ from .bone_directions import (
     positions_from_directions,
     rates_from_directions,
 )
-from .bone_lengths import fit_bone_lengths, transfer_motion
+from .bone_lengths import transfer_motion
 from .canonical import (
     FORWARD,
     UP,
@@ -133,7 +133,6 @@ __all__ = [
     "explain_roles",
     "fill_missing_hips",
     "find_humanoid_map",
-    "fit_bone_lengths",
     "foot_noise",
     "foot_points",
     "from_canonical",

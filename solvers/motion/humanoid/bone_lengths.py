@@ -1,49 +1,11 @@
-"""Fit positions to bone lengths, and transfer a motion to a skeleton of other lengths."""
+"""Transfer a motion to a skeleton with the same joints and other bone lengths."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
 from ..skeletons import Motion, Skeleton
 from .foot_contacts import leg_length
 from .roles import HumanoidMap, find_humanoid_map
-
-
-def fit_bone_lengths(positions: NDArray[np.float64], skeleton: Skeleton) -> NDArray[np.float64]:
-    """Move joints along their bones so that every bone has the length of the skeleton.
-
-    Parameters
-    ----------
-    positions : shape (n_frames, n_joints, 3), meters
-        Joints of a body with this skeleton's hierarchy; NaN: missing.
-    skeleton : Skeleton
-
-    Returns
-    -------
-    NDArray, shape (n_frames, n_joints, 3), meters
-        The root does not move and every bone keeps its direction. A bone of length 0 takes the
-        direction of the rest pose. All descendants of a missing joint are NaN.
-
-    Raises
-    ------
-    InvalidMotionError
-        The number of joints differs.
-    """
-    if positions.shape[1:] != (skeleton.n_joints, 3):
-        raise InvalidMotionError(
-            f"Positions for this skeleton need shape (n_frames, {skeleton.n_joints}, 3),"
-            f" not {positions.shape}."
-        )
-    lengths = np.linalg.norm(skeleton.offsets, axis=-1)
-    result = np.array(positions, dtype=np.float64)
-    for joint, parent in enumerate(skeleton.parents[1:], start=1):
-        bone = positions[:, joint] - positions[:, parent]
-        bone = np.where((bone == 0.0).all(axis=-1)[:, None], skeleton.offsets[joint], bone)
-        length = np.linalg.norm(bone, axis=-1, keepdims=True)
-        scale = lengths[joint] / np.where(length > 0.0, length, 1.0)
-        scale = np.where(np.isfinite(length), scale, np.nan)
-        result[:, joint] = result[:, parent] + scale * bone
-    return result
 
 
 def transfer_motion(

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
-from solvers.motion import Skeleton, fit_bone_lengths, forward_kinematics, transfer_motion
+from solvers.motion import Skeleton, forward_kinematics, transfer_motion
 
 
 @pytest.fixture
@@ -16,44 +16,6 @@ def resized(body, rng) -> Skeleton:
         if name.endswith(("Leg", "Foot")):
             scale[joint] = 1.2
     return Skeleton(body.names, body.parents, scale * body.offsets)
-
-
-def test_equals_the_same_rotations_on_the_other_skeleton(lively, resized):
-    """Both change lengths along the same directions, by different methods."""
-    positions = forward_kinematics(lively).positions
-
-    fitted = fit_bone_lengths(positions, resized)
-
-    moved = forward_kinematics(transfer_motion(lively, resized)).positions
-    assert_allclose(fitted - fitted[:, :1], moved - moved[:, :1], atol=1e-12)
-
-
-def test_changing_lengths_back_restores_the_motion(lively, resized):
-    positions = forward_kinematics(lively).positions
-
-    back = fit_bone_lengths(fit_bone_lengths(positions, resized), lively.skeleton)
-
-    assert_allclose(back, positions, atol=1e-12)
-
-
-def test_missing_joints_make_their_descendants_missing(lively, resized):
-    positions = forward_kinematics(lively).positions
-    arm = lively.skeleton.index("LeftArm")
-    positions[5, arm] = np.nan
-
-    fitted = fit_bone_lengths(positions, resized)
-
-    hidden = np.isnan(fitted[5]).all(axis=-1)
-    assert set(np.flatnonzero(hidden)) == set(lively.skeleton.subtree(arm))
-    assert np.isfinite(fitted[6:]).all()
-
-
-def test_bone_of_length_zero_has_the_rest_direction(leg):
-    positions = np.zeros((1, 4, 3))
-
-    assert_allclose(
-        fit_bone_lengths(positions, leg)[0, 1:], leg.rest_positions[1:] - leg.offsets[0]
-    )
 
 
 def test_longer_legs_make_longer_steps(lively, resized):
@@ -88,5 +50,3 @@ def test_root_scales_with_the_height_without_legs(swinging_leg, leg):
 def test_resizing_raises_for_other_joints(lively, leg):
     with pytest.raises(InvalidMotionError, match="retarget the motion instead"):
         transfer_motion(lively, leg)
-    with pytest.raises(InvalidMotionError, match=r"need shape \(n_frames, 4, 3\)"):
-        fit_bone_lengths(np.zeros((2, 3, 3)), leg)

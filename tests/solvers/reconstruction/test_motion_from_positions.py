@@ -14,7 +14,6 @@ from solvers.motion import (
     Sensor,
     Tracks,
     find_humanoid_map,
-    fit_bone_lengths,
     forward_kinematics,
     joint_parents,
     motion_from_points,
@@ -57,6 +56,18 @@ def position_errors(motion: Motion, tracks: Tracks) -> np.ndarray:
     return np.linalg.norm(positions - tracks.positions[:, reference], axis=-1)
 
 
+def with_bone_lengths(positions, skeleton):
+    """Move joints along their bones, from the root, to the lengths of the skeleton."""
+    result = positions.copy()
+    for joint, parent in enumerate(skeleton.parents[1:], start=1):
+        bone = positions[:, joint] - positions[:, parent]
+        length = np.linalg.norm(bone, axis=-1, keepdims=True)
+        result[:, joint] = (
+            result[:, parent] + np.linalg.norm(skeleton.offsets[joint]) / length * bone
+        )
+    return result
+
+
 def test_joints_of_constant_lengths_keep_their_positions(walk):
     motion = motion_from_positions(as_tracks(walk), PARENTS)
 
@@ -74,7 +85,7 @@ def test_real_cameras_have_no_swaps(recordings, file):
     body = motion_from_points(tracks, parents).skeleton
     order = [tracks.names.index(name) for name in body.names]
     smooth = np.array(tracks.positions)
-    smooth[:, order] = fit_bone_lengths(tracks.positions[:, order], body)
+    smooth[:, order] = with_bone_lengths(tracks.positions[:, order], body)
     smooth = tracks.with_positions(smooth)
 
     motion = motion_from_positions(smooth, parents)
