@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array
-from ..signals import second_difference_bands
+from ..signals import lower_block_bands
 
 
 class NormalEquations:
@@ -113,20 +113,11 @@ class NormalEquations:
         from scipy.linalg import solveh_banded  # slow to import: only when needed
 
         blocks, between, gradient = self._assembled
-        n_frames, n = gradient.shape
-        bands = np.zeros((n_frames, n, 2 * n + 1))
-        for column in range(n):
-            bands[:, column, : n - column] = blocks[:, column, column:]
-            bands[:-1, column, n - column : 2 * n - column] = between[:, column]
-        upper = second_difference_bands(n_frames)
-        for ahead in range(3):
-            differences = upper[2 - ahead, ahead:, None]
-            bands[: n_frames - ahead, :, ahead * n] += differences * self._second
         solved = solveh_banded(
-            bands.reshape(n_frames * n, -1).T,
+            lower_block_bands(blocks, self._second, between),
             -gradient.ravel(),
             lower=True,
             overwrite_ab=True,
             check_finite=False,
         )
-        return np.asarray(solved.reshape(n_frames, n))
+        return np.asarray(solved.reshape(gradient.shape))

@@ -11,7 +11,7 @@ from .noise import (
     remove_outliers,
     shrink_noise,
 )
-from .second_differences import second_difference_bands
+from .second_differences import lower_block_bands, second_difference_bands
 from .smoothstep import smoothstep
 from .spikes import find_runs, fit_lowess
 from .two_states import TwoStateFilter, two_state_probabilities
@@ -28,6 +28,7 @@ __all__ = [
     "fill_rotation_gaps",
     "find_runs",
     "fit_lowess",
+    "lower_block_bands",
     "remove_outliers",
     "second_difference_bands",
     "shrink_noise",

@@ -6,10 +6,9 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from ...arrays import Array
-from ...signals import second_difference_bands
+from ...signals import lower_block_bands
 from ..body import N_COORDINATES
 
-_FIRST_BAND, _SECOND_BAND = N_COORDINATES, 2 * N_COORDINATES
 _MIN_WEIGHT = 1e-6
 """Weight per square radian of a pose without observations. It guards a factorization."""
 
@@ -34,18 +33,14 @@ def smooth_take(
         Weight of squared second differences.
     """
     n_frames = len(poses)
-    bands = np.zeros((_SECOND_BAND + 1, n_frames * N_COORDINATES))
+    blocks = np.empty((n_frames, N_COORDINATES, N_COORDINATES))
     right_side = np.empty((n_frames, N_COORDINATES))
     for frame, (matrix, vector) in enumerate(equations):
+        blocks[frame] = matrix.T
         right_side[frame] = matrix @ poses[frame] + vector
-        first = frame * N_COORDINATES
-        for below in range(N_COORDINATES):
-            columns = np.arange(N_COORDINATES - below)
-            bands[below, first + columns] = matrix[columns + below, columns]
-    bands[0] += _MIN_WEIGHT
+    diagonal = np.arange(N_COORDINATES)
+    blocks[:, diagonal, diagonal] += _MIN_WEIGHT
     right_side += _MIN_WEIGHT * poses
-    upper = second_difference_bands(n_frames)
-    for band, lag in ((0, 0), (_FIRST_BAND, 1), (_SECOND_BAND, 2)):
-        bands[band] += np.outer(np.roll(upper[2 - lag], -lag), stiffness).ravel()
+    bands = lower_block_bands(blocks, stiffness)
     solution: Array = solveh_banded(bands, right_side.ravel(), lower=True)
     return solution.reshape(n_frames, N_COORDINATES)
