@@ -1,8 +1,8 @@
 """Each tuned number has a unit and a source, in the docstring or comment beside it.
 
 A source is a paper, a standard, a definition, a training script, what it guards or bounds, or
-a sweep: what "`make sensitivity` varies" has a row in docs/benchmarks/sensitivity.md. Where
-there is no metric, a number, a file or a test follows "by hand".
+a sweep: what "`make sensitivity` varies" has a row in docs/benchmarks/sensitivity.md, which
+alone holds its figures. Where there is no metric, a number, a file or a test follows "by hand".
 """
 
 import re
@@ -32,6 +32,10 @@ SOURCE = re.compile(
     r"|\bguards?\s+(?:against\s+|of\s+)?(?:an?\s+|the\s+)?\w{3,}",
     re.IGNORECASE,
 )
+COPIED_FIGURE = re.compile(r"\bx(?:0\.5|2)\b(?:[^.;]|\.\d)*?(?:\d %|\bnothing\b|\bfails\b)")
+"""What half or twice of a constant changes, as the page of the sweep says it."""
+OTHER_SWEEP = "development takes of the first press"
+"""Takes of a sweep whose figures no page holds."""
 
 
 def has_float(constant: Constant) -> bool:
@@ -119,6 +123,19 @@ def test_what_is_said_to_be_varied_has_a_row():
         and names.isdisjoint({constant.name, f"{Path(constant.path).stem}.{constant.name}"})
     ]
     assert not missing
+
+
+def test_figures_of_the_sweep_stand_on_its_page_alone():
+    listed = set().union(*(listed_constants(family) for family in FAMILIES))
+    copied = [
+        constant.key
+        for family in FAMILIES
+        for constant in constants_of(family)
+        if f"{Path(constant.path).stem}.{constant.name}" in listed
+        and COPIED_FIGURE.search(constant.text)
+        and OTHER_SWEEP not in constant.text
+    ]
+    assert not copied
 
 
 def test_constants_that_move_no_error_name_their_case():

@@ -6,6 +6,7 @@ import numpy as np
 from ...solvers.arrays import Array
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
+from ...solvers.rotations import IDENTITY
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene.rig import Placement, read_rig
@@ -13,8 +14,6 @@ from .bone_channels import bone_path
 from .curves import write_first
 from .rotation_modes import channels_from_quaternions, rotation_property
 from .take import TakePart, basis_rotations, root_locations
-
-STILL = (1.0, 0.0, 0.0, 0.0)
 
 
 def write_motion(
@@ -49,16 +48,18 @@ def write_motion(
     rig = read_rig(armature)
     owners = tuple(rig.bones.index(bone) if bone else -1 for bone in bones)
     n_frames = motion.n_frames
-    world = Placement(np.tile(STILL, (n_frames, 1)), np.zeros((n_frames, 3)), meters)
+    world = Placement(np.tile(IDENTITY, (n_frames, 1)), np.zeros((n_frames, 3)), meters)
     part = TakePart(motion, owners, world)
     shift = root_locations(part, rig)
     top = rig.bones[owners[0]]
     write_channels(bag, bone_path(top, "location"), top, frames, shift)
-    basis = basis_rotations(part, rig, Placement(np.array([STILL]), np.zeros((1, 3)), meters))
+    basis = basis_rotations(
+        part, rig, Placement(np.array([IDENTITY]), np.zeros((1, 3)), meters)
+    )
     for done, (bone, rotations) in enumerate(basis.items()):
         progress(done / len(basis), "Writing keys")
         joint = owners.index(bone)
-        if joint == 0 or (motion.rotations[:, joint] != STILL).any():
+        if joint == 0 or (motion.rotations[:, joint] != IDENTITY).any():
             _write_rotations(bag, armature.pose.bones[rig.bones[bone]], frames, rotations)
     compat.assign(armature, action, slot)
     return action, slot

@@ -31,7 +31,7 @@ from .saving import STDOUT, add_output_options, check_folder, save, target_file
 from .verbs import VERBS, SceneVerb
 
 PROG = "blender FILE --command mocap_assist"
-FAILED = 2
+FAILED_STATUS = 2
 _commands: list[object] = []
 
 
@@ -51,10 +51,10 @@ def run(words: Sequence[str]) -> int:
             arguments.work(arguments, screen)
     except MocapAssistError as error:
         screen.write_line(str(error))
-        return FAILED
+        return FAILED_STATUS
     except OSError as error:
         screen.write_line(f"{error.filename or 'The output'}: {reason_of(error)}.")
-        return FAILED
+        return FAILED_STATUS
     except SystemExit as stop:  # a usage error, or --help
         return int(stop.code or 0)
     return 0

@@ -8,7 +8,7 @@ from ..blender.mixins import OperatorMixin
 from ..languages import translated
 from . import raw_view
 
-PASSED = {
+PASSED_EVENTS = {
     "MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "NDOF_MOTION", "WHEELUPMOUSE", "WHEELDOWNMOUSE",
     "TRACKPADPAN", "TRACKPADZOOM",
 }  # fmt: skip
@@ -16,8 +16,8 @@ PASSED = {
 that wait for the release of a button, such as orbiting, would take the release of the key."""
 NOT_HELD = {"LEFTMOUSE", "RIGHTMOUSE", "MIDDLEMOUSE", "RET", "NUMPAD_ENTER"}
 """Events that choose an entry of a menu: there is no key to release then."""
-HELD = "{action}: release {key} for the result"
-CLICKED = "{action}: press any key or click for the result"
+HELD_TEXT = "{action}: release {key} for the result"
+CLICKED_TEXT = "{action}: press any key or click for the result"
 
 
 class HeldOperator(OperatorMixin):
@@ -41,7 +41,7 @@ class HeldOperator(OperatorMixin):
         is_key = event.value == "PRESS" and event.type not in NOT_HELD
         self._key = event.type if is_key else ""
         action = raw_view.show_raw(context)
-        template = translated(HELD if self._key else CLICKED)
+        template = translated(HELD_TEXT if self._key else CLICKED_TEXT)
         text = template.format(action=action, key=self._key)
         context.workspace.status_text_set(text)
         context.window_manager.modal_handler_add(self)
@@ -53,7 +53,7 @@ class HeldOperator(OperatorMixin):
             self.cancel(context)
             return {"CANCELLED"}
         has_modifier = event.ctrl or event.alt or event.shift or event.oskey
-        is_passed = event.type in PASSED and not has_modifier
+        is_passed = event.type in PASSED_EVENTS and not has_modifier
         is_timer = event.type.startswith("TIMER")  # of the playback, for example
         return {"PASS_THROUGH"} if is_passed or is_timer else {"RUNNING_MODAL"}
 
@@ -67,6 +67,6 @@ class HeldOperator(OperatorMixin):
             return True
         if event.type == self._key and event.value == "RELEASE":
             return True
-        if event.type in PASSED or event.type.startswith("TIMER"):
+        if event.type in PASSED_EVENTS or event.type.startswith("TIMER"):
             return False
         return event.value == "PRESS" and not event.is_repeat

@@ -19,7 +19,7 @@ from ..scene import history
 
 ADD, ADD_FILES = "mocap_assist.add_example", "mocap_assist.add_example_files"
 ADD_FOLDER = "mocap_assist.add_example_folder"
-REMOVE = "mocap_assist.remove_example"
+REMOVE_OPERATOR = "mocap_assist.remove_example"
 CLEAN, RECONSTRUCT = "clean", "reconstruct"
 """Whose list it is: a property of `scene.mocap_assist`."""
 RECORDINGS = ";".join(
@@ -40,7 +40,7 @@ def draw_examples(
         shown = name if action else Path(name).name
         icon = "ACTION" if action else "FILE" if Path(name).suffix else "FILE_FOLDER"
         row.label(text=shown, icon=icon, translate=False)
-        button = row.operator(REMOVE, text="", icon="X", emboss=False)
+        button = row.operator(REMOVE_OPERATOR, text="", icon="X", emboss=False)
         button.index, button.group = index, group
     layout.menu(MENUS[group], icon="ADD")
 
@@ -122,7 +122,7 @@ class MOCAP_OT_add_example(bpy.types.Operator):
 
 
 class MOCAP_OT_remove_example(bpy.types.Operator):
-    bl_idname = REMOVE
+    bl_idname = REMOVE_OPERATOR
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Remove Example"
     bl_description = "Remove this example from the list"

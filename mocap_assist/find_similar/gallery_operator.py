@@ -13,7 +13,7 @@ from . import searches
 from .gallery_drawing import Gallery
 
 NO_VIEW = "This window has no 3D View."
-PASSED = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE"}
+PASSED_EVENTS = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE"}
 
 
 def why_not_browse(context: bpy.types.Context) -> str:
@@ -65,7 +65,9 @@ class BrowseOperator(OperatorMixin):
         if event.type == "LEFTMOUSE" and is_pressed:
             return self._clicked(context, area, event, pointed)
         is_timer = event.type.startswith("TIMER")
-        return {"PASS_THROUGH"} if is_timer or event.type in PASSED else {"RUNNING_MODAL"}
+        return (
+            {"PASS_THROUGH"} if is_timer or event.type in PASSED_EVENTS else {"RUNNING_MODAL"}
+        )
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Remove the drawing; Blender calls this when the window closes, for example."""

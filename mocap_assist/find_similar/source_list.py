@@ -18,7 +18,7 @@ from ..library.auto_update_list import change_sources
 from ..library.sources import asset_folders
 
 ADD_FOLDER, ADD_FILES = "mocap_assist.add_source_folder", "mocap_assist.add_source_files"
-REMOVE = "mocap_assist.remove_source"
+REMOVE_OPERATOR = "mocap_assist.remove_source"
 FILES = "*.bvh;*.amc;*.c3d;*.trc;*.skeleton;*.csv;*.json;*.txt;*.npy;*.npz;*.blend"
 
 
@@ -32,7 +32,7 @@ def draw_sources(layout: bpy.types.UILayout, library: bpy.types.PropertyGroup) -
         row.label(
             text=path.name or name, icon=icon if path.suffix else "FILE_FOLDER", translate=False
         )
-        row.operator(REMOVE, text="", icon="X", emboss=False).index = index
+        row.operator(REMOVE_OPERATOR, text="", icon="X", emboss=False).index = index
     row = column.row(align=True)
     row.operator(ADD_FOLDER, text="Folder", icon="ADD")
     row.operator(ADD_FILES, text="Files", icon="ADD")
@@ -70,7 +70,7 @@ class MOCAP_OT_add_source_files(ChoosesFiles, bpy.types.Operator):
 
 
 class MOCAP_OT_remove_source(bpy.types.Operator):
-    bl_idname = REMOVE
+    bl_idname = REMOVE_OPERATOR
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Remove Source"
     bl_description = "Remove this source; its clips stay in the library"

@@ -61,7 +61,7 @@ from .solve_fixing import Fixed, FixedDepth, fix
 
 CLEAN = CleanBundle(CleanChoices(), DenoiseSettings(), PlantSettings())
 RECONSTRUCT = ReconstructBundle(ReconstructChoices(), ReconstructSettings(), PlantSettings())
-SOLVE = SolveBundle(MarkerMotionSettings(), SolveSettings())
+SOLVE_BUNDLE = SolveBundle(MarkerMotionSettings(), SolveSettings())
 TRACK = TrackBundle(
     TrackChoices(plant_feet=False), CaptureSettings(), ForegroundSettings(), PlantSettings()
 )
@@ -98,7 +98,7 @@ def read_fixing(
     if shows_depth(subject):
         return PreviewSolve(fix, recording_of(subject.data), settings.fixing)
     if subject.type != "ARMATURE":
-        solve = yield from read_solving.steps(scene, subject, SOLVE)
+        solve = yield from read_solving.steps(scene, subject, SOLVE_BUNDLE)
         tracks: Tracks = solve.args[0]
         if find_origin(tracks) is TakeOrigin.MARKERS:
             return partial(fix, tracks, settings.fixing)
@@ -148,7 +148,7 @@ def write_fixed(
         entry = {"operation": "fix", "settings": history.plain(*settings)}
         _write_depth(scene, subject, written, entry, solved_digest)
     else:
-        yield from write_solved.steps(scene, subject, SOLVE, written, solved_digest)
+        yield from write_solved.steps(scene, subject, SOLVE_BUNDLE, written, solved_digest)
     scene, subject = here.find()
     here = Subject.of(scene, fixed_subject(subject, fixed))
     scene, subject = here.find()

@@ -28,7 +28,7 @@ from ..rigs.target_read import find_roles
 from ..scene import history
 from ..scene.rig import END
 from .carriers import with_carriers
-from .catalogs import NONE, catalog_file, read_catalogs
+from .catalogs import NO_CATALOG, catalog_file, read_catalogs
 from .left_out import find_left_out
 
 ROUNDING = 1e-3
@@ -291,7 +291,7 @@ def _tags(action: bpy.types.Action, path: str) -> tuple[str, ...]:
         return ()
     tags = [tag.name for tag in action.asset_data.tags]
     number = action.asset_data.catalog_id.lower()
-    if number != NONE:
+    if number != NO_CATALOG:
         catalogs = read_catalogs(catalog_file(Path(path).parent))
         tags += [catalogs[number]] if number in catalogs else []
     return tuple(dict.fromkeys(tags))

@@ -12,7 +12,7 @@ from ...solvers.files import write_atomically
 FILE = "blender_assets.cats.txt"
 HEAD = "VERSION 1\n\n"
 N_COLUMNS = 3
-NONE = "00000000-0000-0000-0000-000000000000"
+NO_CATALOG = "00000000-0000-0000-0000-000000000000"
 """UUID of assets without a catalog."""
 
 

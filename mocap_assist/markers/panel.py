@@ -13,7 +13,7 @@ from ..panel_parts.visibility import shows_all
 from ..runtime.selection import selected_subject
 from .solving import why_not_solve
 
-SOLVE = "mocap_assist.solve_skeleton"
+SOLVE_OPERATOR = "mocap_assist.solve_skeleton"
 
 
 class MarkersPanel(PanelMixin):
@@ -26,7 +26,7 @@ class MarkersPanel(PanelMixin):
     def poll(cls, context: bpy.types.Context) -> bool:
         subject = selected_subject(context)
         is_marked = subject is not None and subject.type != "ARMATURE"
-        return exists(SOLVE) and (is_marked or shows_all(context))
+        return exists(SOLVE_OPERATOR) and (is_marked or shows_all(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -35,6 +35,6 @@ class MarkersPanel(PanelMixin):
         for item in (*fields(MarkerMotionSettings), *fields(SolveSettings)):
             if not item.metadata["described"].advanced:
                 column.prop(solve, item.name)
-        layout.operator(SOLVE, icon="ARMATURE_DATA")
+        layout.operator(SOLVE_OPERATOR, icon="ARMATURE_DATA")
         if reason := why_not_solve(context):
             draw_sentence(layout, context, reason, icon="INFO")

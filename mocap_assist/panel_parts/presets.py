@@ -14,13 +14,13 @@ from bl_ui.utils import PresetPanel
 from ...solvers.presets import PRESETS, mentioned_settings
 from ...solvers.settings import Choice, in_title_case
 
-USE = "mocap_assist.use_preset"
+USE_OPERATOR = "mocap_assist.use_preset"
 VERBS = {"clean": "denoise"} | {each: each for each in PRESETS if each != "denoise"}
 """Verb of each group of settings, `scene.mocap_assist.<group>`, that has presets."""
 
 
 class MOCAP_OT_use_preset(bpy.types.Operator):
-    bl_idname = USE
+    bl_idname = USE_OPERATOR
     bl_label = "Use Preset"
     bl_description = "Give some settings of this panel the values of a preset"
     bl_options: ClassVar = {"INTERNAL", "UNDO"}
@@ -73,7 +73,7 @@ class PresetMenu(PresetPanel):
         layout = self.layout
         layout.emboss = "PULLDOWN_MENU"
         for name in PRESETS[VERBS[self.group]]:
-            button = layout.operator(USE, text=name)
+            button = layout.operator(USE_OPERATOR, text=name)
             button.group, button.preset = self.group, name
         layout.separator()
         if bpy.utils.preset_paths(self.preset_subdir):

@@ -4,12 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from ...solvers.motion.humanoid import CENTRAL_ROLES
 from ...solvers.settings import Choice
 
 ROOT = "root"
 """Role name of the travel over the ground."""
-CENTRAL_ROLES = ("hips", "spine", "chest", "upperChest", "neck", "head")
-"""Roles without a side, each the child of the one before."""
 LIMB = {
     "Shoulder": "upperChest", "UpperArm": "Shoulder", "LowerArm": "UpperArm",
     "Hand": "LowerArm", "UpperLeg": "hips", "LowerLeg": "UpperLeg", "Foot": "LowerLeg",

@@ -25,11 +25,11 @@ VARY, KEEP, SHEET, STACK, MARK, ASSIGN = (
         "assign_variants",
     )
 )  # fmt: skip
-USE = "mocap_assist.use_matches"
+USE_OPERATOR = "mocap_assist.use_matches"
 MAIN = ("amount", "timing", "length")
 PARTS = ("trunk", "left_arm", "right_arm", "left_leg", "right_leg")
 OTHERS = ("pin_start", "pin_end")
-SHOWN_APART = {"seed", *MAIN, *OTHERS, *PARTS}
+SHOWN_APART_SETTINGS = {"seed", *MAIN, *OTHERS, *PARTS}
 CROWD = ("delay", "spread", "turn", "crowd_seed")
 MAX_LISTED = 30
 MIN_ROWS, MAX_ROWS = 3, 7  # rows of the list
@@ -103,7 +103,7 @@ def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
         button = box.operator(TICK, text=action.name, translate=False, icon=icon)
         button.action, button.group = action.name, "vary"
     if search := searches.listed(context):
-        column.operator(USE, text=f"Best Matches of {search.query}", icon="VIEWZOOM")
+        column.operator(USE_OPERATOR, text=f"Best Matches of {search.query}", icon="VIEWZOOM")
     if len(found) > MAX_LISTED:
         column.prop(context.scene.mocap_assist.vary, "actions")
 
@@ -128,7 +128,7 @@ def _draw_folded(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) -> N
         return
     for name in OTHERS:
         body.prop(vary, name)
-    for name in folded(VarySettings, SHOWN_APART, vary):
+    for name in folded(VarySettings, SHOWN_APART_SETTINGS, vary):
         body.prop(vary, name)
     feet = body.column()
     feet.active = vary.plant_feet

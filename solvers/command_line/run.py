@@ -50,7 +50,7 @@ FILES = {
     OutputKind.MATCHES: "The recording to search with, and then libraries with one vocabulary,"
     " or folders of them",
 }
-FAILED = 2
+FAILED_STATUS = 2
 INTERRUPTED = 130
 
 
@@ -80,13 +80,13 @@ def run(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> int:
         return _run_verb(verbs[arguments.verb], arguments, screen)
     except MocapAssistError as error:
         screen.write_line(str(error))
-        return FAILED
+        return FAILED_STATUS
     except BrokenPipeError:  # The reader of our output, such as `head`, has closed it.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILED
+        return FAILED_STATUS
     except OSError as error:
         screen.write_line(f"{error.filename or 'The output'}: {reason_of(error)}.")
-        return FAILED
+        return FAILED_STATUS
     except KeyboardInterrupt:
         screen.write_line("Interrupted. Finished files are kept.")
         return INTERRUPTED
@@ -186,7 +186,7 @@ def _run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
             for fault in write_report(folder, name, lambda: task_entries(every)):
                 screen.write_line(fault)
                 has_failures = True
-    return FAILED if has_failures else 0
+    return FAILED_STATUS if has_failures else 0
 
 
 def _run_tasks(verb: Verb, tasks: Sequence[Task], screen: Screen) -> Iterator[FinishedTask]:

@@ -25,9 +25,11 @@ area and this gap. They guard bodies that furniture in front of them divides
 `test_find_actor_works_in_a_room_with_default_settings`)."""
 MIN_COMPONENT_M2 = 1e-3
 """Smaller components count as noise. Chosen by hand; `make sensitivity` varies it."""
-MAX_FULL_PIXELS, COARSE_WIDTH = 20_000, 200
-"""Number of pixels above which the image is subsampled, and its width then, pixels. They bound
-the run time. Chosen by hand: second, x0.5 costs 0.4 %, x2 costs 2.4 %."""
+MAX_FULL_PIXELS = 20_000
+"""Number of pixels above which the image is subsampled. It bounds the run time."""
+COARSE_WIDTH = 200
+"""Width of the subsampled image, pixels. It bounds the run time; `make sensitivity` varies
+it."""
 POINT_STEP = 12
 """Every n-th point represents a body in distance tests. It bounds the run time."""
 

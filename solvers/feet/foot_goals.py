@@ -23,23 +23,23 @@ from .plant_settings import PlantSettings
 from .sole_contact import FootContact
 
 ROOT_M = 0.01
-"""Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand: x0.5 costs 1.4 %, x2
-gains 0.5 % and lets the hips jerk more."""
+"""Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand: x2 lets the hips jerk
+more; `make sensitivity` varies it."""
 HIP_RAD = np.radians(4.0)
 """Radians of a hip, and of toes. Chosen by hand; `make sensitivity` varies it."""
 KNEE_RAD, LOOSE_KNEE_RAD = np.radians(3.0), np.radians(8.0)
-"""Radians of a knee, with and without Protect Knees. Chosen by hand: x0.5 costs nothing, x2
-costs 1.1 % and makes knees jerk more."""
+"""Radians of a knee, with and without Protect Knees. Chosen by hand: x2 makes knees jerk more;
+`make sensitivity` varies both."""
 ANKLE_RAD = np.radians(15.0)
 """Radians of an ankle, whose foot follows its own rotation in the world. Chosen by hand;
 `make sensitivity` varies it."""
 FOOT_RAD = np.radians(2.5)
-"""Radians of a foot in the world. Chosen by hand: x0.5 costs 2.0 %, x2 gains 1.2 % and turns
-feet farther."""
+"""Radians of a foot in the world. Chosen by hand: x2 turns feet farther; `make sensitivity`
+varies it."""
 ANKLE_M = 0.012
 """Meters, for a leg of 0.9 m, by which the ankle may leave its path in contact. Chosen by hand:
-x0.5 gains 1.1 %, x2 costs 5.6 %; 0.02 moves a foot of CMU 06_01 by 17 cm, where a knee is
-nearly straight."""
+0.02 moves a foot of CMU 06_01 by 17 cm, where a knee is nearly straight; `make sensitivity`
+varies it."""
 CREEP_M = 0.01
 """Meters, for a leg of 0.9 m, by which a foot may creep in Max Contact Time. Chosen by hand, by
 the worst drift within a contact of clean takes, 0.9 mm: x2 makes it 3.1, x0.5 0.2 and turns
@@ -48,8 +48,8 @@ FLOOR_M = 0.002
 """Meters, for a leg of 0.9 m, by which a planted sole may be off the floor. Chosen by hand;
 `make sensitivity` varies it."""
 MAX_TURN_RAD_S = np.radians(8.0)
-"""Radians per second by which a foot may turn while it rests flat. Chosen by hand: x0.5 gains
-0.3 %, x2 costs 0.9 %, but 2 degrees make knees before depth cameras jerk half as much again."""
+"""Radians per second by which a foot may turn while it rests flat. Chosen by hand: 2 degrees
+make knees before depth cameras jerk half as much again; `make sensitivity` varies it."""
 
 
 def planting_goals(

@@ -23,9 +23,10 @@ from .sole import load_shares, measure_standing_heights, smoothed_paths
 from .support import Support, resting_steps
 
 SHOULDER_RAD, ELBOW_RAD = np.radians(4.0), np.radians(2.0)
-"""Radians by which a shoulder and an elbow may turn. Chosen by hand, by how elbows of bodies on
-their hands accelerate, relative to the take: 1.03 times. Shoulder: x0.5 makes it 1.12, x2
-changes nothing. Elbow: x0.5 makes it 1.00 and turns shoulders farther, x2 makes it 1.17."""
+"""Radians by which a shoulder and an elbow may turn. `make sensitivity` varies them. Chosen by
+hand, by how elbows of bodies on their hands accelerate, relative to the take: 1.03 times.
+Shoulder: x0.5 makes it 1.12, x2 leaves it. Elbow: x0.5 makes it 1.00 and turns shoulders
+farther, x2 makes it 1.17."""
 WRIST_RAD = np.radians(15.0)
 """Radians of a wrist, whose hand follows its own rotation in the world. Chosen by hand: x0.5
 and x2 turn arms by 0.1 degrees less and more."""
@@ -34,7 +35,7 @@ HAND_RAD = np.radians(2.5)
 turns arms by 1.9 degrees in place of 1.2."""
 HAND_M = 0.012
 """Meters, for a leg of 0.9 m, by which a wrist may leave its path in contact. Chosen by hand:
-x0.5 makes elbows accelerate 1.11 times, x2 changes nothing."""
+x0.5 makes elbows accelerate 1.11 times; `make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,8 +18,8 @@ LOAD_FALLOFF_M = 0.007
 by hand; `make sensitivity` varies it."""
 SPEED_FALLOFF = 0.1
 """Meters per second, for a leg of 0.9 m: a point this much faster than the slowest carries 1/e
-of its load. Chosen by hand: x0.5 gains 0.9 %, x2 costs 1.6 %; x1.5 makes the worst knee of
-squats whose feet were captured badly jerk 1.5 times as much."""
+of its load. Chosen by hand: x1.5 makes the worst knee of squats whose feet were captured badly
+jerk 1.5 times as much; `make sensitivity` varies it."""
 MIN_RISE_M = 0.012
 """Meters, for a leg of 0.9 m, by which heel and ball are higher than the tip (or than the ankle
 above its own height at rest) when all carry the same load. Captured toes jitter, and a

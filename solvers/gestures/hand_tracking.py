@@ -18,8 +18,8 @@ LEFT = tuple(
 HEAD, HIPS = POSTURE_JOINTS.index("head"), POSTURE_JOINTS.index("hips")
 REQUIRED_JOINTS = (*RIGHT[:3], *LEFT[:3])
 MEDIAN_SAMPLES = 3
-"""Observed samples of each joint whose median is used: a single outlier has no effect. Chosen
-by hand: x2 costs 40 %; three is by definition the smallest number with that effect."""
+"""Observed samples of each joint whose median is used: a single outlier has no effect. Three is
+by definition the smallest number with that effect; `make sensitivity` varies it."""
 N_LENGTHS = 60
 """Number of frames, two seconds of a depth camera, whose median gives the arm length. Chosen by
 hand; `make sensitivity` varies it."""

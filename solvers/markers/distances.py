@@ -17,8 +17,7 @@ RIGID_SPREAD_M = 0.02
 """Maximum spread of a distance that identifies a marker by itself. It guards markers that move
 freely, any of whose distances are those of another one at times."""
 MAX_FRAMES = 400
-"""Frames, evenly spaced, from which distances are learned. It bounds the run time. Chosen by
-hand: x0.5 costs nothing, x2 costs nothing."""
+"""Frames, evenly spaced, from which distances are learned. It bounds the run time."""
 MIN_OBSERVED_FRACTION = 0.2
 """Minimum fraction of frames with both markers of a pair. It guards a marker seen in a few
 frames, in which no distance has time to vary: it would join a cluster."""

@@ -14,7 +14,7 @@ N_INDEPENDENT_FRAMES = 10.0
 Chosen by hand; `make sensitivity` varies it."""
 MAX_STEPS = 25
 """Maximum number of Gauss-Newton steps. It bounds the run time: bodies of the test takes
-converge sooner. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+converge sooner."""
 MIN_COST_GAIN = 1e-3
 """Relative gain of the cost below which the iteration ends. It bounds the run time."""
 

@@ -7,10 +7,12 @@ from ..arrays import Array
 from .distances import Distances, nan_median
 from .pair_swaps import PairSwap
 
-MIN_BAD_MISFIT, MAX_GOOD_MISFIT = 4.0, 1.0
-"""Median misfit, relative to the spread of the distances, above which a label is wrong, and
-below which it is correct. First chosen by hand: x0.5 costs nothing, x2 costs 0.3 %; the second
-guards reflections, which fit no label."""
+MIN_BAD_MISFIT = 4.0
+"""Median misfit, relative to the spread of the distances, above which a label is wrong. Chosen
+by hand; `make sensitivity` varies it."""
+MAX_GOOD_MISFIT = 1.0
+"""Median misfit, relative to the same, below which a label is correct. It guards reflections,
+which fit no label (`test_reflection_does_not_get_the_label_of_a_missing_marker`)."""
 MIN_NEIGHBORS = 3
 """Number of observed neighbors without which a label is not judged: spheres about three of them
 meet in two points. Chosen by hand; `make sensitivity` varies it."""

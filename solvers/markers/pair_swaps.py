@@ -10,21 +10,25 @@ from ..signals import find_runs
 from .distances import Distances
 from .rigid_transform import MARKER_NOISE_M
 
-MAX_JUMP_EVIDENCE, FORBIDDEN_COST = 10.0, 1e9
-"""Maximum evidence of one jump as a log-odds weight, and cost of a swap where a pair moves
-smoothly. Chosen by hand: first, x0.5 costs 2.1 %, x2 costs nothing; the second is a
-guard."""
+MAX_JUMP_EVIDENCE = 10.0
+"""Maximum evidence of one jump as a log-odds weight. Chosen by hand; `make sensitivity` varies
+it."""
+FORBIDDEN_COST = 1e9
+"""Cost, a weight, of a swap where a pair moves smoothly. It guards pairs that never swap: any
+cost above the evidence of a whole take does."""
 SWITCH_COST = 3.0
 """Cost of each start and end of a swap, the logarithm of a probability. Chosen by hand;
 `make sensitivity` varies it."""
 FRAME_WEIGHT = 0.3
-"""Weight of the distances in a frame, since consecutive frames are correlated. Chosen by hand:
-0 costs 50 %, x0.5 and x2 cost nothing."""
-STEP_PERCENTILE, STEP_FACTOR = 90.0, 2.0
-"""Typical step of a pair: this percentile of its relative steps, times the factor, plus the
-noise of a marker. A low percentile limits the influence of swaps in short takes. First chosen
-by hand: x0.5 costs nothing, x2 fails. The second guards hands that pass each other quickly in a
-slow take."""
+"""Weight of the distances in a frame, since consecutive frames are correlated. Chosen by hand;
+`make sensitivity` varies it."""
+STEP_PERCENTILE = 90.0
+"""Typical step of a pair: this percentile of its relative steps, times `STEP_FACTOR`, plus the
+noise of a marker. A low percentile limits the influence of swaps in short takes. Chosen by
+hand; `make sensitivity` varies it."""
+STEP_FACTOR = 2.0
+"""Factor of that percentile. It guards hands that pass each other quickly in a slow take
+(`test_fast_pass_of_two_markers_and_back_is_no_swap`)."""
 MIN_BAD_MISFIT, MIN_BAD_FRAMES = 3.0, 5
 """Misfit above which a label is bad, and minimum number of frames with two bad labels. It
 guards swaps that start in a gap, which would stay (`test_swap_between_gaps_is_corrected`)."""

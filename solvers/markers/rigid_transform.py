@@ -6,8 +6,8 @@ from ..arrays import Array
 from ..rotations import nearest_rotations
 
 N_REWEIGHTINGS = 8
-"""Iterations of the reweighted least squares. Chosen by hand: x0.5 costs nothing, x2 costs
-nothing."""
+"""Iterations of the reweighted least squares. It guards fits with an outlier, which a single
+fit follows (`test_outlier_marker_is_corrected_and_hardly_moves_others`)."""
 MARKER_NOISE_M = 0.004
 """Meters by which a marker may be off its place on a body: skin moves by millimeters. It guards
 what is exact for most of a take, such as the distances of two markers, the steps of a pair, or

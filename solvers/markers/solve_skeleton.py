@@ -24,8 +24,8 @@ MIN_MARKER_FRACTION = 0.95
 """Fraction of the largest number of markers that a frame needs for the fit of the body. Chosen
 by hand; `make sensitivity` varies it."""
 MAX_ERROR_FACTOR = 3.0
-"""Multiple of the median error above which a pose is fitted again. Chosen by hand: x0.5 gains
-4.3 %, x2 costs nothing; without it the error rises by 54 %."""
+"""Multiple of the median error above which a pose is fitted again. Chosen by hand; `make
+sensitivity` varies it."""
 
 
 @dataclass(frozen=True, kw_only=True)

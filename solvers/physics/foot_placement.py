@@ -21,7 +21,7 @@ MAX_STANCE_DISTANCE_M = 0.1
 """Maximum distance from the ground, likewise: a standing foot farther away stands on something
 else. A swinging foot is lifted from any depth. Chosen by hand; `make sensitivity` varies it."""
 
-SMOOTHING_S = 0.03
+CORRECTION_SMOOTHING_S = 0.03
 """Standard deviation in seconds of the Gaussian that smooths the corrections of foot heights.
 Chosen by hand; `make sensitivity` varies it."""
 
@@ -54,7 +54,9 @@ def place_feet_on_ground(
             corrections = _foot_corrections(
                 heights, slow_weights[:, column], stance_weights[:, column]
             )
-            corrections = smooth_gaussian(corrections, SMOOTHING_S * motion.frame_rate)
+            corrections = smooth_gaussian(
+                corrections, CORRECTION_SMOOTHING_S * motion.frame_rate
+            )
             goal = positions[:, chain[-1]] + body.size * corrections[:, None] * UP
             result = reach(result, chain, goal)
     return result

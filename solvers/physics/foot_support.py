@@ -8,14 +8,16 @@ from ..signals import smooth_gaussian
 from .body import PhysicsBody
 from .body_surface import SIDES, lowest_points, measure_sole_speeds, select_foot_ends
 
-SMOOTHING_S = 0.02
+LOAD_SMOOTHING_S = 0.02
 """Standard deviation in seconds of the Gaussian that smooths loads, heights and speeds. Chosen
 by hand; `make sensitivity` varies it."""
 
-MIN_LOAD, FULL_LOAD = 0.05, 0.15
-"""Fractions of the weight: a foot with the first starts to stand; with the second it stands.
-Chosen by hand: first, x0.5 costs 0.1 %, x2 costs nothing. The second guards the free leg of an
-actor who rests on the other one: higher lets it slip, lower holds a foot that only touches
+MIN_LOAD = 0.05
+"""Fraction of the weight with which a foot starts to stand. Chosen by hand; `make sensitivity`
+varies it."""
+FULL_LOAD = 0.15
+"""Fraction of the weight with which a foot stands. It guards the free leg of an actor who rests
+on the other one: higher lets it slip, lower holds a foot that only touches
 (`test_foot_of_the_free_leg_stands_and_one_that_touches_moves`)."""
 
 HOLD_SPEED_M_S, RELEASE_SPEED_M_S = 0.3, 0.5
@@ -127,4 +129,4 @@ def sum_foot_loads(body: PhysicsBody, loads: Array) -> Array:
 
 
 def _smooth(values: Array, frame_rate: float) -> Array:
-    return smooth_gaussian(values, SMOOTHING_S * frame_rate)
+    return smooth_gaussian(values, LOAD_SMOOTHING_S * frame_rate)

@@ -1,11 +1,10 @@
 """Tables of a human body's masses, sizes and strengths by segment."""
 
-CENTRAL = ("hips", "spine", "chest", "upperChest", "neck", "head")
-LEG = ("UpperLeg", "LowerLeg", "Foot", "Toes")
-ARM = ("Shoulder", "UpperArm", "LowerArm", "Hand")
+from ..motion.humanoid import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES
+
 ROLES = (
-    *CENTRAL,
-    *(side + part for side in ("left", "right") for part in (*LEG, *ARM)),
+    *CENTRAL_ROLES,
+    *(side + part for side in ("left", "right") for part in (*LEG_ROLES, *ARM_ROLES)),
 )
 """Humanoid roles with a segment of their own, 22 at most; hands and feet are one segment
 each."""
@@ -52,10 +51,10 @@ def role_without_side(role: str) -> str:
 
 def next_roles(role: str) -> tuple[str, ...]:
     """Return the roles at which a segment may end, best first."""
-    if role in CENTRAL:
-        return CENTRAL[CENTRAL.index(role) + 1 :]
+    if role in CENTRAL_ROLES:
+        return CENTRAL_ROLES[CENTRAL_ROLES.index(role) + 1 :]
     part = role_without_side(role)
-    chain = LEG if part in LEG else ARM
+    chain = LEG_ROLES if part in LEG_ROLES else ARM_ROLES
     side = role.removesuffix(part)
     return tuple(side + below for below in chain[chain.index(part) + 1 :])
 
@@ -64,12 +63,12 @@ def find_mass_role(role: str, played: "set[str] | dict[str, int]") -> str:
     """Return the role that carries a segment's mass: its own, or the nearest above it."""
     while role not in played:
         part = role_without_side(role)
-        if role in CENTRAL:
-            role = CENTRAL[CENTRAL.index(role) - 1] if role != "hips" else ""
+        if role in CENTRAL_ROLES:
+            role = CENTRAL_ROLES[CENTRAL_ROLES.index(role) - 1] if role != "hips" else ""
         elif part in {"UpperLeg", "Shoulder"}:
             role = "hips" if part == "UpperLeg" else "upperChest"
         else:
-            chain = LEG if part in LEG else ARM
+            chain = LEG_ROLES if part in LEG_ROLES else ARM_ROLES
             role = role.removesuffix(part) + chain[chain.index(part) - 1]
         if not role:
             return ""

@@ -19,7 +19,7 @@ else:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
-HELD = {errno.EACCES, errno.EAGAIN, errno.EDEADLK}
+HELD_ERRORS = {errno.EACCES, errno.EAGAIN, errno.EDEADLK}
 """Error codes of systems for a lock that another process holds."""
 
 
@@ -66,7 +66,7 @@ def try_lock(path: Path, *, create: bool = True) -> FileLock | None:
             with suppress(FileNotFoundError):
                 kept = os.path.samestat(os.fstat(file), path.stat(follow_symlinks=False))
         except OSError as error:
-            if error.errno in HELD:
+            if error.errno in HELD_ERRORS:
                 return None
             raise
         finally:

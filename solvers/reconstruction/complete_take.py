@@ -26,7 +26,7 @@ UNCERTAIN_RELIABILITY = 0.07
 effect. On intact takes of UI-PRMD, joints of reliability 0.1 to 0.5 are 10 cm off, joints below
 0.05 are 40 cm off. Chosen by hand: x0.1 costs 4.2 %. It guards joints that are only uncertain:
 `test_wrong_joint_is_replaced_and_an_uncertain_one_stays_near`."""
-SMOOTHING_S = 0.1
+POSITION_SMOOTHING_S = 0.1
 """Standard deviation (s) of the Gaussian that smooths observed positions. Chosen by hand;
 `make sensitivity` varies it."""
 
@@ -54,7 +54,7 @@ def complete_take(
     tracks, ahead = recording.tracks, not settings.causal
     observed = tracks.visible.any(axis=0)
     smooth = fill_gaps(tracks.positions[:, observed], ahead=ahead)
-    smooth = smooth_gaussian(smooth, SMOOTHING_S * tracks.frame_rate, ahead=ahead)
+    smooth = smooth_gaussian(smooth, POSITION_SMOOTHING_S * tracks.frame_rate, ahead=ahead)
     distance = np.zeros(reliability.shape)
     distance[:, observed] = np.linalg.norm(
         rebuilt.tracks.positions[:, observed] - smooth, axis=-1

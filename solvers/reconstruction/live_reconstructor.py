@@ -16,7 +16,12 @@ from ..motion.humanoid import (
 )
 from ..progress import unwatched
 from ..signals import CausalSmoother
-from .complete_take import SMOOTHING_S, CompletedTake, blend_rebuilt, replacement_weights
+from .complete_take import (
+    POSITION_SMOOTHING_S,
+    CompletedTake,
+    blend_rebuilt,
+    replacement_weights,
+)
 from .joint_rotations import LimbTwists, find_anchors, positions_from_postures
 from .live_actor import LiveActor, reliability_settings
 from .pose_completion import (
@@ -95,7 +100,7 @@ class LiveReconstructor:
             maxlen=memory_frames(rate, self._reliability)
         )
         self._last_observed = np.full((len(actor.names), 3), np.nan)
-        self._path = CausalSmoother(SMOOTHING_S * rate)
+        self._path = CausalSmoother(POSITION_SMOOTHING_S * rate)
         self._observed_heading = PostureNormalizer(rate)
         self._residuals = ResidualFilter(
             1.0 / rate, actor.library.errors.size, self._completion.memory

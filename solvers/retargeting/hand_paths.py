@@ -9,7 +9,7 @@ from ..arrays import Array
 from ..motion import WorldPoses
 from ..signals import smooth_gaussian, smoothstep
 from .body import SIDES
-from .limbs import SMOOTHING_S, Limb, Transfer
+from .limbs import LIMB_SMOOTHING_S, Limb, Transfer
 from .placement import leg_length
 
 LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION = 0.2, 0.4
@@ -25,11 +25,13 @@ ground; hands faster than the second only pass. They guard hands that sweep over
 which would be pulled to the place of the source's
 (`test_hand_that_rolls_on_the_ground_supports_the_body`,
 `test_hand_that_sweeps_over_the_ground_does_not_support_where_it_turns`)."""
-MEETING_FRACTION, INDEPENDENT_FRACTION = 0.15, 0.4
-"""Distances of both hands, as fractions of the arm length: below the first they meet, above the
-second they are independent. Second chosen by hand: x0.5 costs nothing, x2 gains 0.4 %. The
-first guards hands that nearly touch, which would keep part of the distance from other arms
+MEETING_FRACTION = 0.15
+"""Distance of both hands, as a fraction of the arm length, below which they meet. It guards
+hands that nearly touch, which would keep part of the distance from other arms
 (`test_hands_that_meet_in_the_source_meet`)."""
+INDEPENDENT_FRACTION = 0.4
+"""Distance of both hands, as a fraction of the arm length, above which they are independent.
+Chosen by hand; `make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +108,7 @@ def ground_weights(hand: Array, height: Array, frame_rate: float) -> Array:
     it is, the more the place does. `hand` and `height` are in leg lengths.
     """
     velocity = np.gradient(hand, axis=0) * frame_rate if len(hand) > 1 else 0.0 * hand
-    speed = smooth_gaussian(np.linalg.norm(velocity, axis=1), SMOOTHING_S * frame_rate)
+    speed = smooth_gaussian(np.linalg.norm(velocity, axis=1), LIMB_SMOOTHING_S * frame_rate)
     supports = smoothstep(height, *reversed(SUPPORT_HEIGHT_FRACTIONS)) * smoothstep(
         speed, PASSING_SPEED, SUPPORT_SPEED
     )

@@ -8,7 +8,7 @@ from ..motion_fitting.goals import MIN_BEND, bone_directions
 from ..rotations import normalize, rotate
 from ..signals import smooth_gaussian
 from .body import HumanoidBody
-from .limbs import SMOOTHING_S, Limb
+from .limbs import LIMB_SMOOTHING_S, Limb
 
 
 def limb_hinge(body: HumanoidBody, fitted: FittedMotion, limb: Limb, usual: Array) -> Array:
@@ -21,5 +21,5 @@ def limb_hinge(body: HumanoidBody, fitted: FittedMotion, limb: Limb, usual: Arra
     shown = np.cross(*bone_directions(fitted, *limb[1:]))
     backward = np.minimum(shown @ usual, 0.0)
     shown = shown - backward[:, None] * usual
-    smooth = smooth_gaussian(shown, SMOOTHING_S * fitted.motion.frame_rate)
+    smooth = smooth_gaussian(shown, LIMB_SMOOTHING_S * fitted.motion.frame_rate)
     return normalize(smooth + MIN_BEND * usual)

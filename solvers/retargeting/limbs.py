@@ -12,10 +12,9 @@ from .stances import Stance
 
 Limb = tuple[int, int, int]
 BLEND_S = 0.5
-"""Seconds over which the correction of a limb begins and ends. Chosen by hand: for feet x0.5
-gains 0.2 %, but 0.3 s makes knees jerk a tenth more in walks; for hands x0.5 costs 3.1 %; x2
-costs nothing."""
-SMOOTHING_S = 0.1
+"""Seconds over which the correction of a limb begins and ends. Chosen by hand: 0.3 s makes
+knees jerk a tenth more in walks; `make sensitivity` varies it."""
+LIMB_SMOOTHING_S = 0.1
 """Standard deviation of the Gaussian that smooths what a limb of the source shows: the speed of
 its hand, and the axis about which it bends. It guards a hand that turns in a sweep over the
 ground, where it stands for an instant as if it supported the body

@@ -23,8 +23,8 @@ from .hinges import limb_hinge
 from .limbs import BLEND_S, Transfer
 
 HAND_FRACTION = 0.02
-"""Arm lengths by which hands may leave their paths. Chosen by hand: x0.5 costs 0.9 %, x2 costs
-nothing and lets hands that support the body slide."""
+"""Arm lengths by which hands may leave their paths. Chosen by hand: x2 lets hands that support
+the body slide; `make sensitivity` varies it."""
 EXACT_FRACTION = 0.002
 """Arm lengths by which hands that meet may be off their distance, and wrists below their least
 height. It guards hands that clap, which would stay apart on broad shoulders, and those of a

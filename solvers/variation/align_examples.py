@@ -15,7 +15,7 @@ ALIGNMENT_RATE_HZ = 20.0
 MAX_ALIGNED_FRAMES = 1500
 """Maximum frames of an example for alignment; longer examples are sampled more coarsely. It
 bounds the run time of examples of minutes."""
-SMOOTHING_S = 0.2
+ALIGNMENT_SMOOTHING_S = 0.2
 """Standard deviation in seconds of the Gaussian that smooths the alignment: the steps of a
 warping path are no change of speed by the actor. Chosen by hand; `make sensitivity` varies
 it."""
@@ -126,7 +126,7 @@ def _smooth_times(
     if n_center < 3:
         return np.linspace(0.0, n_example - 1.0, n_center)
     mean_speed = (n_example - 1.0) / (n_center - 1.0)
-    deviations = smooth_gaussian(raw - mean_speed * frames, SMOOTHING_S * frame_rate)
+    deviations = smooth_gaussian(raw - mean_speed * frames, ALIGNMENT_SMOOTHING_S * frame_rate)
     speeds = np.clip(
         np.diff(deviations) + mean_speed,
         MIN_RELATIVE_SPEED * mean_speed,

@@ -29,12 +29,12 @@ OFFSET_FRACTION = 0.25
 LOG_SPEED_STD = 0.1
 """Standard deviation of the logarithm of the playback speed. Chosen by hand; `make sensitivity`
 varies it."""
-SMOOTHING_S = 0.05
+MOVEMENT_SMOOTHING_S = 0.05
 """Standard deviation in seconds of the Gaussian that smooths movement before it is amplified,
 so that noise is not. Chosen by hand; `make sensitivity` varies it."""
 SHARED_VARIANCE = 0.7
-"""Fraction of the variance that joints of a partition share. Chosen by hand: x0.5 gains 0.7 %,
-x2 fails."""
+"""Fraction of the variance that joints of a partition share. Chosen by hand; `make sensitivity`
+varies it."""
 LEG_FACTOR, ROOT_FACTOR = 0.5, 0.3
 """Factors for legs, whose feet stand on the ground, and for the trajectory of the root. Chosen
 by hand; `make sensitivity` varies them."""
@@ -128,7 +128,7 @@ def _generic_deviations(model: VariationModel) -> tuple[Array, Array, Array]:
         for _ in range(2)
     )
     offset = rng.normal(size=(N_PAIRS, n_joints, 3))
-    smooth = smooth_gaussian(curve, SMOOTHING_S * model.frame_rate)
+    smooth = smooth_gaussian(curve, MOVEMENT_SMOOTHING_S * model.frame_rate)
     centered, velocity = (
         smooth - smooth.mean(axis=0),
         np.gradient(smooth, 1.0 / model.frame_rate, axis=0),

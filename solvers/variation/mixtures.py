@@ -26,7 +26,7 @@ legs move with the hips that they carry."""
 MAX_WEIGHT_RATIO = 1.6
 """Maximum length of a weight vector, relative to the typical one; longer ones are scaled back,
 so that variants stay near the examples. Chosen by hand; `make sensitivity` varies it."""
-SMOOTHING_S = 0.1
+WEIGHT_SMOOTHING_S = 0.1
 """Standard deviation in seconds of the Gaussian that separates slow changes, with weights of
 each partition, from fast ones. Chosen by hand; `make sensitivity` varies it."""
 DRAW_RATE_HZ = 30.0
@@ -35,7 +35,7 @@ varies it."""
 MAX_DRAWN_SAMPLES = 2000
 """Maximum count of drawn samples; in clips of more than a minute weights change more slowly. It
 bounds the memory."""
-JITTER = 1e-9
+REGULARIZATION = 1e-9
 """Variance, relative to one, added to the kernel: it guards its Cholesky factor."""
 
 
@@ -51,7 +51,7 @@ def draw_mixing_weights(
     n_drawn = max(min(n_samples, round(seconds * DRAW_RATE_HZ) + 1, MAX_DRAWN_SAMPLES), 2)
     times = np.linspace(0.0, seconds, n_drawn)
     covariance = model.kernel.covariance(times, seconds if model.loops else None)
-    factor = np.linalg.cholesky(covariance + JITTER * n_drawn * np.eye(n_drawn))
+    factor = np.linalg.cholesky(covariance + REGULARIZATION * n_drawn * np.eye(n_drawn))
     drawn = rng.normal(size=(2, ROOT_ROW + 1, n_variants, n_drawn, n))
     drawn = np.einsum("st,kpvtn->kpvsn", factor, drawn)
     shared = np.append(SHARED_VARIANCE, 1.0)[:, None, None, None]
@@ -88,7 +88,7 @@ def mix_deviations(model: VariationModel, weights: Array) -> tuple[Array, Array,
     """
     n, n_samples = model.n_examples, model.n_samples
     joints = _mix_curves(model.joints, weights[ROOT_ROW])
-    width = SMOOTHING_S * model.frame_rate
+    width = WEIGHT_SMOOTHING_S * model.frame_rate
     smooth = np.stack([smooth_gaussian(example, width) for example in model.joints])
     for members, partition_weights in zip(
         partition_joints(model.skeleton), weights[:ROOT_ROW], strict=True

@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...rotations import FULL_TURN_RAD, quaternion_from_rotation_vector
 from ...signals import fill_channel_gaps, remove_outliers, smooth_gaussian
 
-SMOOTHING_S = 0.5
+TRAVEL_SMOOTHING_S = 0.5
 """Standard deviation of the kernel that removes the gait from the path, seconds. Chosen by
 hand; `make sensitivity` varies it."""
 SPIKE_HALF_WIDTH_S = 0.15
@@ -52,7 +52,9 @@ def fit_travel_path(ground_positions: Array, headings: Array, frame_rate: float)
     mean = float(np.angle(np.nansum(np.exp(1j * headings)) + 1e-12))
     aligned = rotate_on_ground(ground_positions, -mean)
     relative = unwrap_angles(headings - mean, UNWRAP_S * frame_rate)
-    fitted = fit_local_lines(_without_spikes(aligned, frame_rate), SMOOTHING_S * frame_rate)
+    fitted = fit_local_lines(
+        _without_spikes(aligned, frame_rate), TRAVEL_SMOOTHING_S * frame_rate
+    )
     smooth_headings = smooth_angles(relative, frame_rate)
     return TravelPath(rotate_on_ground(fitted, mean), smooth_headings + mean)
 
@@ -64,7 +66,7 @@ def smooth_angles(angles: Array, frame_rate: float) -> Array:
     smoothed less.
     """
     clean = _without_spikes(angles[:, None], frame_rate)
-    width = SMOOTHING_S * frame_rate
+    width = TRAVEL_SMOOTHING_S * frame_rate
     fitted = fit_local_lines(clean, width)
     while width > 1.0 and np.nanmax(np.abs(clean - fitted), initial=0.0) > MAX_ANGLE_RAD:
         width /= 2.0

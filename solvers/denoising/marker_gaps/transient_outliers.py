@@ -13,8 +13,8 @@ NEIGHBORHOOD_FRAMES = 8
 """Half width in frames of the neighborhood that defines the typical distance. Chosen by hand: a
 half width of 1 costs 9.8 %, one of 80 gains nothing."""
 MIN_SPIKE_RATIO = 6.0
-"""Minimum distance of a spike, relative to the typical distance. Chosen by hand: x0.5 gains
-0.2 %, x2 costs 1.4 %; at 120 Hz the minimum in meters decides instead."""
+"""Minimum distance of a spike, relative to the typical distance. At 120 Hz the minimum in
+meters decides instead. Chosen by hand; `make sensitivity` varies it."""
 MIN_SPIKE_M = 0.02
 """Meters: a shorter distance is no spike. Chosen by hand; `make sensitivity` varies it."""
 

@@ -17,8 +17,8 @@ from .estimate_channels import estimate_channels
 from .prior_selection import build_examples_prior, build_take_prior, select_prior
 
 MAX_GROUP_CHANNELS = 96
-"""Channels solved together; rigs with more are split between joints. Chosen by hand: x0.5 gains
-0.2 %, x2 costs nothing; it bounds the run time."""
+"""Channels solved together; rigs with more are split between joints. It bounds the run time;
+`make sensitivity` varies it."""
 SPIKE_HALF_WIDTH = 4
 """Frames to either side among which a spike of the first guess is found. Chosen by hand;
 `make sensitivity` varies it."""

@@ -25,8 +25,7 @@ SMOOTH_FRACTIONS = (0.003, 0.05, 0.3)
 """Weights of the smooth prior in its mixtures with the examples' prior. Chosen by hand;
 `make sensitivity` varies it."""
 N_TRIAL_ITERATIONS = 3
-"""Iterations of a trial of each mixture. Chosen by hand: 1 costs 0.2 %, x0.5 and x2 cost
-nothing."""
+"""Iterations of a trial of each mixture. Chosen by hand; `make sensitivity` varies it."""
 IN_SAMPLE_PENALTY = 1.007
 """The smooth prior learns from the samples that it predicts, so its error is too small. Each
 larger fraction of it multiplies the error by this factor. Chosen by hand; `make sensitivity`

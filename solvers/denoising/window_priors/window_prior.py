@@ -13,7 +13,7 @@ from ...arrays import Array
 
 SLOW_FRACTION = 0.6
 """Fraction of the coefficients, slowest first, with a joint covariance; faster ones are
-independent. Chosen by hand: x0.5 costs nothing, x2 fails."""
+independent. Chosen by hand; `make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,15 +30,14 @@ PARENT_PARTS = {"UpperArm": "chest", "UpperLeg": "hips"}
 TRUNK = ("hips", "spine", "chest")
 MIN_QUALITY = 0.25
 """Quality, a fraction of fitting points, below which cylinders are ignored. Chosen by hand:
-x0.5 costs 2.9 %, with x2 too few limbs are left."""
+with x2 too few limbs are left; `make sensitivity` varies it."""
 MIN_LIMBS = 4
 """Number of arms and legs, upper and lower, that must be measured for a body. Chosen by hand:
-x0.5 costs nothing, x2 fails; six are found in the frame of the metric."""
+six are found in the frame of the metric; `make sensitivity` varies it."""
 MAX_PIXELS = 6000
 """Number of pixels of the image in which limbs are measured. It bounds the run time."""
 STATURE_STEP_M = 0.15
-"""Meters between the statures that are tried. Chosen by hand: x0.5 gains 2.9 %, x2 leaves the
-range of statures."""
+"""Meters between the statures that are tried. Chosen by hand; `make sensitivity` varies it."""
 TESTED_STATURES_M = tuple(1.3 + STATURE_STEP_M * step for step in range(6))
 """Statures tested by the detector."""
 STATURE_RANGE_M = TESTED_STATURES_M[0] - STATURE_STEP_M, TESTED_STATURES_M[-1] + STATURE_STEP_M

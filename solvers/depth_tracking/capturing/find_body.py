@@ -14,7 +14,7 @@ from .passes import RecoverySettings, TrackingContext, track_with_restarts
 from .refine_body import refine_body
 
 STATURES_M = (1.45, 1.6, 1.75, 1.9)
-"""Statures in meters that are tried. Chosen by hand: x0.5 costs 14.3 %, x2 is no stature."""
+"""Statures in meters that are tried. Chosen by hand; `make sensitivity` varies it."""
 N_SIZE_FRAMES, N_STATURE_FRAMES = 12, 3
 """Number of frames compared by visible surface, and of frames used to test statures. They bound
 the run time."""

@@ -10,8 +10,7 @@ from ...settings import Settings, setting
 
 POSITION_STD_M, RADIUS_STD, SHRINK_FACTOR = 0.12, 0.15, 0.65
 """Standard deviations of the first perturbations (position; relative radius), and the factor by
-which each round shrinks them. Chosen by hand: first, x0.5 costs 3.9 %, x2 costs 0.6 %; second,
-x0.5 gains 1.0 %, x2 costs 1.6 %; third, x0.5 costs 6.9 %, with x2 too few limbs are left."""
+which each round shrinks them. Chosen by hand; `make sensitivity` varies them."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...motion import world_poses
+from ...motion.humanoid import LEG_ROLES
 from ...rotations import (
     inverse,
     multiply,
@@ -16,8 +17,6 @@ from ...rotations import (
 from .skinned_body import SkinnedBody
 
 UP = np.array([0.0, 0.0, 1.0])
-LEG_ROLES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
-ARM_ROLES = ("Shoulder", "UpperArm", "LowerArm", "Hand")
 MAX_ARM_BACK = 0.35
 """Maximum component, a cosine, of the arm direction backward or across the chest. Chosen by
 hand; used in training only."""

@@ -83,11 +83,14 @@ from .role_evidence import (
 )
 from .roles import ESSENTIAL_ROLES, HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .standing_rest import with_standing_rest
+from .tables import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES
 
 __all__ = [
     "ADULT_BONE_LENGTHS_M",
     "ADULT_STATURE_M",
+    "ARM_ROLES",
     "BODY_PARTS",
+    "CENTRAL_ROLES",
     "CHEST",
     "CONTACT_MODEL",
     "ESSENTIAL_ROLES",
@@ -97,6 +100,7 @@ __all__ = [
     "HUMANOID_ROLES",
     "HUMAN_LEG_LENGTH_M",
     "LATERAL_JOINTS",
+    "LEG_ROLES",
     "MAX_BODY_SCALE",
     "MIN_BODY_SCALE",
     "MIN_CONFIDENCE",

@@ -6,6 +6,7 @@ and the first one in the skeleton is used.
 """
 
 CENTRAL_ROLES = ("hips", "spine", "chest", "upperChest", "neck", "head")
+"""Roles without a side, each the child of the one before."""
 ARM_ROLES = ("Shoulder", "UpperArm", "LowerArm", "Hand")
 LEG_ROLES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")

@@ -20,8 +20,8 @@ and jitter, which would become slow movements
 (`test_movement_too_fast_for_the_new_rate_leaves_no_alias`)."""
 
 PASSBAND = 0.7
-"""Edge of the passband, as a fraction of the new Nyquist frequency. Chosen by hand: x0.5 costs
-2.0 %, x2 fails."""
+"""Edge of the passband, as a fraction of the new Nyquist frequency. Chosen by hand; `make
+sensitivity` varies it."""
 
 ROWS_PER_BLOCK = 32
 """New frames that one matrix product filters. It bounds the run time."""

@@ -16,7 +16,7 @@ from scipy.linalg import solve_triangular
 from ...arrays import Array
 from .kernel import Kernel, squared_exponential
 
-JITTER = 1e-6
+REGULARIZATION = 1e-6
 """Added to the diagonal of a covariance, relative to the variance. It guards a
 factorization."""
 MEAN_VARIANCE = 1e4
@@ -36,7 +36,7 @@ def inducing_points(features: Array, count: int, seed: int) -> Array:
 def cholesky_root(points: Array, length: float) -> Array:
     """Return the lower triangular root of the inducing points' covariance."""
     return np.linalg.cholesky(
-        squared_exponential(points, points, length) + JITTER * np.eye(len(points))
+        squared_exponential(points, points, length) + REGULARIZATION * np.eye(len(points))
     )
 
 

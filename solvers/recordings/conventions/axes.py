@@ -10,7 +10,8 @@ from ...errors import InvalidSettingError
 ACCLAIM_UNIT = 0.0254 / 0.45
 """Meters per unit of an Acclaim file, and of the BVH files made from them."""
 CENTIMETER = 0.01
-UNITS = (CENTIMETER, 1.0, 0.001, 0.0254, ACCLAIM_UNIT)
+MILLIMETER = 0.001
+UNITS = (CENTIMETER, 1.0, MILLIMETER, 0.0254, ACCLAIM_UNIT)
 
 # The longest path along the bones of an adult, from a hand or the head to a foot: 2.0 to 2.6 m
 # in skeletons of nine makers. Unlike the height it does not depend on the rest pose.

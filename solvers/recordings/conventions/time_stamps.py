@@ -11,6 +11,7 @@ from ...motion.skeletons import check_frame_rate
 DEFAULT_FRAME_RATE = 30.0
 """Frame rate in hertz of every Kinect in good light."""
 COMMON_RATES = (5.0, 10.0, 15.0, 24.0, 25.0, 30.0, 50.0, 60.0, 90.0, 100.0, 120.0)
+MILLISECOND = 0.001
 MAX_DRIFT_FRAMES = 0.5
 """Maximum deviation in frames of rounded stamps from a constant rate. By definition: from half
 a frame on, a stamp is that of another frame."""

@@ -13,7 +13,7 @@ from ..containers import PngHeader, is_listed, read_png_header
 from ..conventions import DEFAULT_FRAME_RATE
 from .camera_orientation import rotate_upright
 from .image_frames import Frames, frames_by_number, frames_by_time
-from .images import NONE, ColorImageFiles, DepthImageFiles
+from .images import NO_IMAGE, ColorImageFiles, DepthImageFiles
 from .layouts import Layout, open3d_layout, plain_layout, tum_layout
 from .settings import DEFAULT_DEPTH_SETTINGS, CameraOrientation, DepthSettings
 from .stack import check_size
@@ -74,8 +74,10 @@ def read_depth_folder(
     is_good, header = _check_images(layout, progress)
     meters, camera = _resolve_camera(path, layout, settings, header)
     frames = _frames(path, layout, settings)
-    images = np.where(frames.images != NONE, frames.images, 0)
-    image_indices = np.where((frames.images != NONE) & is_good[images], frames.images, NONE)
+    images = np.where(frames.images != NO_IMAGE, frames.images, 0)
+    image_indices = np.where(
+        (frames.images != NO_IMAGE) & is_good[images], frames.images, NO_IMAGE
+    )
     shape = (header.height, header.width)
     read_depth = DepthImageFiles(
         layout.root,
@@ -183,8 +185,10 @@ def _color(
 ) -> ColorImageFiles | None:
     if layout.color is None or layout.color_of is None:
         return None
-    color_indices = np.where(image_indices == NONE, NONE, layout.color_of[image_indices])
-    used = np.unique(color_indices[color_indices != NONE])
+    color_indices = np.where(
+        image_indices == NO_IMAGE, NO_IMAGE, layout.color_of[image_indices]
+    )
+    used = np.unique(color_indices[color_indices != NO_IMAGE])
     if not any(_may_be_read(layout.root, layout.color[number]) for number in used):
         return None
     return ColorImageFiles(layout.root, layout.color, color_indices, shape)
@@ -214,8 +218,8 @@ def _remarks(
             f"{(~is_good).sum()} of {len(is_good)} images are missing or damaged, {first}"
             " first; their frames are empty."
         )
-    empty = int((frames.images == NONE).sum())
+    empty = int((frames.images == NO_IMAGE).sum())
     if empty:
-        gap = int(np.argmax(frames.images == NONE))
+        gap = int(np.argmax(frames.images == NO_IMAGE))
         remarks.append(f"{empty} frames have no image, frame {gap} first; they are empty.")
     return remarks

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..conventions import ConstantRate
-from .images import NONE
+from .images import NO_IMAGE
 
 MAX_LENGTH_RATIO = 4
 """Maximum number of frames per image that numbers in names may give. Chosen by hand: x0.5 and
@@ -59,7 +59,7 @@ def frames_by_number(names: Sequence[str], frame_rate: float) -> Frames:
     regular = step > 0 and not (steps % max(step, 1)).any() and (steps > 0).all()
     if not regular or positions[-1] >= MAX_LENGTH_RATIO * len(names):
         return Frames(indices, frame_rate)
-    images = np.full(positions[-1] + 1, NONE)
+    images = np.full(positions[-1] + 1, NO_IMAGE)
     images[positions] = indices
     return Frames(images, frame_rate)
 
@@ -76,10 +76,10 @@ def frames_by_time(path: Path, times: NDArray[np.float64]) -> Frames:
 def match_times(times: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.intp]:
     """Return the index of the nearest other time for each time, -1 for none."""
     if not len(others):
-        return np.full(len(times), NONE)
+        return np.full(len(times), NO_IMAGE)
     order = np.argsort(others)
     after = np.clip(np.searchsorted(others[order], times), 1, max(len(others) - 1, 1))
     pair = order[np.stack([after - 1, np.minimum(after, len(others) - 1)])]
     distance = np.abs(others[pair] - times)
     nearest = np.take_along_axis(pair, distance.argmin(axis=0)[np.newaxis], axis=0)[0]
-    return np.asarray(np.where(distance.min(axis=0) <= MAX_TIME_OFFSET_S, nearest, NONE))
+    return np.asarray(np.where(distance.min(axis=0) <= MAX_TIME_OFFSET_S, nearest, NO_IMAGE))

@@ -10,7 +10,7 @@ from ...depth_scene import ColorImage, DepthImage
 from ...errors import InvalidFileError
 from ..containers import is_listed, max_color_size, open_listed_image
 
-NONE = -1
+NO_IMAGE = -1
 """Index of a frame without an image."""
 
 
@@ -46,7 +46,7 @@ class DepthImageFiles:
     def __call__(self, index: int) -> DepthImage:
         """Return the depth of a frame, meters; 0: no reading."""
         number = self.frames[index]
-        if number == NONE:
+        if number == NO_IMAGE:
             return np.zeros(self.shape, np.float32)
         pixels = read_pixels(self.folder, self.names[number], self.shape)
         depth = (pixels * self.meters).astype(np.float32)
@@ -72,7 +72,7 @@ class ColorImageFiles:
     def __call__(self, index: int) -> ColorImage:
         """Return the colors (height, width, 3) of a frame, 0 to 255."""
         number = self.frames[index]
-        if number == NONE or not is_listed(self.folder, self.names[number]):
+        if number == NO_IMAGE or not is_listed(self.folder, self.names[number]):
             return np.zeros((*self.shape, 3), np.uint8)
         max_size = max_color_size(self.shape)
         with open_listed_image(self.folder, self.names[number], max_size) as image:

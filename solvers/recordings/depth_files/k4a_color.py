@@ -13,7 +13,7 @@ from ...depth_scene import ColorImage, DepthImage
 from ...errors import InvalidFileError
 from ...files import DAMAGE
 from ..containers import PlainBytes, Track, max_color_size, open_bounded_image
-from .images import NONE
+from .images import NO_IMAGE
 from .k4a_calibration import K4aCamera, color_camera
 
 JPEG, BGRA = b"MJPG", b"BGRA"
@@ -52,7 +52,7 @@ class ColorBlocks:
         depth = self.read_depth(index)
         colors = np.zeros((*depth.shape, 3), np.uint8)
         offset, size = int(self.offsets[index]), int(self.sizes[index])
-        if offset == NONE:
+        if offset == NO_IMAGE:
             return colors
         image_pixels = self._decode(PlainBytes(self.path, offset, size).read(0, size))
         points = (
@@ -110,7 +110,7 @@ def color_blocks(
     sizes = np.frombuffer(track.sizes, np.int64)
     return ColorBlocks(
         path,
-        np.where(color_indices == NONE, NONE, offsets[color_indices]),
+        np.where(color_indices == NO_IMAGE, NO_IMAGE, offsets[color_indices]),
         sizes[color_indices],
         kind,
         depth_lens,

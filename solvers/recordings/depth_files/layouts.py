@@ -11,10 +11,10 @@ from ...errors import InvalidFileError
 from ...files import DAMAGE
 from ...json_text import parse_json
 from ..containers import is_png, read_bytes
+from ..conventions import MILLIMETER
 from .image_frames import match_times, sort_naturally
-from .images import NONE
+from .images import NO_IMAGE
 from .settings import CameraOrientation
-from .stack import MILLIMETER
 
 Focal = tuple[float, float, float, float]
 
@@ -122,7 +122,7 @@ def open3d_layout(root: Path) -> Layout | None:
         meters=MILLIMETER if focal else None,
         focal=focal,
         focal_size=size,
-        color=color if (color_indices != NONE).any() else None,
+        color=color if (color_indices != NO_IMAGE).any() else None,
         color_of=color_indices,
     )
 
@@ -155,9 +155,9 @@ def _match_names(depth: Sequence[str], color: Sequence[str]) -> NDArray[np.intp]
     """
     indices = {Path(name).stem: index for index, name in enumerate(color)}
     color_indices = np.array(
-        [indices.get(Path(name).stem, NONE) for name in depth], dtype=np.intp
+        [indices.get(Path(name).stem, NO_IMAGE) for name in depth], dtype=np.intp
     )
-    if (color_indices == NONE).all() and len(depth) == len(color):
+    if (color_indices == NO_IMAGE).all() and len(depth) == len(color):
         return np.arange(len(depth))
     return color_indices
 

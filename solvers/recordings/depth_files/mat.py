@@ -6,9 +6,9 @@ from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidFileError
 from ...progress import Progress, unwatched
 from ..containers import MatlabArray, is_matlab, matlab_arrays
-from ..conventions import DEFAULT_FRAME_RATE
+from ..conventions import DEFAULT_FRAME_RATE, MILLIMETER
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETER, DepthStack, check_size
+from .stack import DepthStack, check_size
 
 NAMES = ("d_depth", "depth")
 KINECT_V1 = Camera(285.63, 285.63, 159.0, 120.0, 320, 240)

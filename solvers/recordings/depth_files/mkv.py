@@ -11,13 +11,13 @@ from ...depth_scene import DepthImage, DepthRecording
 from ...errors import InvalidFileError
 from ...progress import Progress, Remark, unwatched, within
 from ..containers import Matroska, PlainBytes, Track, index_matroska, is_matroska
-from ..conventions import DEFAULT_FRAME_RATE
+from ..conventions import DEFAULT_FRAME_RATE, MILLIMETER
 from .image_frames import Frames, frames_by_time, match_times
-from .images import NONE
+from .images import NO_IMAGE
 from .k4a_calibration import K4aCamera, depth_camera
 from .k4a_color import ColorBlocks, color_blocks
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETER, check_size
+from .stack import check_size
 
 VIDEO = "V_MS/VFW/FOURCC"
 RAW = b"b16g"
@@ -58,12 +58,12 @@ class DepthBlocks:
     def __call__(self, index: int) -> DepthImage:
         """Return the depth of a frame, meters; 0: no reading."""
         offset = int(self.offsets[index])
-        if offset == NONE:
+        if offset == NO_IMAGE:
             return np.zeros(self.shape, np.float32)
         size = self.shape[0] * self.shape[1] * PIXEL_BYTES
         pixels = np.frombuffer(PlainBytes(self.path, offset, size).read(0, size), ">u2")
         if self.source_pixels is not None:
-            pixels = np.where(self.source_pixels == NONE, 0, pixels[self.source_pixels])
+            pixels = np.where(self.source_pixels == NO_IMAGE, 0, pixels[self.source_pixels])
         return (pixels.reshape(self.shape) * self.meters).astype(np.float32)
 
 
@@ -100,10 +100,12 @@ def read_depth_mkv(
             " damaged. Copy or record it again."
         )
     image_indices = np.where(
-        (frames.images != NONE) & is_good[frames.images], frames.images, NONE
+        (frames.images != NO_IMAGE) & is_good[frames.images], frames.images, NO_IMAGE
     )
     offsets = np.where(
-        image_indices == NONE, NONE, np.frombuffer(track.offsets, np.int64)[image_indices]
+        image_indices == NO_IMAGE,
+        NO_IMAGE,
+        np.frombuffer(track.offsets, np.int64)[image_indices],
     )
     meters = settings.scale or MILLIMETER
     source_pixels = None if lens is None else _undistort_pixels(lens)
@@ -160,7 +162,7 @@ def _undistort_pixels(lens: K4aCamera) -> NDArray[np.int32]:
     columns_and_rows = lens.project(camera.rays()).reshape(-1, 2)
     column, row = np.nan_to_num(columns_and_rows, nan=-1.0).round().astype(np.int64).T
     inside = (column >= 0) & (column < camera.width) & (row >= 0) & (row < camera.height)
-    return np.where(inside, row * camera.width + column, NONE).astype(np.int32)
+    return np.where(inside, row * camera.width + column, NO_IMAGE).astype(np.int32)
 
 
 def _frames(path: Path, track: Track, settings: DepthSettings) -> Frames:
@@ -190,7 +192,7 @@ def _color(
         return None
     times = [np.frombuffer(each.times, np.int64) * NANOSECOND for each in (depth, tracks[0])]
     color_indices = match_times(*times)
-    color_indices = np.where(image_indices == NONE, NONE, color_indices[image_indices])
+    color_indices = np.where(image_indices == NO_IMAGE, NO_IMAGE, color_indices[image_indices])
     return color_blocks(
         path, content, tracks[0], _fourcc(tracks[0]), color_indices, lens, read_depth
     )
@@ -204,8 +206,8 @@ def _remarks(
         remarks.append("The file is cut short; the frames before the end are read.")
     if not is_good.all():
         remarks.append(f"{(~is_good).sum()} images are damaged; their frames are empty.")
-    n_empty = int((image_indices == NONE).sum())
+    n_empty = int((image_indices == NO_IMAGE).sum())
     if n_empty and is_good.all():
-        first = int(np.argmax(image_indices == NONE))
+        first = int(np.argmax(image_indices == NO_IMAGE))
         remarks.append(f"{n_empty} frames have no image, frame {first} first; they are empty.")
     return remarks

@@ -23,9 +23,9 @@ from ..containers import (
     StoredBytes,
     read_archive,
 )
-from ..conventions import DEFAULT_FRAME_RATE
+from ..conventions import DEFAULT_FRAME_RATE, MILLIMETER
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETER, ColorStack, DepthStack, check_size
+from .stack import ColorStack, DepthStack, check_size
 
 INTRINSICS = ("fx", "fy", "cx", "cy")
 LOCAL_HEADER = 30

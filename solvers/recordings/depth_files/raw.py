@@ -9,9 +9,9 @@ from ...errors import InvalidFileError
 from ...files import unreadable
 from ...progress import Progress, unwatched
 from ..containers import PlainBytes
-from ..conventions import DEFAULT_FRAME_RATE
+from ..conventions import DEFAULT_FRAME_RATE, MILLIMETER
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETER, DepthStack, check_size
+from .stack import DepthStack, check_size
 
 KINECT_V1 = Camera(571.26, 571.26, 319.5, 239.5, 640, 480)
 PIXEL_BYTES = 2

@@ -10,7 +10,6 @@ from ...depth_scene import ColorImage, DepthImage
 from ...errors import InvalidFileError
 from ..containers import StoredBytes
 
-MILLIMETER = 0.001
 MAX_PIXELS = 4096
 """Maximum plausible columns or rows of an image."""
 

@@ -7,9 +7,9 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ..containers import read_bytes
+from ..conventions import MILLIMETER
 from .layouts import Focal, Layout, list_images
 from .settings import CameraOrientation
-from .stack import MILLIMETER
 
 DEFAULT_FRAME_RATE = 60.0
 WIDTHS = ((1920, 1440), (1280, 960), (640, 480), (256, 192))

@@ -20,6 +20,7 @@ from ..containers import (
 )
 from ..conventions import (
     DEFAULT_FRAME_RATE,
+    MILLIMETER,
     Bodies,
     Body,
     check_scale,
@@ -29,7 +30,6 @@ from ..conventions import (
 )
 
 NAMES = SENSOR_JOINTS[Sensor.AZURE_KINECT]
-MILLIMETER = 0.001
 PER_JOINT = re.compile(rb"(?i)[^\n]*\n?[ \t]*body id\s*,\s*joint #\s*,\s*x\s*,\s*y\s*,\s*z")
 PER_FRAME = re.compile(rb"(?i)[^\n]*\bpelvis\.x\s*,")
 ONLY_AZURE = re.compile(rb"(?i)[^\n]*(\bspine_?(chest|nav[ae]l)\b|\bclavicle)")

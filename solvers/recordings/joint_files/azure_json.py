@@ -11,8 +11,8 @@ from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched
 from ..containers import UniqueNames, array_from_json, json_members, printable
-from ..conventions import Bodies, check_scale, from_azure_space, joint_recording
-from .azure_csv import MILLIMETER, azure_joint
+from ..conventions import MILLIMETER, Bodies, check_scale, from_azure_space, joint_recording
+from .azure_csv import azure_joint
 from .body_json import (
     BodiesFrame,
     BodyJoints,

@@ -13,6 +13,7 @@ from ...progress import READING, Progress, Remark, unwatched
 from ..containers import NPY_MAGIC, read_array
 from ..conventions import (
     DEFAULT_FRAME_RATE,
+    MILLIMETER,
     axes_of_points,
     check_scale,
     describe_guessed_unit,
@@ -24,7 +25,6 @@ from ..point_bodies import points_of_array
 
 WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
-MILLIMETER = 0.001
 NOSE, ANKLES = [0], [BODY_POINTS.index(f"{side}_ankle") for side in ("left", "right")]
 MAX_EXTENT_M = 20.0
 """Maximum extent of a body in units of the file, for the units to be meters. Chosen by hand: a

@@ -12,6 +12,7 @@ from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched
 from ..containers import printable, read_bytes, read_number, shown
 from ..conventions import (
+    MILLISECOND,
     Bodies,
     bodies_of_frames,
     check_scale,
@@ -25,7 +26,6 @@ STATES = {b"NotTracked": 0, b"Inferred": 1, b"Tracked": 2}
 HEAD = re.compile(
     rb"\s*(?:Version[\d.]+\s+)?\d+\s*,\s*\d+\s*,\s*\d+\s*,\s*\(\s*\w+\s*,\s*(Not|Inf|Track)"
 )
-MILLISECOND = 0.001
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 JOINT_INDICES = {name.encode(): index for index, name in enumerate(NAMES)}
 

@@ -15,6 +15,7 @@ from ...progress import Progress, unwatched
 from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
 from ..conventions import (
     DEFAULT_FRAME_RATE,
+    MILLIMETER,
     Bodies,
     check_scale,
     joint_recording,
@@ -48,7 +49,6 @@ IDS = ("user_id", "userId", "id", "ID", "Id")
 TIMES = ("timestamp", "Timestamp", "TimeStamp", "time")
 POSITIONS = ("real", "Real", "position", "Position")
 MICROSECOND = 1e-6
-MILLIMETER = 0.001
 COLLARS = ("ClavicleLeft", "ClavicleRight")
 CHEST = "SpineChest"
 

@@ -8,13 +8,12 @@ from ...motion import Motion, Tracks
 from ...progress import Progress, unwatched
 from ...rotations import quaternion_from_matrix
 from ..containers import BLOCK_BYTES, C3dFile, UniqueNames, printable
-from ..conventions import meters_from_unit_name
+from ..conventions import MILLIMETER, meters_from_unit_name
 from ..skeleton_files import recording_from_segments
 
 WORDS = 17
 """Numbers of a pose: a matrix of 4 x 4, column by column, and its residual."""
 ENDING = "_4X4"
-MILLIMETER = 0.001
 MAX_DEFORMATION = 0.05
 """Deviation, a ratio, of a rotation's columns from unit length and right angles, of damaged
 data. Chosen by hand: x0.5 and x2 fail no test of this module."""

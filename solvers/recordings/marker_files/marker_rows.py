@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ..conventions import ConstantRate, constant_rate_from_times
+from ..conventions import MILLISECOND, ConstantRate, constant_rate_from_times
 
-MILLISECOND = 0.001
 MAX_VALUE = 1e12
 """Maximum plausible measurement; some programs write larger values for missing markers."""
 MIN_RISING_FRACTION = 0.8

@@ -14,6 +14,7 @@ from ...progress import Progress, Remark, unwatched, within
 from ...rotations import normalize, unroll
 from ..containers import LineReader, decode_text, split_cells, stream_cells
 from ..conventions import (
+    MILLIMETER,
     Bodies,
     bodies_of_markers,
     check_scale,
@@ -28,7 +29,6 @@ KEY = re.compile(r"[A-Z][A-Z_]+")
 TAB = b"\t"
 MAX_HEADER_LINES = 2000
 """Maximum lines of the header; each event has one."""
-MILLIMETER = 0.001
 MARKERS, BODIES, REFERENCE = "MARKER_NAMES", "BODY_NAMES", "REFERENCE"
 COLUMNS_OF_BODY = 16
 """Position, three angles, residual and a matrix; some versions write fewer of them."""

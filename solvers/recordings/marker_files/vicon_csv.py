@@ -18,6 +18,7 @@ from ..containers import (
     stream_cells,
 )
 from ..conventions import (
+    MILLIMETER,
     Bodies,
     bodies_of_markers,
     check_scale,
@@ -36,7 +37,6 @@ HEAD = re.compile(
 HEADER_LINES = 5
 """Section, rate, names, axes and units."""
 AXES = ("x", "y", "z")
-MILLIMETER = 0.001
 
 
 class _ViconHeader(NamedTuple):

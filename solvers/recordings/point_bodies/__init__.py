@@ -4,7 +4,6 @@ from .landmark_recording import recording_from_landmarks
 from .mediapipe_landmarks import (
     HIPS,
     LANDMARK_JOINTS,
-    MILLISECOND,
     N_POINTS,
     is_world,
     seconds,
@@ -24,7 +23,6 @@ from .unnamed_joints import has_layout
 __all__ = [
     "HIPS",
     "LANDMARK_JOINTS",
-    "MILLISECOND",
     "N_POINTS",
     "body_of_named_points",
     "body_of_points",

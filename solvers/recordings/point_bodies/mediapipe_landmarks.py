@@ -4,6 +4,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS
+from ..conventions import MILLISECOND
 
 N_POINTS = len(BODY_POINTS)
 LANDMARK_JOINTS = (*BODY_POINTS, *COMPUTED_JOINTS)
@@ -11,7 +12,6 @@ HIPS = [BODY_POINTS.index("left_hip"), BODY_POINTS.index("right_hip")]
 MAX_FRAME_S = 2.0
 """Typical step between frames, seconds, above which stamps are milliseconds. Chosen by hand:
 steps of 5 to 100 Hz are 0.01 to 0.2 s, or 10 to 200 ms."""
-MILLISECOND = 1e-3
 MAX_CENTER_FRACTION = 0.2
 """Distance of the middle of the hips from the origin, relative to the size of the body, up to
 which landmarks are those of the world, whose origin is there. It is meant for landmarks of the

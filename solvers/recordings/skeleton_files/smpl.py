@@ -50,7 +50,7 @@ NAMES = frozenset(
      *SCALES, "betas", "gender", "dmpls", "surface_model_type", "pose_jaw", "pose_eye",
      "num_betas", "marker_data", "marker_labels", "mocap_time_length", "trans_vel")
 )  # fmt: skip
-READ = (
+READ_ARRAYS = (
     *ROTATIONS, *ROOT, *BODY_POSE, *HANDS, *LEFT_HAND, *RIGHT_HAND, *POSITIONS, *RATES, *SCALES,
 )  # fmt: skip
 OF_SMPL = frozenset((*POSITIONS, "betas"))
@@ -134,7 +134,7 @@ def open_smpl(
     check_scale(scale)
     if not 0.0 < height < MAX_HEIGHT_M:
         raise InvalidSettingError(f"height is {height:g} m; it must be above 0 and below 10.")
-    arrays = read_archive_members(path, (*READ, "posed_joints"))
+    arrays = read_archive_members(path, (*READ_ARRAYS, "posed_joints"))
     if "posed_joints" in arrays and not {*ROTATIONS, *ROOT} & arrays.keys():
         return open_kimodo(path, scale=scale, progress=progress)
     arrays = with_rotation_vectors(

@@ -28,7 +28,7 @@ MAX_FRAMES = 1200
 longer segments than a minute are subsampled."""
 MEAN_POSTURE_WEIGHT = 0.8
 """Default weight of the mean posture of a segment, relative to the deviation from it. Chosen by
-hand: x0.5 gains 0.8 %, x2 fails."""
+hand; `make sensitivity` varies it."""
 HISTOGRAM_SCALE = 255.0
 """Integer that is stored for a histogram value of 1, a ratio. By definition of an unsigned
 byte."""

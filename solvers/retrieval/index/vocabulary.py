@@ -41,7 +41,7 @@ MAX_VALUE = 1e12
 against damaged files."""
 MAX_TRAINING_FRAMES = 12000
 """Number of training frames; more are slower and not better. It bounds the run time of
-indexing. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
+indexing."""
 RELEARNING_RATIO = 4
 """Ratio of library frames to training frames above which the words are learned again. It bounds
 the run time of updates: a library that grows is indexed again each time it is four times as

@@ -31,8 +31,7 @@ MIN_OBSERVED_FRACTION = 0.9
 """Fraction of frames with an observed joint above which it helps to find the heading. It guards
 takes whose joints are lost one after the other: at 0.5 no frame may show all such joints."""
 N_HEADING_FRAMES = 24
-"""Number of frames, evenly spaced, used for the heading. It bounds the run time. Chosen by
-hand: x0.5 costs nothing, x2 costs nothing."""
+"""Number of frames, evenly spaced, used for the heading. It bounds the run time."""
 NEAR_ANGLES = np.radians(np.arange(-75.0, 76.0, 5.0))
 ALL_ANGLES = np.radians(np.arange(-180.0, 180.0, 5.0))
 """Candidate headings if the heading is roughly known, and if it is unknown."""

@@ -35,7 +35,7 @@ of noises. They guard the search for a maximum of the likelihood."""
 MAX_MIXING = 20.0
 """Bound of mixing weights, relative to the standard deviation of the outputs. It guards the
 same search."""
-JITTER = 1e-6
+REGULARIZATION = 1e-6
 """Fraction of the variance that is added to the diagonal of a covariance. It guards a
 factorization."""
 
@@ -174,7 +174,9 @@ def _latent_cost(point: Array, squared_distances: Array, outputs: Array) -> tupl
         )
         noise = hyperparameters.noises[p]
         values = outputs @ hyperparameters.mixing[p]
-        cost, gradient, solved = _likelihood(kernel + (noise + JITTER) * np.eye(n), values)
+        cost, gradient, solved = _likelihood(
+            kernel + (noise + REGULARIZATION) * np.eye(n), values
+        )
         total += cost
         slope[:, p] = (
             (gradient * by_length).sum(), hyperparameters.biases[p] * gradient.sum(),
@@ -205,7 +207,7 @@ def _published_cost(
     for i in range(N_CHANNELS):
         weights = hyperparameters.mixing[i] ** 2
         covariance = np.tensordot(weights, shared, axes=1)
-        covariance += (weights @ hyperparameters.noises + JITTER) * np.eye(n)
+        covariance += (weights @ hyperparameters.noises + REGULARIZATION) * np.eye(n)
         cost, gradient, _ = _likelihood(covariance, outputs[:, i])
         total += cost
         along = np.array([

@@ -15,8 +15,8 @@ from scipy.spatial.distance import cdist
 from ...arrays import Array, Integers
 from ...progress import Progress, unwatched
 from .process import (
-    JITTER,
     N_CHANNELS,
+    REGULARIZATION,
     Hyperparameters,
     compute_kernels,
     learn_hyperparameters,
@@ -197,7 +197,7 @@ def _robust_cholesky(matrix: Array) -> Array:
             return np.linalg.cholesky(matrix + fraction * mean_diagonal * np.eye(len(matrix)))
         except np.linalg.LinAlgError:
             continue
-    return np.linalg.cholesky(matrix + JITTER * mean_diagonal * np.eye(len(matrix)))
+    return np.linalg.cholesky(matrix + REGULARIZATION * mean_diagonal * np.eye(len(matrix)))
 
 
 def _fit_processes(
@@ -212,7 +212,7 @@ def _fit_processes(
         hyperparameters.weights(published),
         hyperparameters.from_channels(published),
     )
-    noises = weights @ hyperparameters.noises + JITTER
+    noises = weights @ hyperparameters.noises + REGULARIZATION
     channels = np.linalg.solve(mixing, targets.T)
     among = compute_kernels(cdist(points, points, "sqeuclidean"), hyperparameters, weights)
     across = compute_kernels(cdist(points, scaled, "sqeuclidean"), hyperparameters, weights)
@@ -221,7 +221,7 @@ def _fit_processes(
     for own_kernel, cross_kernel, noise, targets_of_channel in zip(
         among, across, noises, channels, strict=True
     ):
-        regularized = own_kernel + JITTER * np.trace(own_kernel) / len(own_kernel) * eye
+        regularized = own_kernel + REGULARIZATION * np.trace(own_kernel) / len(own_kernel) * eye
         lower = _robust_cholesky(noise * regularized + cross_kernel @ cross_kernel.T)
         means.append(cho_solve((lower, True), cross_kernel @ targets_of_channel))
         roots.append(np.sqrt(noise) * solve_triangular(lower, eye, lower=True).T)

@@ -67,7 +67,7 @@ NAMED_GUARDS = (
     "retargeting/hand_paths.*_SPEED",
     "retargeting/hand_paths.MEETING_FRACTION",
     "retargeting/key_thinning.MIN_CHANGE",
-    "retargeting/limbs.SMOOTHING_S",
+    "retargeting/limbs.LIMB_SMOOTHING_S",
     "retargeting/place_feet.SLIDE_M_S",
     "retargeting/place_hands.EXACT_FRACTION",
     "retargeting/place_hands.RESERVE_RAD",

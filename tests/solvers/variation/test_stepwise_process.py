@@ -7,7 +7,7 @@ from scipy.optimize import approx_fprime
 from scipy.spatial.distance import cdist
 
 from solvers.variation.published.process import (
-    JITTER,
+    REGULARIZATION,
     Hyperparameters,
     _latent_cost,
     _published_cost,
@@ -58,7 +58,7 @@ def test_latent_factor_likelihood_equals_the_joint_likelihood(data, hyperparamet
     features, outputs = data
     weights = np.linalg.inv(hyperparameters.mixing)
     covariance = sum(
-        np.kron(kernel + (noise + JITTER) * np.eye(9), np.outer(column, column))
+        np.kron(kernel + (noise + REGULARIZATION) * np.eye(9), np.outer(column, column))
         for kernel, noise, column in zip(
             processes(features, features, hyperparameters),
             hyperparameters.noises,
@@ -79,7 +79,7 @@ def test_published_likelihood_equals_that_of_three_outputs(data, hyperparameters
     kernels = processes(features, features, hyperparameters)
     dense = 0.0
     for row, values in zip(hyperparameters.mixing**2, outputs.T, strict=True):
-        covariance = JITTER * np.eye(9) + sum(
+        covariance = REGULARIZATION * np.eye(9) + sum(
             weight * (kernel + noise * np.eye(9))
             for weight, kernel, noise in zip(row, kernels, hyperparameters.noises, strict=True)
         )

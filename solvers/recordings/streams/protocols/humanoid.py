@@ -6,6 +6,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....motion import Skeleton
+from ....motion.humanoid import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES
 
 SIDES = ("left", "right")
 FINGERS = {
@@ -14,16 +15,13 @@ FINGERS = {
         ("Index", "Middle", "Ring", "Little"), ("Proximal", "Intermediate", "Distal")
     ),
 }
-ARM = ("Shoulder", "UpperArm", "LowerArm", "Hand")
-LEG = ("UpperLeg", "LowerLeg", "Foot", "Toes")
-TRUNK = ("hips", "spine", "chest", "upperChest", "neck", "head")
 
 
 def _parents() -> dict[str, str]:
     """Return the parent of each role, parents first."""
-    parents = dict(zip(TRUNK, ("", *TRUNK), strict=False))
+    parents = dict(zip(CENTRAL_ROLES, ("", *CENTRAL_ROLES), strict=False))
     for side in SIDES:
-        for above, chain in (("upperChest", ARM), ("hips", LEG)):
+        for above, chain in (("upperChest", ARM_ROLES), ("hips", LEG_ROLES)):
             for part in chain:
                 parents[side + part] = above
                 above = side + part

@@ -12,9 +12,9 @@ MAX_OUTPUT_BYTES = 1 << 18
 """Maximum decompressed size; a frame of five actors with fingers takes 100 kB. It bounds memory
 and time."""
 MIN_MATCH = 4
-LONG = 15
+LONG_LENGTH = 15
 """Length of which more follows, in bytes that add up as long as they are 255."""
-MORE = 255
+FULL_BYTE = 255
 HAS_BLOCK_CHECKSUM, HAS_SIZE, HAS_CONTENT_CHECKSUM, HAS_DICTIONARY = 0x10, 0x08, 0x04, 0x01
 IS_RAW = 0x8000_0000
 DAMAGED = "A packet that is compressed with LZ4 is damaged."
@@ -72,7 +72,7 @@ def _append_block(output: bytearray, block: bytes) -> None:
         if offset == len(block):
             return
         distance = block[offset] | block[offset + 1] << 8
-        count, offset = _length(block, offset + 2, token & LONG)
+        count, offset = _length(block, offset + 2, token & LONG_LENGTH)
         _append_match(output, distance, count + MIN_MATCH)
 
 
@@ -90,12 +90,12 @@ def _append_match(output: bytearray, distance: int, count: int) -> None:
 def _length(block: bytes, offset: int, first: int) -> tuple[int, int]:
     """Return a length whose first four bits are known, and where it ends."""
     length = first
-    if first == LONG:
+    if first == LONG_LENGTH:
         while True:
             more = block[offset]
             offset += 1
             length += more
-            if more < MORE:
+            if more < FULL_BYTE:
                 break
     return length, offset
 

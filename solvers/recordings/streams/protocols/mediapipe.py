@@ -14,12 +14,11 @@ from ....arrays import Array
 from ....errors import InvalidFileError, InvalidMotionError
 from ....json_text import parse_json
 from ....motion import Sensor
-from ...conventions import MAX_TIME_S, from_azure_space
+from ...conventions import MAX_TIME_S, MILLISECOND, from_azure_space
 from ...joint_files import frame_landmarks, frame_time
 from ...point_bodies import (
     HIPS,
     LANDMARK_JOINTS,
-    MILLISECOND,
     is_world,
     with_computed_joints,
 )

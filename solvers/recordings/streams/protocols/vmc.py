@@ -31,11 +31,11 @@ from .humanoid import PARENTS, skeleton_from_offsets, sorted_roles
 from .osc import BUNDLE, Argument, Message, read_packet, write_bundle, write_message
 
 TIME, ROOT, BONE = "/VMC/Ext/T", "/VMC/Ext/Root/Pos", "/VMC/Ext/Bone/Pos"
-READ = tuple(address.encode() for address in (TIME, ROOT, BONE))
+READ_ADDRESSES = tuple(address.encode() for address in (TIME, ROOT, BONE))
 AVAILABLE = "/VMC/Ext/OK"
 N_NUMBERS = 7
 """Position x y z and quaternion x y z w."""
-STILL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+ROOT_AT_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 MAX_MISSED_FRAMES = 10
 """Number of frames after which a bone that no longer comes is not waited for. Chosen by hand:
 lost packets cost one bone of a frame or two."""
@@ -91,7 +91,7 @@ class VmcDecoder:
     """Number of packets to read at a time: three frames of a sender with a packet per bone."""
 
     def __init__(self) -> None:
-        self._root: tuple[float, ...] = STILL
+        self._root: tuple[float, ...] = ROOT_AT_ORIGIN
         self._bones: dict[str, tuple[float, ...]] = {}
         self._seen: dict[str, int] = {}
         self._fresh: set[str] = set()
@@ -100,14 +100,14 @@ class VmcDecoder:
         self._has_new_time = False
         self._stands_still = False
         self._frame_time = 0.0
-        self._frame_root: tuple[float, ...] = STILL
+        self._frame_root: tuple[float, ...] = ROOT_AT_ORIGIN
         self._skeleton: Skeleton | None = None
         self._offsets = np.zeros((0, 3))
 
     def parts(self, datagram: bytes) -> list[bytes]:
         """Return what is decoded by itself; none of expressions, cameras and trackers."""
         is_other = datagram.startswith((BUNDLE, b"/")) and not any(
-            address in datagram for address in READ
+            address in datagram for address in READ_ADDRESSES
         )
         return [] if is_other else [datagram]
 
@@ -246,7 +246,7 @@ def encode_vmc(frame: PoseFrame) -> list[bytes]:
     head = [
         write_message(AVAILABLE, 1),
         write_message(TIME, float(frame.time)),
-        write_message(ROOT, "root", *STILL),
+        write_message(ROOT, "root", *ROOT_AT_ORIGIN),
     ]
     chunks = [
         bones[start : start + BONES_PER_PACKET]

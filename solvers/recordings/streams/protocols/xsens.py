@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....errors import InvalidMotionError
-from ...conventions import CENTIMETER, guess_unit
+from ...conventions import CENTIMETER, MILLISECOND, guess_unit
 from ..frames import PoseFrame
 from .axes import checked_positions, checked_rotations
 from .segments import SegmentPoses
@@ -41,7 +41,6 @@ NAMES = (
 """The segments by their number."""
 PARENTS = (-1, 0, 1, 2, 3, 4, 5, 4, 7, 8, 9, 4, 11, 12, 13, 0, 15, 16, 17, 0, 19, 20, 21)
 N_SEGMENTS = len(NAMES)
-MILLISECOND = 1e-3
 DAMAGED = "A datagram of Xsens MVN is damaged."
 OTHER_TYPE = (
     "Xsens MVN sends no poses with quaternions. In its Network Streamer switch on the position"
