@@ -27,6 +27,8 @@ was on another machine that has stopped."""
 PART = re.compile(r"\.[0-9a-f]{16}\.claim\.part|[0-9a-f]{16}\.time")
 """Names of the files of a moment that a claim needs; only a killed process leaves any."""
 UNKNOWN_HOST = "another process"
+Claims = dict[Path, dict[str, Any]]
+"""Files of claims by number, with their content."""
 
 
 class Claim(NamedTuple):
@@ -64,54 +66,60 @@ def claimed(path: Path, batch: str = "") -> Iterator[Claim]:
         yield Claim(str(holder.get("host", UNKNOWN_HOST)), is_own_batch=is_own_batch)
         return
     ended = Event()
-    renewal = Thread(target=_renew, args=(files[-1], ended), daemon=True, name="renew claim")
+    own = next(reversed(files))
+    renewal = Thread(target=_renew, args=(own, ended), daemon=True, name="renew claim")
     renewal.start()
     try:
         yield Claim("", len(files) > 1)
     finally:
         ended.set()
         renewal.join()
-        for file in files:  # The own one last: until then it keeps others from its number.
+        for file, content in files.items():  # Own one last: it keeps its number from others.
             with suppress(OSError):
-                file.unlink()
+                if _content(file) == content:
+                    file.unlink()
 
 
-def _claim(path: Path, batch: str) -> tuple[list[Path], dict[str, Any] | None]:
-    """Return the files of a new claim, the own one last, or the content of another one."""
-    abandoned: list[Path] = []
+def _claim(path: Path, batch: str) -> tuple[Claims, dict[str, Any] | None]:
+    """Return the claims taken over and the new one, or the content of another one."""
+    claims: Claims = {}
     while True:
-        file = path.with_name(f"{path.name}.{len(abandoned) + 1}.claim")
-        if _created(file, batch):
-            if not abandoned or _content(abandoned[-1]) is not None:
-                return [*abandoned, file], None
+        file = path.with_name(f"{path.name}.{len(claims) + 1}.claim")
+        own = _created(file, batch)
+        if own is not None:
+            if all(_content(each) == content for each, content in claims.items()):
+                return {**claims, file: own}, None
             file.unlink()  # The output was released meanwhile, with all numbers.
-            abandoned = []
+            claims = {}
             continue
         holder = _content(file)
         if holder is None:  # It was released meanwhile.
-            abandoned = []
+            claims = {}
         elif _is_abandoned(file, holder):
-            abandoned.append(file)
+            claims[file] = holder
         else:
-            return [], holder
+            return {}, holder
 
 
-def _created(file: Path, batch: str) -> bool:
-    """Create a claim unless it exists; where the disk has links, at once with its content."""
+def _created(file: Path, batch: str) -> dict[str, Any] | None:
+    """Create a claim, where the disk has links at once with its content; None if it exists.
+
+    No two claims have the same content, also if one process makes both.
+    """
     holder = {"host": host_name(), "machine": this_machine(), "pid": os.getpid()}
-    own = json.dumps(holder | ({"batch": batch} if batch else {}))
+    own = {**holder, "token": token_hex(8), **({"batch": batch} if batch else {})}
     part = file.with_name(f".{token_hex(8)}.claim.part")
     try:
-        part.write_text(own, encoding="utf-8")
+        part.write_text(json.dumps(own), encoding="utf-8")
         try:
             os.link(part, file)
         except FileExistsError:
-            return False
+            return None
         except OSError:  # Some shares have no links: a process killed there leaves it empty.
-            return _created_empty(file, own)
+            return own if _created_empty(file, json.dumps(own)) else None
     finally:
         part.unlink(missing_ok=True)
-    return True
+    return own
 
 
 def _created_empty(file: Path, content: str) -> bool:

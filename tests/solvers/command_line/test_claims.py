@@ -7,7 +7,7 @@ import os
 import pytest
 
 from solvers.command_line import parallel
-from solvers.command_line.sharing import claimed
+from solvers.command_line.sharing import claimed, claims
 
 
 def test_waiting_makes_the_take_of_a_process_that_ends(call, leg_file, tmp_path, monkeypatch):
@@ -64,6 +64,43 @@ def test_claim_of_another_machine_lasts_while_it_is_renewed(tmp_path, seconds, h
         assert second.holder
 
     assert [path.name for path in tmp_path.iterdir()] == (["take.1.claim"] if holder else [])
+
+
+def test_claim_is_not_taken_over_with_one_that_is_made_meanwhile(tmp_path, monkeypatch):
+    """A claim is seen as abandoned, then released by who took it over, and claimed anew."""
+    abandoned = tmp_path / "take.1.claim"
+    abandoned.write_text(json.dumps({"host": "render03", "machine": "render03", "pid": 1}))
+    os.utime(abandoned, (0, 0))
+    second, third = claimed(tmp_path / "take"), claimed(tmp_path / "take")
+    assert second.__enter__().taken_over
+    is_abandoned = claims._is_abandoned
+
+    def release_meanwhile(file, holder):
+        found = is_abandoned(file, holder)
+        if found:
+            monkeypatch.setattr(claims, "_is_abandoned", is_abandoned)
+            second.__exit__(None, None, None)
+            assert not third.__enter__().holder
+        return found
+
+    monkeypatch.setattr(claims, "_is_abandoned", release_meanwhile)
+
+    with claimed(tmp_path / "take") as fourth:
+        assert fourth.holder
+
+    assert [path.name for path in tmp_path.iterdir()] == ["take.1.claim"]
+    third.__exit__(None, None, None)
+    assert not list(tmp_path.iterdir())
+
+
+def test_release_leaves_the_claims_of_others(tmp_path):
+    """The process stalled: its claim was taken over, released and made anew by another one."""
+    other = {"host": "render03", "machine": "render03", "pid": 1}
+    with claimed(tmp_path / "take") as claim:
+        assert not claim.holder
+        (tmp_path / "take.1.claim").write_text(json.dumps(other))
+
+    assert json.loads((tmp_path / "take.1.claim").read_text()) == other
 
 
 def test_claim_never_stands_without_its_holder(tmp_path, monkeypatch):
