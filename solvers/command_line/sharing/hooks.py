@@ -1,6 +1,7 @@
 """Hooks: a command that runs after each take, such as one that informs an asset manager."""
 
 import argparse
+import os
 import re
 import shlex
 import shutil
@@ -19,13 +20,30 @@ NOT_STARTED = 127
 def parse_hook(command: str) -> str:
     """Return the command after a check that it can be started, for argparse."""
     try:
-        words = shlex.split(command)
+        words = words_of_hook(command)
     except ValueError as error:
         reason = str(error).lower()
         raise argparse.ArgumentTypeError(f"{command!r} is no command: {reason}") from None
     if not words or shutil.which(words[0]) is None:
         raise argparse.ArgumentTypeError(f"there is no program {words[0] if words else ''!r}")
     return command
+
+
+def words_of_hook(command: str, windows: bool = os.name == "nt") -> list[str]:
+    """Return the words of a command as a shell of its system splits it, without quotes.
+
+    On Windows a backslash is part of a path, and only double quotes hold words together.
+
+    Raises
+    ------
+    ValueError
+        A quote is not closed.
+    """
+    lexer = shlex.shlex(command, posix=True)
+    lexer.whitespace_split, lexer.commenters = True, ""
+    if windows:
+        lexer.escape, lexer.quotes = "", '"'
+    return list(lexer)
 
 
 def run_hook(command: str, files: Mapping[str, Path]) -> dict[str, Any]:
@@ -41,7 +59,7 @@ def run_hook(command: str, files: Mapping[str, Path]) -> dict[str, Any]:
     """
     words = [
         PLACEHOLDER.sub(lambda found: str(files[found[1]]), word)
-        for word in shlex.split(command)
+        for word in words_of_hook(command)
     ]
     try:
         ended = subprocess.run(

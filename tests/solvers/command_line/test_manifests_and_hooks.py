@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+from solvers.command_line.sharing.hooks import words_of_hook
+
 PYTHON = sys.executable
 
 
@@ -153,6 +155,17 @@ def test_failed_hook_marks_the_take_keeps_the_output_and_runs_again(call, folder
         [],
         0,
     )
+
+
+@pytest.mark.parametrize(
+    ("command", "windows", "words"),
+    [(r"C:\tools\publish.exe {output}", True, [r"C:\tools\publish.exe", "{output}"]),
+     (r'"C:\My Tools\p.exe" --to="D:\a b" #1', True,
+      [r"C:\My Tools\p.exe", r"--to=D:\a b", "#1"]),
+     (r"pub\ lish 'a b' #1", False, ["pub lish", "a b", "#1"])],
+)  # fmt: skip
+def test_words_of_a_hook_are_those_of_the_system(command, windows, words):
+    assert words_of_hook(command, windows) == words
 
 
 @pytest.mark.parametrize(
