@@ -15,6 +15,8 @@ from .verb_description import Task
 PAGE, FIGURES, PICTURES = "report.html", "report.json", Path("report")
 PICTURE = ".png"
 """Suffix of the picture of an output."""
+FORMER_PENDING = "not come to"
+"""Key of the number of pending files that programs for earlier versions read."""
 TEMPLATE = Path(__file__).with_name("report.html")
 UNITS = {
     "_m_per_s3": " (m/s³)", "_cm_per_s": " (cm/s)", "_hz": " (Hz)", "_deg": " (°)",
@@ -88,9 +90,11 @@ def picture_of(output: str) -> Path:
 def write_report(
     folder: Path, verb: str, collect: Callable[[], list[Entry]]
 ) -> tuple[str, ...]:
-    """Write both reports, each atomically, until no other machine has added a record.
+    """Write both reports, each atomically, with the records of all machines.
 
-    An entry whose figures cannot be shown is a failure in the report.
+    Where another machine adds a record meanwhile, they are written again, unless a take is
+    claimed: its holder writes them at its end. An entry whose figures cannot be shown is a
+    failure in the report.
 
     Parameters
     ----------
@@ -105,14 +109,15 @@ def write_report(
     tuple of str
         A sentence for each entry that could not be shown.
     """
-    with claimed(Records(folder).claim(PAGE)) as claim:
+    records = Records(folder)
+    with claimed(records.claim(PAGE)) as claim:
         if claim.taken_over:
             remove_leftovers([folder / FIGURES, folder / PAGE])
         entries = collect()
         while True:
             faults = _write(folder, verb, entries)
             written, entries = entries, collect()
-            if _stamps(written) == _stamps(entries):
+            if _stamps(written) == _stamps(entries) or records.has_claims(but=PAGE):
                 return faults
 
 
@@ -132,10 +137,10 @@ def _write(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str, ...]
     failed = [entry for entry in entries if entry.failure]
     pending = [entry for entry in entries if entry.figures is None and not entry.failure]
     done = len(entries) - len(failed) - len(pending)
-    counts = {"done": done, "failed": len(failed), "not come to": len(pending)}
+    counts = {"done": done, "failed": len(failed), "pending": len(pending)}
     listed = [_report_entry(folder, entry) for entry in entries]
     with write_atomically(folder / FIGURES) as part:
-        content = {"verb": verb, **counts, "files": listed}
+        content = {"verb": verb, **counts, FORMER_PENDING: len(pending), "files": listed}
         part.write_text(json.dumps(content, indent=1, allow_nan=False), encoding="utf-8")
     ordered = sorted(entries, key=lambda entry: -_severity(entry))
     page = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(

@@ -66,6 +66,12 @@ class Records:
         """Return the claim on an output, see `claimed`."""
         return self._path(output, "")
 
+    def has_claims(self, but: str) -> bool:
+        """Return whether any output is claimed, except one."""
+        excepted = f"{self.claim(but).name}."
+        claims = (self.folder / FOLDER).glob("*.claim")
+        return any(not each.name.startswith(excepted) for each in claims)
+
     def prepare(self) -> None:
         """Make the folder of the records; a folder that vanishes later is not made again."""
         (self.folder / FOLDER).mkdir(parents=True, exist_ok=True)

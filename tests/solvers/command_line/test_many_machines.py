@@ -13,7 +13,7 @@ import pytest
 from solvers.command_line import batch
 from solvers.command_line.files import read
 from solvers.command_line.report import Entry, write_report
-from solvers.command_line.sharing import Records
+from solvers.command_line.sharing import Records, claimed
 
 N_TAKES = 24
 ROOT = Path(__file__).parents[3]
@@ -175,6 +175,27 @@ def test_report_is_written_again_when_a_record_is_added_meanwhile(tmp_path):
     assert write_report(tmp_path, "convert", lambda: next(found)) == ()
 
     assert json.loads((tmp_path / "report.json").read_text())["done"] == 2
+
+
+def test_report_is_left_to_the_holders_of_takes_that_add_records(tmp_path):
+    """While others process takes, each look finds a new record; each writes it at its end."""
+    records, n_looks = Records(tmp_path), 0
+    records.prepare()
+
+    def look():
+        nonlocal n_looks
+        n_looks += 1
+        assert n_looks <= 2, "the report is written again and again"
+        return [
+            Entry("a.bvh", f"{number}.bvh", Path("a.png"), identifier=str(number))
+            for number in range(n_looks)
+        ]
+
+    with claimed(records.claim("other.bvh")):
+        assert write_report(tmp_path, "convert", look) == ()
+
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert (report["pending"], report["not come to"], len(report["files"])) == (1, 1, 1)
 
 
 def test_files_of_others_in_the_output_folder_stay(call, leg_file, tmp_path):
