@@ -2,6 +2,7 @@
 
 import argparse
 import os
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -245,8 +246,9 @@ def unique_targets(paths: Sequence[Path], extensions: Sequence[str]) -> list[Pat
     wanted = [
         path.with_suffix(extension) for path, extension in zip(paths, extensions, strict=True)
     ]
+    n_wanting = Counter(wanted)
     return [
-        path.with_name(path.name + extension) if wanted.count(target) > 1 else target
+        path.with_name(path.name + extension) if n_wanting[target] > 1 else target
         for path, extension, target in zip(paths, extensions, wanted, strict=True)
     ]
 

@@ -2,6 +2,7 @@
 
 import argparse
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -234,17 +235,17 @@ def _extension(verb: Verb, source: Path, arguments: argparse.Namespace) -> str:
 
 def _check_overwriting(sources: Sequence[Path], targets: Sequence[Path]) -> None:
     """Raise an error if an input would be overwritten, or a path written twice."""
-    real_targets = [real_path(target) for target in targets]
+    real_targets = Counter(map(real_path, targets))
     overwritten = [source for source in sources if real_path(source) in real_targets]
     if overwritten:
         raise InvalidSettingError(
             f"{overwritten[0]} would be overwritten. Recordings are never changed: choose"
             " another name or folder."
         )
-    if len(set(real_targets)) < len(real_targets):
-        duplicate = next(path for path in real_targets if real_targets.count(path) > 1)
+    duplicates = [path for path, n_sources in real_targets.items() if n_sources > 1]
+    if duplicates:
         raise InvalidSettingError(
-            f"Two inputs would both be written to {duplicate}. Rename one."
+            f"Two inputs would both be written to {duplicates[0]}. Rename one."
         )
 
 
