@@ -16,6 +16,7 @@ from ...solvers.command_line.batch import (
     already_made,
     has_called_hook,
     made_record,
+    note_other_builds,
     share,
     task_entries,
     verb_name,
@@ -31,6 +32,7 @@ from ...solvers.command_line.report import (
     write_report,
 )
 from ...solvers.command_line.screen import Screen
+from ...solvers.command_line.sharing import stamp_options
 from ...solvers.command_line.tasks import check_output_folder, find_inputs, shared_tasks
 from ...solvers.command_line.verb_description import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
@@ -100,11 +102,13 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     if arguments.jobs < 1:
         raise InvalidSettingError(f"jobs is {arguments.jobs}; it must be at least 1.")
     folder: Path = arguments.output_folder
+    stamp_options(arguments)
     every = _tasks(arguments)
     tasks = shared_tasks(every, arguments)
     failed: list[str] = []
     faults: tuple[str, ...] = ()
     try:
+        note_other_builds(tasks, screen)
         run_all = partial(_worked, arguments=arguments)
         for finished in until_released(tasks, run_all, screen):
             text = finished.outcome.text if finished.outcome else finished.failure
@@ -139,7 +143,7 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
     tasks = []
     for each, relative_path in zip(inputs, targets, strict=True):
         source = each.path
-        if list_recordings is None and not is_folder(source) and source.suffix.lower() != BLEND:
+        if list_recordings is None and not is_folder(source) and not _is_blend(source):
             raise InvalidSettingError(
                 f"{source} is not a .blend file; only import and capture read others."
             )
@@ -166,9 +170,13 @@ def _prepare_target(source: Path, target: Path) -> None:
     target.parent.mkdir(parents=True, exist_ok=True)
 
 
+def _is_blend(file: Path) -> bool:
+    return file.suffix.lower() == BLEND
+
+
 def _blends_in(folder: Path) -> list[Path]:
     """Return the .blend files in a folder and below, and the folders that cannot be opened."""
-    found = [file for file in files_below(folder) if file.suffix == BLEND or is_folder(file)]
+    found = [file for file in files_below(folder) if _is_blend(file) or is_folder(file)]
     if not found:
         raise InvalidFileError(
             f"There is no .blend file in {folder}. Make them of recordings with each FOLDER"

@@ -16,7 +16,16 @@ from ..progress import Progress, Remark, collect_remarks, unwatched
 from ..recordings import is_depth_recording, read_motion_or_tracks
 from .files import read
 from .report import Entry, output_of, picture_file, picture_of, remove_picture, write_report
-from .sharing import Record, Records, claimed, fingerprint, hook_remark, run_hook
+from .screen import Screen
+from .sharing import (
+    Record,
+    Records,
+    claimed,
+    fingerprint,
+    hook_remark,
+    is_of_another_build,
+    run_hook,
+)
 from .verb_description import Outcome, Task, Verb
 
 SKIPPED = "skipped"
@@ -200,6 +209,25 @@ def current_record(task: Task) -> Record | None:
     record = Records(task.arguments.output_folder).read(output_of(task))
     same = record is not None and record.fingerprint == fingerprint(task.source, task.arguments)
     return record if same else None
+
+
+def note_other_builds(tasks: Sequence[Task], screen: Screen) -> None:
+    """Say how many existing results are made again only as Mocap Assist has changed."""
+    n_other = sum(_is_of_another_build(task) for task in tasks)
+    if n_other:
+        screen.write_line(
+            f"Made by another version of Mocap Assist, and made again: {n_other} of"
+            f" {len(tasks)} results."
+        )
+
+
+def _is_of_another_build(task: Task) -> bool:
+    folder = getattr(task.arguments, "output_folder", None)
+    if folder is None or task.refusal or task.target is None or is_missing(task.target):
+        return False
+    record = Records(folder).read(output_of(task))
+    now = fingerprint(task.source, task.arguments)
+    return record is not None and is_of_another_build(record.fingerprint, now)
 
 
 def verb_name(task: Task) -> str:

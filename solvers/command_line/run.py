@@ -21,6 +21,7 @@ from .batch import (
     draw_task,
     has_called_hook,
     made_record,
+    note_other_builds,
     record_end,
     task_entries,
     verb_name,
@@ -36,6 +37,7 @@ from .options import (
 from .parallel import run_tasks, until_released, workers_for
 from .report import PAGE, has_picture, write_report
 from .screen import Screen, escape_undecodable_names, printable
+from .sharing import stamp_options
 from .tasks import check_output_folder, shared_tasks, tasks_of
 from .verb_description import OutputKind, Task, Verb
 
@@ -171,6 +173,7 @@ def _run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
     reporting = getattr(arguments, "report", False)
     if folder is None and reporting:
         raise InvalidSettingError("A report needs a folder: name it with --output-folder DIR.")
+    stamp_options(arguments)
     every = tasks_of(verb, arguments)
     tasks = every if folder is None else shared_tasks(every, arguments)
     has_failures = False
@@ -208,6 +211,7 @@ def _run_tasks(verb: Verb, tasks: Sequence[Task], screen: Screen) -> Iterator[Fi
             remaining.append(task)
     if not remaining:
         return
+    note_other_builds(remaining, screen)
     with workers_for(remaining) as workers:
         prepared = verb.prepare(tasks[0].arguments, screen.progress)
         run_all = partial(run_tasks, verb, prepared=prepared, workers=workers, screen=screen)

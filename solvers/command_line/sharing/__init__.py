@@ -1,7 +1,7 @@
 """Share a batch among machines: records, claims, shards, manifests and hooks."""
 
 from .claims import RENEWAL_INTERVAL_S, claimed
-from .fingerprints import fingerprint
+from .fingerprints import fingerprint, is_of_another_build, stamp_options
 from .hooks import hook_remark, parse_hook, run_hook
 from .manifest import Listed, read_manifest
 from .records import Record, Records
@@ -16,8 +16,10 @@ __all__ = [
     "claimed",
     "fingerprint",
     "hook_remark",
+    "is_of_another_build",
     "parse_hook",
     "parse_shard",
     "read_manifest",
     "run_hook",
+    "stamp_options",
 ]

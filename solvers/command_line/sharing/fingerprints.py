@@ -4,29 +4,48 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ...version import version
+from ...version import build
 
 IRRELEVANT_OPTIONS = {
     "after", "again", "cluster", "files", "flamenco", "flamenco_command", "flamenco_priority",
-    "flamenco_tasks", "jobs", "json", "manifest", "output_folder", "report", "shard", "wait",
-    "work",
+    "flamenco_tasks", "jobs", "json", "manifest", "output_folder", "report", "shard", "stamps",
+    "wait", "work",
 }  # fmt: skip
 """Options that do not change the result."""
 STAMP_LENGTH = 3
+
+
+def stamp_options(arguments: argparse.Namespace) -> None:
+    """Add to the arguments of a run the sizes and dates of the files and folders they name.
+
+    Each folder is listed once, however many takes there are.
+    """
+    arguments.stamps = {
+        name: _json_value(value)
+        for name, value in vars(arguments).items()
+        if name not in IRRELEVANT_OPTIONS and _has_paths(value)
+    }
 
 
 def fingerprint(source: Path, arguments: argparse.Namespace) -> dict[str, Any]:
     """Return everything that a result depends on, as JSON; files by name, size and date.
 
     It is the same on all machines, wherever they mount the folder of the files.
+
+    Parameters
+    ----------
+    source : Path
+    arguments : Namespace
+        With what `stamp_options` adds.
     """
+    stamps: dict[str, Any] = arguments.stamps
     options = {
-        name: _json_value(value)
+        name: stamps[name] if name in stamps else _json_value(value)
         for name, value in sorted(vars(arguments).items())
         if name not in IRRELEVANT_OPTIONS
     }
     return {
-        "version": version(),
+        "version": build(),
         "source": _stamp(source),
         "skeletons": _nearby_skeletons(source),
         "options": options,
@@ -44,11 +63,20 @@ def without_folders(value: Any) -> Any:
     return [without_folders(each) for each in value]
 
 
+def is_of_another_build(made: dict[str, Any], now: dict[str, Any]) -> bool:
+    """Return whether two fingerprints differ, and only in the version of Mocap Assist."""
+    return made != now and {**made, "version": now["version"]} == now
+
+
 def _nearby_skeletons(source: Path) -> list[Any]:
     """Return the skeleton files that an Acclaim recording may use."""
     if source.suffix.lower() != ".amc":
         return []
     return [_stamp(path) for path in sorted(source.parent.glob("*.[aA][sS][fF]"))]
+
+
+def _has_paths(value: Any) -> bool:
+    return isinstance(value, Path) or (isinstance(value, list) and any(map(_has_paths, value)))
 
 
 def _json_value(value: Any) -> Any:

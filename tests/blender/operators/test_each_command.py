@@ -102,6 +102,14 @@ def test_each_command_reports_impossible_requests_at_once(
     assert err.count("\n") == 1
 
 
+def test_blend_files_are_found_whatever_the_case_of_their_ending(load, tmp_path):
+    (tmp_path / "take.BLEND").touch()
+
+    found = load("mocap_assist.batch.each_verb")._blends_in(tmp_path)
+
+    assert [path.name for path in found] == ["take.BLEND"]
+
+
 def test_circular_link_and_missing_file_do_not_stop_other_files(command, takes, tmp_path):
     loop, out = tmp_path / "loop.bvh", tmp_path / "out"
     loop.symlink_to(loop)

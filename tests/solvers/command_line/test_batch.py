@@ -3,10 +3,17 @@
 import json
 import shutil
 from pathlib import Path
+from time import process_time
 
 import pytest
 
+from solvers.command_line import tasks
+from solvers.command_line.files import unique_targets
+from solvers.command_line.sharing import fingerprints
+from solvers.errors import InvalidSettingError
 from solvers.recordings import read_bvh
+
+OTHER_BUILD = "Made by another version of Mocap Assist, and made again: 1 of 1 results.\n"
 
 
 @pytest.fixture
@@ -43,13 +50,12 @@ def test_output_is_made_again_when_the_result_would_differ(
     if change == "again":
         words += ["--again"]
     if change == "version":
-        monkeypatch.setattr(
-            "solvers.command_line.sharing.fingerprints.version", lambda: "99.0.0"
-        )
+        monkeypatch.setattr("solvers.command_line.sharing.fingerprints.build", lambda: "99.0.0")
 
-    _, printed, _ = call(*words)
+    _, printed, err = call(*words)
 
     assert "Already made." not in printed
+    assert err == (OTHER_BUILD if change == "version" else "")
 
 
 def test_one_bad_file_does_not_stop_the_others(call, leg_file, tmp_path):
@@ -134,3 +140,34 @@ def test_crashed_process_loses_only_its_own_file(start, tmp_path, monkeypatch):
     assert done.stdout.count("Done.") == 4
     assert done.stderr.startswith("bad: its process crashed")
     assert done.stderr.count("\n") == 1
+
+
+def test_start_of_a_batch_is_linear_in_its_takes(tmp_path):
+    """Comparing each take with each other one took 23 s for 8,000 takes; this takes 0.4 s."""
+    names = [Path(f"day{number % 20}/take{number}.bvh") for number in range(8000)]
+    began = process_time()
+
+    targets = [tmp_path / "out" / path for path in unique_targets(names, [".bvh"] * len(names))]
+    tasks._check_overwriting([tmp_path / path for path in names], targets)
+
+    assert process_time() - began < 5.0
+    with pytest.raises(InvalidSettingError, match=r"both be written to .*take7\.bvh"):
+        tasks._check_overwriting([tmp_path / "other"], [*targets, targets[7]])
+
+
+def test_folder_of_examples_is_listed_once_for_all_takes(
+    call, leg_file, twin_file, tmp_path, monkeypatch
+):
+    examples, stamped, stamp = tmp_path / "examples", [], fingerprints._stamp
+    examples.mkdir()
+    shutil.copy(leg_file, examples / "walk.bvh")
+    monkeypatch.setattr(
+        fingerprints, "_stamp", lambda file: stamped.append(file.name) or stamp(file)
+    )
+    words = ["denoise", leg_file, twin_file, "--output-folder", tmp_path / "out"]
+
+    assert call(*words, "--train", examples)[0] == 0
+
+    assert (stamped.count("examples"), stamped.count("walk.bvh")) == (1, 1)
+    (examples / "walk.bvh").touch()
+    assert "Already made." not in call(*words, "--train", examples)[1]
