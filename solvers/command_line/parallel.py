@@ -51,7 +51,11 @@ def run_tasks(
             screen.title = f"[{number}/{len(tasks)}] {task.source.name}"
             yield attempt_task(verb, task, screen.progress, prepared)
     else:
-        yield from _run_on_workers(verb, tasks, workers.share(prepared), workers, screen)
+        screen.show_count(0, len(tasks))
+        ended = _run_on_workers(verb, tasks, workers.share(prepared), workers, screen)
+        for number, finished in enumerate(ended, start=1):
+            yield finished
+            screen.show_count(number, len(tasks))
 
 
 def _run_on_workers(

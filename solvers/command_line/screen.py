@@ -32,11 +32,17 @@ class Screen:
 
     def progress(self, fraction: float, message: str = "") -> None:
         """Show the progress of `title` on one line, which is overwritten."""
-        if not self.is_terminal or abs(fraction - self._fraction) < MIN_STEP:
+        if not self.is_terminal or (self._shown and abs(fraction - self._fraction) < MIN_STEP):
             return
         self._fraction = fraction
         line = f"{self.title} {100 * fraction:3.0f} % {message}"
         self._replace(escaped(line)[:78])
+
+    def show_count(self, n_done: int, n_tasks: int) -> None:
+        """Show on the progress line how many tasks of several workers are done."""
+        self.title = f"[{n_done}/{n_tasks}]"
+        self.clear()
+        self.progress(n_done / n_tasks)
 
     def write_line(self, sentence: str) -> None:
         """Print a sentence on a line of its own."""

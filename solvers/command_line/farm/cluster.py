@@ -5,6 +5,7 @@ This is the only module that knows Dask, which is optional and imported when a c
 
 import asyncio
 import logging
+import pickle
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager
@@ -16,15 +17,16 @@ from typing import TYPE_CHECKING, Any
 from ...errors import InvalidSettingError, MocapAssistError
 from ...files import is_missing
 from ...processes import host_name
-from ...version import version
+from ...version import build
 
 if TYPE_CHECKING:
     from distributed import Client
 
 CONNECTION_TIMEOUT_S = 5.0
 """Seconds to wait for a scheduler. It bounds the wait for one that does not run."""
-PROJECT = __package__.split(".", maxsplit=1)[0]
-"""Name by which a worker imports this code."""
+CALL = "pickle.loads(call)(*arguments)"
+"""What a worker evaluates. Dask unpickles a function on the scheduler, too, and on a worker
+before its task can fail: for this text and bytes neither needs the modules of the call."""
 
 
 class WorkerCluster:
@@ -57,7 +59,7 @@ class WorkerCluster:
 
         # A function whose result is the value: Dask calls it again when its holders have ended.
         with config.set({"distributed.admin.large-graph-warning-threshold": "1TB"}):
-            return self._client.submit(partial(_identity, value), pure=False)
+            return self._client.submit(*_sent(partial(_identity, value)), pure=False)
 
 
 class ClusterExecutor(Executor):
@@ -65,7 +67,7 @@ class ClusterExecutor(Executor):
 
     def __init__(self, client: "Client", address: str, paths: Sequence[Path]) -> None:
         self._executor, self._address = client.get_executor(pure=False), address
-        self._check = partial(_check_once, version(), tuple(paths))
+        self._check = partial(_check_once, build(), tuple(paths))
 
     def submit(
         self, function: Callable[..., Any], /, *args: Any, **kwargs: Any
@@ -74,7 +76,7 @@ class ClusterExecutor(Executor):
         future: Future[Any] = Future()
         call = partial(_call_after, self._check, function)
         try:
-            remote = self._executor.submit(call, *args, **kwargs)
+            remote = self._executor.submit(*_sent(partial(call, **kwargs), *args))
         except _scheduler_errors():
             raise MocapAssistError(_is_gone(self._address)) from None
         remote.add_done_callback(partial(self._pass_on, future))
@@ -95,8 +97,8 @@ class ClusterExecutor(Executor):
         error = remote.exception()
         if isinstance(error, KilledWorker):
             error = BrokenExecutor(str(error))
-        if isinstance(error, ImportError):
-            error = InvalidSettingError(_has_no_package("A worker"))
+        elif error is not None:
+            error = _worker_error("A worker", error)
         if error is None:
             future.set_result(remote.result())
         else:
@@ -154,16 +156,15 @@ async def _try_connection(address: str) -> None:
 
 
 def _check_workers(client: "Client", paths: Sequence[Path]) -> None:
-    answers = client.run(_check_once, version(), tuple(paths), on_error="return")
+    check = partial(_check_once, build(), tuple(paths))
+    answers = client.run(*_sent(check), on_error="return")
     if not answers:
         raise InvalidSettingError(
             "The scheduler has no workers. Start some: dask worker, and its address."
         )
     for worker, answer in sorted(answers.items()):
-        if isinstance(answer, ImportError):
-            raise InvalidSettingError(_has_no_package(f"The worker {worker}"))
-        if isinstance(answer, Exception):
-            raise answer
+        if isinstance(answer, BaseException):
+            raise _worker_error(f"The worker {worker}", answer)
 
 
 @cache
@@ -178,16 +179,18 @@ def _check_once(expected: str, paths: tuple[Path, ...]) -> None:
                 f"A worker on {host_name()} does not see {path}. Mount it there at the same"
                 " path."
             )
-    if version() != expected:
+    if build() != expected:
         raise InvalidSettingError(
-            f"A worker on {host_name()} has Mocap Assist {version()}, and this process"
+            f"A worker on {host_name()} has Mocap Assist {build()}, and this process"
             f" {expected}. Install the same version on both."
         )
 
 
-def _call_after(check: Callable[[], None], function: Callable[..., Any], *args: Any) -> Any:
+def _call_after(
+    check: Callable[[], None], function: Callable[..., Any], *args: Any, **kwargs: Any
+) -> Any:
     check()
-    return function(*args)
+    return function(*args, **kwargs)
 
 
 def _scheduler_errors() -> tuple[type[Exception], ...]:
@@ -201,11 +204,24 @@ def _identity(value: Any) -> Any:
     return value
 
 
-def _has_no_package(worker: str) -> str:
-    return (
-        f"{worker} cannot import Mocap Assist (the package {PROJECT}). Install the same version"
-        " there as here."
-    )
+def _sent(call: Callable[..., Any], *arguments: Any) -> tuple[Any, ...]:
+    """Return a call as function and arguments for Dask; shared values stay as they are."""
+    from cloudpickle import dumps
+
+    return eval, CALL, {"pickle": pickle, "call": dumps(call), "arguments": [*arguments]}
+
+
+def _worker_error(worker: str, error: BaseException) -> MocapAssistError:
+    """Return an error of a worker as one with a sentence."""
+    if isinstance(error, MocapAssistError):
+        return error
+    reason = str(error).strip().partition("\n")[0].rstrip(".") or type(error).__name__
+    if isinstance(error, ImportError):
+        return InvalidSettingError(
+            f"{worker} cannot import Mocap Assist ({reason}). Install the same version there as"
+            " here, with all that it needs."
+        )
+    return MocapAssistError(f"{worker} cannot be used: {reason}. Read its log, and restart it.")
 
 
 def _is_gone(address: str) -> str:

@@ -1,22 +1,26 @@
 """A batch on the workers of a Dask cluster: none of it is lost, and no take is made twice."""
 
+import io
 import json
 import os
+import re
 import sys
 from collections import Counter
 from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, redirect_stderr, redirect_stdout
 from importlib.util import find_spec
 
 import pytest
 from clusters.dask_cluster import DEADLY_VERBS, local_cluster
+from clusters.lone_workers import scheduler_and_workers
 
 from solvers.command_line import parallel
 from solvers.command_line.farm import cluster as cluster_module
 from solvers.command_line.farm import cluster_workers
 from solvers.command_line.run import run
 from solvers.command_line.sharing import Records
-from solvers.errors import InvalidSettingError
+from solvers.command_line.verbs import VERBS
+from solvers.errors import InvalidSettingError, MocapAssistError
 
 NEEDS_DASK = pytest.mark.skipif(
     find_spec("distributed") is None, reason="needs the package distributed"
@@ -100,7 +104,7 @@ def test_output_folder_that_vanishes_is_one_sentence(
 
 @NEEDS_DASK
 def test_workers_of_another_version_are_refused(cluster, tmp_path, monkeypatch):
-    monkeypatch.setattr(cluster_module, "version", lambda: "99.0.0")
+    monkeypatch.setattr(cluster_module, "build", lambda: "99.0.0")
     message = "A worker on .* has Mocap Assist .*, and this process 99.0.0. Install"
 
     with (
@@ -117,7 +121,7 @@ def test_worker_of_another_version_that_joins_later_gets_no_task(
     with cluster_workers(cluster, [tmp_path]) as workers:
         with workers.open(1) as executor:
             assert executor.submit(len, workers.share((1, 2))).result() == 2
-        monkeypatch.setattr(cluster_module, "version", lambda: "99.0.0")
+        monkeypatch.setattr(cluster_module, "build", lambda: "99.0.0")
 
         with (
             workers.open(1) as executor,
@@ -147,13 +151,67 @@ def test_worker_without_the_output_folder_is_refused(cluster, tmp_path):
         pytest.fail("connected")
 
 
+@NEEDS_DASK
 def test_worker_without_the_package_is_refused(tmp_path):
-    class Client:
-        def run(self, *arguments, on_error):
-            return {"tcp://farm02:1": None, "tcp://farm03:1": ImportError()}
+    with (
+        scheduler_and_workers(tmp_path, True, False) as address,
+        workers_joined(address, 2),
+        pytest.raises(InvalidSettingError) as raised,
+        cluster_workers(address, [tmp_path]),
+    ):
+        pytest.fail("connected")
 
-    with pytest.raises(InvalidSettingError, match="The worker tcp://farm03:1 cannot import"):
-        cluster_module._check_workers(Client(), [tmp_path])
+    assert re.fullmatch(
+        r"The worker tcp://[\d.:]+ cannot import Mocap Assist \(No module named 'solvers'\)\."
+        r" Install the same version there as here, with all that it needs\.",
+        str(raised.value),
+    )
+
+
+@NEEDS_DASK
+def test_scheduler_and_late_worker_without_the_package(tmp_path):
+    """The scheduler needs only Dask; a take that such a worker gets fails with a sentence."""
+    with (
+        scheduler_and_workers(tmp_path, False) as address,
+        workers_joined(address, 1) as client,
+    ):
+        workers = cluster_module.WorkerCluster(client, address, [])  # As if it joined later.
+        with (
+            workers.open(1) as executor,
+            pytest.raises(InvalidSettingError, match="A worker cannot import Mocap Assist"),
+        ):
+            executor.submit(len, workers.share((1, 2))).result(timeout=60)
+    with (
+        scheduler_and_workers(tmp_path / "other", True) as address,
+        workers_joined(address, 1),
+        cluster_workers(address, [tmp_path]) as workers,
+        workers.open(1) as executor,
+    ):
+        assert executor.submit(len, workers.share((1, 2))).result(timeout=60) == 2
+
+
+@NEEDS_DASK
+def test_failure_of_a_worker_is_one_sentence(cluster, tmp_path):
+    with cluster_workers(cluster, [tmp_path]) as workers, workers.open(1) as executor:
+        future = executor.submit(int, "no\nnumber")
+
+        with pytest.raises(MocapAssistError) as raised:
+            future.result()
+
+    assert str(raised.value) == (
+        "A worker cannot be used: invalid literal for int() with base 10: 'no\\nnumber'. Read"
+        " its log, and restart it."
+    )
+
+
+@contextmanager
+def workers_joined(address, n_workers):
+    """Yield a client once this many workers have joined."""
+    from distributed import Client
+
+    with Client(address, set_as_default=False) as client:
+        client.wait_for_workers(n_workers, timeout=60)
+        yield client
 
 
 @NEEDS_DASK
@@ -261,6 +319,20 @@ def use_workers(monkeypatch):
         )
 
     return use
+
+
+def test_terminal_shows_how_many_takes_of_workers_are_done(small_batch, tmp_path, use_workers):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    use_workers(OneThread())
+    words = ["convert", str(small_batch), "--output-folder", str(tmp_path / "out")]
+    with redirect_stderr(Terminal()) as shown, redirect_stdout(io.StringIO()):
+        assert run(VERBS, words, "solvers") == 0
+
+    counts = re.findall(r"\[(\d+)/24\]", shown.getvalue())
+    assert [*map(int, counts)] == [*range(25)]
 
 
 @pytest.mark.parametrize("batch", ["batch", "another"])
