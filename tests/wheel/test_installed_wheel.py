@@ -118,6 +118,12 @@ def test_command_lists_every_verb_and_its_version(installed):
     assert installed.run("mocap-assist", "--version") == f"Mocap Assist {VERSION}\n"
 
 
+def test_jobs_that_the_package_submits_start_the_package(installed):
+    code = f"from {PACKAGE}.command_line.farm import COMMAND; print(COMMAND)"
+
+    assert installed.run("python", "-c", code) == f"python3 -m {PACKAGE}\n"
+
+
 def test_command_converts_a_recording(installed):
     installed.run("mocap-assist", "convert", "takes/one.bvh", "copy.bvh")
 

@@ -3,7 +3,8 @@
 #
 #   sbatch --array=1-20 slurm.sh MANIFEST OUTPUT_FOLDER VERB [OPTION ...]
 #
-# MOCAP_ASSIST is the command of Mocap Assist on the nodes, by default "python3 -m solvers".
+# MOCAP_ASSIST is the command of Mocap Assist on the nodes, by default "python3 -m solvers";
+# with the Python package it is mocap-assist.
 #SBATCH --job-name=mocap_assist
 #SBATCH --array=1-10
 #SBATCH --cpus-per-task=1

@@ -14,8 +14,10 @@ from .job_types import JOB_TYPE, job_type_of, script_of
 if TYPE_CHECKING:
     from .flamenco_manager import FlamencoManager
 
-COMMAND = "python3 -m solvers"
-"""Command of Mocap Assist on workers that have the checkout on their path."""
+PACKAGE = __package__.removesuffix(".command_line.farm")
+COMMAND = f"python3 -m {'solvers' if '.' in PACKAGE else PACKAGE}"
+"""Command of Mocap Assist on workers that have what submits: a checkout or the Python package.
+An extension, which only Blender can import, has the code of a checkout."""
 
 
 @dataclass(frozen=True, kw_only=True)

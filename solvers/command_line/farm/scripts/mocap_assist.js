@@ -16,7 +16,7 @@ const JOB_TYPE = {
     { key: "options", type: "string", default: "", required: false,
       description: "More options of the verb, as on the command line" },
     { key: "command", type: "string", default: "python3 -m solvers", required: true,
-      description: "The command of Mocap Assist on the workers" },
+      description: "The command of Mocap Assist on the workers; mocap-assist with the Python package" },
   ],
 };
 

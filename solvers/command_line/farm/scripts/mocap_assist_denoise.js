@@ -15,7 +15,7 @@ const JOB_TYPE = {
     { key: "options", type: "string", default: "", required: false,
       description: "More options of the verb, as on the command line" },
     { key: "command", type: "string", default: "python3 -m solvers", required: true,
-      description: "The command of Mocap Assist on the workers" },
+      description: "The command of Mocap Assist on the workers; mocap-assist with the Python package" },
     {"key": "scale", "type": "string", "default": "", "required": false, "description": "Meters per unit of the input files, instead of --unit [default: as stored in the file, or estimated from the size of the body]"},
     {"key": "body", "type": "string", "default": "", "required": false, "description": "Body to read from input files with several: its name or number, several with commas, or all [default: the person seen in most frames]"},
     {"key": "forward", "type": "string", "default": "", "required": false, "description": "Axis of the file along which the actor faces; it becomes -Y, the front view [default auto]"},
