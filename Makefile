@@ -67,10 +67,15 @@ test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 	@[ ! -e .venv-5.2/ready ] || { set -x; \
 	    MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_5.2) -m pytest tests/blender; }
 
-test-wheel: .venv-4.5/ready optional-5.2 wheel  ## the installed wheel, on Python 3.11 and 3.13
+test-wheel: .venv-4.5/ready optional-5.2 wheel  ## the installed wheel, on Python 3.11 to 3.13
 	MOCAP_ASSIST_WHEEL=$(WHEEL) $(AT_MOST) $(PYTHON_4.5) -m pytest tests/wheel
 	@[ ! -e .venv-5.2/ready ] || { set -x; \
 	    MOCAP_ASSIST_WHEEL=$(WHEEL) $(AT_MOST) $(PYTHON_5.2) -m pytest tests/wheel; }
+
+.PHONY: test-wheel-oldest
+test-wheel-oldest: .venv-4.5/ready wheel  ## the wheel with the lowest versions of its libraries
+	MOCAP_ASSIST_OLDEST=yes MOCAP_ASSIST_WHEEL=$(WHEEL) $(AT_MOST) $(PYTHON_4.5) -m pytest \
+	    tests/wheel/test_clean_environments.py -k lowest
 
 .PHONY: test-gui
 test-gui: extension-plain  ## press buttons in a Blender with a window; DRIVERS="clean vary"
@@ -282,4 +287,4 @@ libraries:
 	@touch $@
 
 clean:  ## remove what make made, the environments too
-	rm -rf .venv-4.5 .venv-5.2 .venv-fuzz .venv-wheel build dist wheels
+	rm -rf .venv-4.5 .venv-5.2 .venv-fuzz .venv-wheel .venv-wheel-* build dist wheels

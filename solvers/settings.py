@@ -12,6 +12,7 @@ from typing import Any, Self
 
 from .errors import InvalidSettingError
 
+__all__ = ["Choice", "Settings"]
 SMALL_WORDS = {"a", "an", "and", "as", "at", "by", "for", "from", "in", "of", "on", "or", "the",
                "to", "with"}  # fmt: skip
 

@@ -48,6 +48,10 @@ OTHER_LABELS = {
 }  # fmt: skip
 """In italics in the manual, in this order: labels of Blender, presets and the tab, texts with a
 name or number in them, columns of tables, and labels of game engines."""
+INTERNAL = {
+    "command_line", "depth_scene", "feet", "motion_fitting", "pictures", "processes", "signals",
+}  # fmt: skip
+"""Packages without promises: scripts use verbs, or what is made of these."""
 README_LINES = 130
 MAX_LINE_CHARACTERS = 160
 
@@ -128,6 +132,16 @@ def test_files_named_in_guides_exist(document):
 
     assert paths
     assert not [path for path in paths if not (ROOT / path).exists()]
+
+
+def test_page_of_public_names_has_every_package_but_the_internal_ones():
+    page = (ROOT / "docs" / "technical" / "api.md").read_text(encoding="utf-8")
+    packages = {file.parent.name for file in (ROOT / "solvers").glob("*/__init__.py")}
+
+    listed = set(re.findall(r"<!-- names of solvers\.(\w+) -->", page))
+
+    assert listed == packages - INTERNAL | {"settings", "errors", "progress"}
+    assert "`clean_from_library(" in page and "`InvalidFileError`" in page
 
 
 def test_every_button_has_a_row_on_the_page_of_buttons(write_docs):

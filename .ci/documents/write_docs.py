@@ -14,6 +14,7 @@ from dataclasses import fields, is_dataclass
 from enum import Enum
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from solvers.presets import PRESETS
@@ -130,8 +131,7 @@ def settings_table(module: str, name: str) -> str:
 
 def names_table(package: str) -> str:
     """Return a Markdown table of the functions and classes that a package exports."""
-    module = import_module(package)
-    exported = {name: getattr(module, name) for name in module.__all__}
+    exported = _exported(import_module(package))
     rows = ["| name | what it is |", "|---|---|"]
     for is_kind in (inspect.isfunction, inspect.isclass):
         for name, value in exported.items():
@@ -140,6 +140,17 @@ def names_table(package: str) -> str:
                     f"| `{name}{_inputs(value)}` | {_first_sentence(value)}{_parts(value)} |"
                 )
     return "\n".join(rows) + "\n"
+
+
+def _exported(module: ModuleType) -> dict[str, Any]:
+    """Return what a package exports; of a module that is no package, what it defines."""
+    if hasattr(module, "__all__"):
+        return {name: getattr(module, name) for name in module.__all__}
+    return {
+        name: value
+        for name, value in sorted(vars(module).items())
+        if not name.startswith("_") and getattr(value, "__module__", "") == module.__name__
+    }
 
 
 def _inputs(value: Any) -> str:

@@ -34,8 +34,10 @@ def test_openjd_template_is_valid_and_runs(manifest, tmp_path, records_in):
     }  # fmt: skip
     parameters = [word for name, value in given.items() for word in ("-p", f"{name}={value}")]
 
+    checked = run(*OPENJD, "check", template)
     ran = run(*OPENJD, "run", template, *parameters)
 
+    assert checked.returncode == 0, checked.stdout
     assert ran.returncode == 0, ran.stdout
     assert set(records_in(out)) == {f"take{number:02}.bvh" for number in range(4)}
     assert (out / "report.html").exists()
