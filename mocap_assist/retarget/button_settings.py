@@ -35,12 +35,12 @@ class RetargetChoices(Settings):
     source_map_file: str = setting(
         "",
         "Bone map of the source; if empty, the list below or the names and rest pose are used",
-        label="Source Bone Map",
+        label="Source Map",
     )
     target_map_file: str = setting(
         "",
         "Bone map of the target: the bone or control to key for each part",
-        label="Target Bone Map",
+        label="Target Map",
     )
 
 

@@ -93,7 +93,7 @@ class ForegroundSettings(Settings):
     before_background: float = setting(
         0.05, "Remove points less than this far in front of the empty room; higher cuts off"
         " feet",
-        unit="m", minimum=0.0, maximum=1.0,
+        unit="m", minimum=0.0, maximum=1.0, label="Front Margin",
     )  # fmt: skip
     min_body_area: float = setting(
         0.08, "Minimum visible surface of a person; higher misses partly hidden people",

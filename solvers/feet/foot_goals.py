@@ -41,7 +41,7 @@ ANKLE_M = 0.012
 0.02 moves a foot of CMU 06_01 by 17 cm, where a knee is nearly straight; `make sensitivity`
 varies it."""
 CREEP_M = 0.01
-"""Meters, for a leg of 0.9 m, by which a foot may creep in Max Contact Time. Chosen by hand, by
+"""Meters, for a leg of 0.9 m, by which a foot may creep in Max Hold Time. Chosen by hand, by
 the worst drift within a contact of clean takes, 0.9 mm: x2 makes it 3.1, x0.5 0.2 and turns
 feet by 0.3 degrees more, at the same acceleration of knees."""
 FLOOR_M = 0.002

@@ -21,7 +21,7 @@ class PlantSettings(Settings):
         minimum=0.5,
         maximum=1000.0,
         advanced=True,
-        label="Max Contact Time",
+        label="Max Hold Time",
     )
     hold_rotation: bool = setting(
         True,
@@ -36,7 +36,7 @@ class PlantSettings(Settings):
     softness: float = setting(
         0.01,
         "Fraction of the leg length held in reserve; higher bends knees and lowers hips more",
-        minimum=0.0, maximum=0.2, advanced=True, label="Leg Stretch Limit",
+        minimum=0.0, maximum=0.2, advanced=True, label="Leg Reserve",
     )  # fmt: skip
     spare_knees: bool = setting(
         True, "Shift hips and heels slightly so that knees bend smoothly",

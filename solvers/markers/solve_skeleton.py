@@ -38,7 +38,7 @@ class SolveSettings(Settings):
     )
     measured_frames: int = setting(
         80, "Frames used to measure the body; more is slower and covers more poses",
-        minimum=10, maximum=1000, advanced=True,
+        minimum=10, maximum=1000, advanced=True, label="Body Frames",
     )  # fmt: skip
 
 

@@ -83,7 +83,7 @@ class ReconstructSettings(Settings):
     )  # fmt: skip
     inferred: float = setting(
         0.5, "Weight of joints that the sensor only guessed; 0 rebuilds them all",
-        minimum=0.0, maximum=1.0, label="Weight of Inferred Joints",
+        minimum=0.0, maximum=1.0, label="Inferred Weight",
     )  # fmt: skip
     causal: bool = setting(
         False, "Use only earlier frames, as in a live system; less smooth", research=True

@@ -65,12 +65,12 @@ class RetargetSettings(Settings):
     )  # fmt: skip
     softness: float = setting(
         0.005, "Fraction of the leg length kept in reserve; higher lowers the hips more",
-        minimum=0.0, maximum=0.2, advanced=True, label="Leg Stretch Limit",
+        minimum=0.0, maximum=0.2, advanced=True, label="Leg Reserve",
     )  # fmt: skip
     travel_smoothing: float = setting(
         0.5, "Blur that separates travel from the sway of steps; higher leaves more sway on the"
         " hips",
-        unit="s", minimum=0.0, maximum=10.0, advanced=True,
+        unit="s", minimum=0.0, maximum=10.0, advanced=True, label="Travel Blur",
     )  # fmt: skip
     turn_root: bool = setting(
         True,

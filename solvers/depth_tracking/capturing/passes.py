@@ -43,7 +43,7 @@ class RecoverySettings(Settings):
     )  # fmt: skip
     failing_chance: float = setting(
         0.5, "Learned probability that a pose is wrong; lower runs the detector more often",
-        minimum=0.0, maximum=1.0, label="Failure Probability",
+        minimum=0.0, maximum=1.0, label="Failure Chance",
     )  # fmt: skip
     failing_drop: float = setting(
         0.9,

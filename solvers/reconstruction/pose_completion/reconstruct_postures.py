@@ -167,7 +167,7 @@ def _check_observed(recording: JointRecording, positions: Array, reliability: Ar
     if (state == INFERRED).any():
         raise InvalidMotionError(
             f"No frame has {RIGID_POINTS} tracked joints; the tracker infers the others. Raise"
-            " Weight of Inferred Joints (--inferred) to use those."
+            " Inferred Weight (--inferred) to use those."
         )
     raise InvalidMotionError(
         f"No frame has {RIGID_POINTS} joints with the tracking state `tracked`, although"

@@ -58,7 +58,7 @@ class FindSettings(Settings):
     right_leg: bool = setting(True, "Compare the right leg")
     busy: float = setting(
         0.5, "Weight body parts by their motion in the query; at 0 all parts count the same",
-        minimum=0.0, maximum=4.0, advanced=True, research=True, label="Weight by Motion",
+        minimum=0.0, maximum=4.0, advanced=True, research=True, label="Motion Weight",
     )  # fmt: skip
     stance: float = setting(
         MEAN_POSTURE_WEIGHT,
@@ -67,7 +67,7 @@ class FindSettings(Settings):
     )  # fmt: skip
     n_warped: int = setting(
         128, "Number of best clips to compare in time as well; more is slower",
-        minimum=0, maximum=2_000, advanced=True, research=True, label="Time-Aligned Clips",
+        minimum=0, maximum=2_000, advanced=True, research=True, label="Aligned Clips",
     )  # fmt: skip
     warping: float = setting(
         3.0, "Weight of timing relative to poses",

@@ -1,4 +1,4 @@
-"""No translated label left of its value is cut where the English one is not."""
+"""No label left of its value is cut, in any language."""
 
 import pytest
 
@@ -36,16 +36,19 @@ def labels(settings):
                 yield each.name, BOX_PX if each.type == "BOOLEAN" else NAME_PX
 
 
-def test_translated_labels_are_not_cut(load, blank, width):
+def test_labels_are_not_cut(load, blank, width):
     languages = load("mocap_assist.languages")
     shown = set(labels(blank.context.scene.mocap_assist))
     assert len(shown) > 50
 
-    for language in languages.LANGUAGES:
-        texts = languages.read_catalog(languages.catalog_path(language))
+    catalogs = {
+        language: languages.read_catalog(languages.catalog_path(language))
+        for language in languages.LANGUAGES
+    }
+    for language, texts in {"en_US": {}, **catalogs}.items():
         cut = [
-            f"{english}: {texts[english]}"
+            f"{english}: {texts.get(english, english)}"
             for english, room in shown
-            if width(texts.get(english, "")) > max(room, width(english))
+            if width(texts.get(english, english)) > room
         ]
         assert not cut, language
