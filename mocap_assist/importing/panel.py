@@ -44,7 +44,7 @@ class ImportPanel(PanelMixin):
         active = context.view_layer.objects.active
         origin = origin_of(active) if active is not None else {}
         if not origin and selected_subject(context) is None:
-            _draw_first_steps(layout)
+            _draw_first_steps(layout, context)
         if origin:
             column = layout.column(align=True)
             name = PurePath(str(origin.get("file", ""))).name
@@ -60,8 +60,9 @@ class ImportPanel(PanelMixin):
                     column.operator(SHOW)
 
 
-def _draw_first_steps(layout: bpy.types.UILayout) -> None:
+def _draw_first_steps(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the first steps for an animator without a take."""
+    draw_sentence(layout, context, "Or drop files into the 3D View.")
     if exists(SAMPLE):
         layout.operator(SAMPLE, icon="ARMATURE_DATA")
     layout.operator("wm.url_open", text="Open Manual", icon="HELP").url = start_page().as_uri()

@@ -65,9 +65,8 @@ def register() -> None:
     """Show the panels, on the tab that the preferences name."""
     for each in LISTS:
         bpy.utils.register_class(each)
-    tab = preferred("tab").strip() or TAB
     for panel in PANELS:
-        panel.bl_category = tab
+        panel.bl_category = tab_name()
         bpy.utils.register_class(panel)
 
 
@@ -77,6 +76,11 @@ def unregister() -> None:
         bpy.utils.unregister_class(panel)
     for each in LISTS:
         bpy.utils.unregister_class(each)
+
+
+def tab_name() -> str:
+    """Return the name of the tab from the preferences."""
+    return str(preferred("tab")).strip() or TAB
 
 
 def move_to_tab() -> None:

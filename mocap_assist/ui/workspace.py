@@ -5,6 +5,8 @@ from contextlib import suppress
 
 import bpy
 
+from .sidebar import tab_name
+
 NAME = "Mocap"
 SPLITS = (
     ("VIEW_3D", "FCURVES", "HORIZONTAL", 0.45),
@@ -83,6 +85,17 @@ def arranging(window: bpy.types.Window) -> Iterator[None]:
     for editor, area in area_by_editor.items():
         area.ui_type = editor
     area_by_editor["VIEW_3D"].spaces.active.show_region_ui = True
+    while not _show_tab(area_by_editor["VIEW_3D"]):
+        yield
+
+
+def _show_tab(area: bpy.types.Area) -> bool:
+    """Open our tab of the sidebar; Blender has its tabs once they were drawn."""
+    sidebar = next(each for each in area.regions if each.type == "UI")
+    with suppress(TypeError):
+        sidebar.active_panel_category = tab_name()
+        return True
+    return False
 
 
 def areas_of(window: bpy.types.Window) -> list[bpy.types.Area]:

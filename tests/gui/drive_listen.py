@@ -109,6 +109,7 @@ def follow_the_second_person(listening):
 
 
 def press_listen():
+    yield from settle(pointer=middle_of_view())  # off the button, which the scan would find
     yield from bgui.scan()
     yield from bgui.click(*bgui.at("mocap_assist.listen"))
     yield 0.5

@@ -255,6 +255,7 @@ def add_the_workspace():
         assert bgui.window().workspace.name == "Mocap"
         assert kinds == WORKSPACE, kinds
     assert [each.name for each in bpy.data.workspaces].count("Mocap") == 1
+    assert bgui.region().active_panel_category == "Mocap"
     yield from settle(2)
     bgui.shot("7b-workspace.png")
 

@@ -32,3 +32,22 @@ def test_steps_have_a_turn_each_and_waiting_ends(load, monkeypatch):
     assert [waiting() for _ in range(3)] == [workspace.WAIT_S, workspace.WAIT_S, None]
     waits = [lost() for _ in range(workspace.MAX_WAITS)]
     assert waits[-2:] == [workspace.WAIT_S, None]
+
+
+def test_tab_of_the_sidebar_is_opened_once_it_is_there(load):
+    class Sidebar:
+        type, tabs = "UI", ()
+
+        def __setattr__(self, name, value):
+            if value not in self.tabs:
+                raise TypeError(value)
+            object.__setattr__(self, name, value)
+
+    show_tab, sidebar = load("mocap_assist.ui.workspace")._show_tab, Sidebar()
+    area = SimpleNamespace(regions=[SimpleNamespace(type="WINDOW"), sidebar])
+    assert not show_tab(area)
+
+    Sidebar.tabs = ("Item", "Mocap")
+
+    assert show_tab(area)
+    assert sidebar.active_panel_category == "Mocap"
