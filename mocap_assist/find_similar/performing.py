@@ -48,8 +48,8 @@ def show_library(context: bpy.types.Context) -> str:
     What was searched for last is listed, or else the clips of the library.
     """
     for area in context.window.screen.areas if context.window else ():
-        if area.type == "VIEW_3D":
-            area.spaces.active.show_region_ui = True
+        if area.type == "VIEW_3D" and not area.spaces.active.show_region_ui:
+            area.spaces.active.show_region_ui = True  # set again, it would fade in again
     bpy.context.window_manager.mocap_assist_ghost = True
     redraw(bpy.context)
     if bpy.context.window_manager.mocap_assist_matches.rows:

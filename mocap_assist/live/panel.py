@@ -5,15 +5,16 @@ from typing import ClassVar
 import bpy
 
 from ..blender.mixins import PanelMixin
-from ..panel_parts.panel_layout import draw_sentence, exists, settings_column
+from ..panel_parts.panel_layout import draw_sentence, exists, settings_column, split_column
 from ..panel_parts.preference_values import preferences
 from ..panel_parts.visibility import shows_take
 from ..runtime.selection import selected_armature
-from .listening import current
+from .listening import Listening, current
 from .stream_state import issue_text, sender_text
 
 LISTEN = "mocap_assist.listen"
 RECORD = "mocap_assist.record_live"
+STREAM = "live_protocol", "live_person"
 SETTINGS = (
     "duration", "live_limbs", "hold_feet", "keep_limits", "calibration_s", "smoothing",
 )  # fmt: skip
@@ -31,27 +32,38 @@ class PerformPanel(PanelMixin):
         return exists(LISTEN) and (is_listening or shows_take(context))
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
         listening = current()
         if listening is None:
-            layout.operator(LISTEN, icon="OUTLINER_OB_ARMATURE")
-            if preferences() is not None:
-                layout.prop(preferences(), "live_port")
-            layout.prop(context.scene.mocap_assist.live, "live_protocol")
-            layout.prop(context.scene.mocap_assist.live, "live_person")
-            if exists(RECORD) and selected_armature(context) is not None:
-                column = settings_column(layout, context, "live")
-                live = context.scene.mocap_assist.live
-                for name in SETTINGS:
-                    column.prop(live, name)
-                layout.operator(RECORD, icon="REC")
-            return
-        layout.operator(LISTEN, text="Stop Listening", icon="CANCEL")
-        draw_sentence(layout, context, listening.state())
-        if listening.message:
-            draw_sentence(layout, context, listening.message, icon="INFO")
-        stream = listening.stream_state
-        if sender := sender_text(stream):
-            draw_sentence(layout, context, sender)
-        if issue := issue_text(stream):
-            draw_sentence(layout, context, issue, icon="ERROR")
+            _draw_buttons(self.layout, context)
+        else:
+            _draw_stream(self.layout, context, listening)
+
+
+def _draw_buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the settings of the stream, and the buttons that receive it."""
+    live = context.scene.mocap_assist.live
+    column = split_column(layout)
+    if preferences() is not None:
+        column.prop(preferences(), "live_port")
+    for name in STREAM:
+        column.prop(live, name)
+    layout.operator(LISTEN, icon="OUTLINER_OB_ARMATURE")
+    if exists(RECORD) and selected_armature(context) is not None:
+        column = settings_column(layout, context, "live")
+        for name in SETTINGS:
+            column.prop(live, name)
+        layout.operator(RECORD, icon="REC")
+
+
+def _draw_stream(
+    layout: bpy.types.UILayout, context: bpy.types.Context, listening: Listening
+) -> None:
+    """Draw what can be performed now, and what was received."""
+    layout.operator(LISTEN, text="Stop Listening", icon="CANCEL")
+    draw_sentence(layout, context, listening.state())
+    if listening.message:
+        draw_sentence(layout, context, listening.message, icon="INFO")
+    if sender := sender_text(listening.stream_state):
+        draw_sentence(layout, context, sender)
+    if issue := issue_text(listening.stream_state):
+        draw_sentence(layout, context, issue, icon="ERROR")

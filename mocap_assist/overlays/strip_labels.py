@@ -1,5 +1,7 @@
 """Labels of the strip's rows as an image, which is made once: letters are slow to draw."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 import blf
@@ -68,7 +70,12 @@ def _make_image(labels: Labels) -> _Image:
     width = round(longest + 2 * margin)
     height = round(labels.row_px * len(labels.texts))
     offscreen = gpu.types.GPUOffScreen(width, height)
-    with offscreen.bind(), gpu.matrix.push_pop(), gpu.matrix.push_pop_projection():
+    with (
+        _same_view(),
+        offscreen.bind(),
+        gpu.matrix.push_pop(),
+        gpu.matrix.push_pop_projection(),
+    ):
         gpu.state.active_framebuffer_get().clear(color=PLATE)
         gpu.matrix.load_matrix(Matrix.Identity(4))
         to_screen = Matrix.Diagonal((2.0 / width, 2.0 / height, 1.0, 1.0))
@@ -83,3 +90,14 @@ def _make_image(labels: Labels) -> _Image:
     shader = gpu.shader.from_builtin("IMAGE")
     batch = batch_for_shader(shader, "TRI_STRIP", {"pos": corners, "texCoord": corners})
     return _Image(texture, batch, (width, height))
+
+
+@contextmanager
+def _same_view() -> Iterator[None]:
+    """Draw elsewhere, then in the same region again: Blender goes back to the whole window."""
+    viewport, scissor = gpu.state.viewport_get(), gpu.state.scissor_get()
+    try:
+        yield
+    finally:
+        gpu.state.viewport_set(*viewport)
+        gpu.state.scissor_set(*scissor)

@@ -72,8 +72,9 @@ def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, *owners: st
     """
     job = context.window_manager.mocap_assist_job
     if job.running and job.owner in owners:
+        draw_sentence(layout, context, job.message)  # too long for the bar in some languages
         column = layout.column(align=True)
-        text = f"{translated(job.message)} {job.fraction:.0%}"
+        text = f"{job.fraction:.0%}"
         column.progress(factor=job.fraction, type="BAR", text=text, translate=False)
         column.label(text=translated(job.ending), translate=False)
     return bool(job.running)

@@ -10,11 +10,15 @@ from pathlib import Path
 
 import bgui
 import bpy
+import numpy as np
 from driver_scene import empty_scene, ours, settle, unfold_alone, until_done
 
 TAKE = Path(__file__).parent / "HDM_dg_lieDownFloor_014_120.amc"
 AWAY = (500, 700)
 HANDS = {"Left Hand", "Right Hand"}
+HIPS = "mocap_contact_hips"
+MAX_MOVED_M = 0.01
+"""Of held hips."""
 
 
 def import_take():
@@ -50,6 +54,38 @@ def rows():
     return {row.value: ranges for row, ranges in found.rows.items()}
 
 
+def hold_hips(armature, held):
+    """Key *Hips Contact* as long as a hand bears on the floor, and plant again."""
+    scene, planted = bpy.context.scene, armature.animation_data.action
+    for frame, value in ((held.first - 1.0, 0), (held.first, 1), (held.last, 1)):
+        scene.frame_set(round(frame))
+        armature[HIPS] = value
+        assert armature.keyframe_insert(f'["{HIPS}"]')
+    look_at(armature, (held.first + held.last) / 2.0)
+    yield from settle(pointer=AWAY)
+    assert "Hips" in rows(), list(rows())
+    bgui.shot("4-hips-keyed.png")
+    yield from bgui.scan()
+    yield from bgui.click(*bgui.at("mocap_assist.plant_feet"))
+    yield 0.5
+    yield from until_done()
+    assert armature.animation_data.action != planted
+    look_at(armature, (held.first + held.last) / 2.0)
+    yield from settle(pointer=AWAY)
+    (shown,) = rows()["Hips"]
+    assert np.allclose((shown.first, shown.last), (held.first, held.last), atol=1.0), shown
+    places = []
+    for frame in np.linspace(held.first + 5.0, held.last - 5.0, 9):
+        scene.frame_set(round(frame))
+        places.append(armature.matrix_world @ armature.pose.bones[0].head)
+    moved_m = np.ptp(np.array(places), axis=0).max()
+    print(f"bgui: held hips move {1000.0 * moved_m:.1f} mm", flush=True)
+    assert moved_m < MAX_MOVED_M, moved_m
+    look_at(armature, (held.first + held.last) / 2.0)
+    yield from settle(pointer=AWAY)
+    bgui.shot("5-hips-held.png")
+
+
 def steps():
     empty_scene()
     unfold_alone("feet")
@@ -75,6 +111,7 @@ def steps():
     yield from settle(pointer=AWAY)
     bgui.shot("3-before-contact.png")
     assert armature["mocap_contact_left_hand"] == 0
+    yield from hold_hips(armature, hand)
 
 
 bgui.run(steps, timeout=1500)

@@ -1,6 +1,7 @@
 """What gestures do with the library."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -175,6 +176,29 @@ def test_show_library_turns_on_the_ghost(performing, blank):
     assert "There is no library yet" in performing.show_library(blank.context)
     assert blank.context.window_manager.mocap_assist_ghost
     assert performing.page(blank.context, 1) == "No search yet."
+
+
+def test_show_library_leaves_an_open_sidebar_as_it_is(performing, blank):
+    class View:
+        def __init__(self, is_shown):
+            self.sets, self._is_shown = 0, is_shown
+
+        @property
+        def show_region_ui(self):
+            return self._is_shown
+
+        @show_region_ui.setter
+        def show_region_ui(self, value):
+            self.sets, self._is_shown = self.sets + 1, value
+
+    views = View(True), View(False)
+    areas = [SimpleNamespace(type="VIEW_3D", spaces=SimpleNamespace(active=v)) for v in views]
+    window = SimpleNamespace(screen=SimpleNamespace(areas=areas))
+    context = SimpleNamespace(window=window, scene=blank.context.scene)
+
+    performing.show_library(context)
+
+    assert [each.sets for each in views] == [0, 1]
 
 
 def test_performance_reports_a_missing_library(performing, performance, blank, tmp_path):

@@ -21,7 +21,7 @@ def window(blank, view):
     """The context that Listen gets there, and what it does to it."""
     area = SimpleNamespace(
         type="VIEW_3D",
-        spaces=SimpleNamespace(active=SimpleNamespace(region_3d=view)),
+        spaces=SimpleNamespace(active=SimpleNamespace(region_3d=view, show_region_ui=True)),
         tag_redraw=lambda: None,
     )
     other = SimpleNamespace(type="OUTLINER", tag_redraw=lambda: None)

@@ -6,7 +6,7 @@ import pytest
 @pytest.mark.usefixtures("all_panels")
 def test_panel_shows_button_and_port_before_listening(draw):
     assert draw("MOCAP_PT_perform") == [
-        "mocap_assist.listen", "live_port", "live_protocol", "live_person",
+        "live_port", "live_protocol", "live_person", "mocap_assist.listen",
     ]  # fmt: skip
 
 
