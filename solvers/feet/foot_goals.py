@@ -18,7 +18,7 @@ from ..motion_fitting.goals import (
     flexion_in_reserve,
     knee_limit,
 )
-from .limb_goals import LimbContact, limb_goals, limb_tolerances
+from .limb_goals import LimbContact, elbows, limb_goals, limb_tolerances
 from .plant_settings import PlantSettings
 from .sole_contact import FootContact
 
@@ -30,6 +30,11 @@ HIP_RAD = np.radians(4.0)
 KNEE_RAD, LOOSE_KNEE_RAD = np.radians(3.0), np.radians(8.0)
 """Radians of a knee, with and without Protect Knees. Chosen by hand: x2 makes knees jerk more;
 `make sensitivity` varies both."""
+HINGE_FADE = 2.5
+"""Ratio of the time in which a change of a knee or elbow fades to that of other joints; its
+acceleration counts by the square. Chosen by hand: with 1, knees in martial arts accelerate 3.2
+times as much as before, with 2 1.4 times, with 3 1.1 times. Hips accelerate 0.97, 1.03 and 1.07
+times, and joints turn by 6.6, 7.1 and 7.6 degrees."""
 ANKLE_RAD = np.radians(15.0)
 """Radians of an ankle, whose foot follows its own rotation in the world. Chosen by hand;
 `make sensitivity` varies it."""
@@ -144,4 +149,6 @@ def _smoothness(
         )
         if joint is not None
     } | limb_tolerances(limbs)
-    return FollowSource.of_joints(fitted, ROOT_M * size, tolerances, settings.blend)
+    hinges = [contact.leg.knee for contact in contacts] + elbows(limbs)
+    smoother = dict.fromkeys(hinges, HINGE_FADE)
+    return FollowSource.of_joints(fitted, ROOT_M * size, tolerances, settings.blend, smoother)

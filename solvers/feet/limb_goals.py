@@ -101,6 +101,11 @@ def limb_tolerances(contacts: Sequence[LimbContact]) -> dict[int, float]:
     }
 
 
+def elbows(contacts: Sequence[LimbContact]) -> list[int]:
+    """Return the elbows of arms that bear on hands."""
+    return [contact.limb.chain[1] for contact in contacts if contact.limb.is_arm]
+
+
 def limb_goals(
     fitted: FittedMotion, contacts: Sequence[LimbContact], settings: PlantSettings, creep: float
 ) -> list[Goal]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -31,16 +32,24 @@ class FollowSource:
 
     @classmethod
     def of_joints(
-        cls, fitted: FittedMotion, root: float, joints: Mapping[int, float], fade: float
+        cls,
+        fitted: FittedMotion,
+        root: float,
+        joints: Mapping[int, float],
+        fade: float,
+        smoother: Mapping[int, float] = MappingProxyType({}),
     ) -> "FollowSource":
         """Return the goal from tolerances of the root in meters and of joints in radians.
 
-        A change that nothing else needs fades in `fade` seconds.
+        A change that nothing else needs fades in `fade` seconds, times a ratio for joints that
+        are to be `smoother`.
         """
         tolerances = np.full(fitted.n_variables, root)
+        time_constants = np.full(fitted.n_variables, fade / FADE_TIME_CONSTANTS)
         for joint, tolerance in joints.items():
             tolerances[fitted.columns(joint)] = tolerance
-        return cls(tolerances, np.full(fitted.n_variables, fade / FADE_TIME_CONSTANTS))
+            time_constants[fitted.columns(joint)] *= smoother.get(joint, 1.0)
+        return cls(tolerances, time_constants)
 
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""

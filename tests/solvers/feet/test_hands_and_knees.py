@@ -8,8 +8,10 @@ from solvers.feet.body_supports import LIMBS, detect_supports
 from solvers.motion import Motion, find_humanoid_map, forward_kinematics
 from solvers.recordings import read_acclaim
 from tests.benchmarks.contacts.made_supports import joints_of, made_supports
+from tests.benchmarks.contacts.part_takes import INPUTS, acceleration_ratio
 
 MADE = made_supports(30.0)
+ELBOWS, KNEES = ("LeftForeArm", "RightForeArm"), ("LeftLeg", "RightLeg")
 FEET_ALONE = PlantSettings(hands_and_knees=False)
 
 
@@ -54,6 +56,17 @@ def test_drifting_body_keeps_hands_and_knees_in_place():
         assert spread(planted.motion, support) < 0.006  # the hand turns by a degree or two
     trunk = [given.skeleton.index(name) for name in ("Hips", "Spine2", "Head", "LeftShoulder")]
     assert (planted.motion.rotations[:, trunk] == given.rotations[:, trunk]).all()
+
+
+@pytest.mark.parametrize(("joints", "most"), [(ELBOWS, 1.2), (KNEES, 4.0)])
+def test_knees_and_elbows_do_not_take_the_jitter_of_the_root(joints, most):
+    """They hardly move as given; the root jitters by 1 cm."""
+    given = INPUTS["a root that jitters by 1 cm"](MADE["on hands and knees"].motion)
+
+    planted = plant_feet(given).motion
+
+    indices = [given.skeleton.index(name) for name in joints]
+    assert acceleration_ratio(given, planted, indices) < most
 
 
 def test_arms_stay_as_they_are_with_feet_alone():
