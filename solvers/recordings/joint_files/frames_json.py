@@ -28,11 +28,15 @@ from ..point_bodies import (
     stand_body,
 )
 from .body_json import BodiesFrame, BodyJoints, open_frames, stacked
+from .joined_frames import NumberedFrame, joined_frames
 from .json_frames import json_by_frame
 from .json_people import POINT_KEYS, JsonPerson, people_of_frame
 
 LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
 """Members with the names of joints, where these stand apart."""
+NUMBER_KEYS = ("frame", "frame_id", "frame_number", "frame_index", "frame_idx", "frameId",
+               "frameNumber", "frameIndex")  # fmt: skip
+"""Members with the number of a frame."""
 RATE_KEYS = ("fps", "frame_rate", "framerate", "frameRate")
 TIME_KEYS = {"timestamp": None, "time": None, "timestamp_ms": 0.001, "time_ms": 0.001}
 """Seconds per unit of the time of a frame; None where the key does not state it."""
@@ -46,7 +50,7 @@ MAX_NUMBER = 1e300
 """Maximum time in seconds, or rate in hertz. It guards the conversion of whole numbers, which
 JSON does not limit."""
 HEAD = re.compile(
-    rb"\s*\[\s*\[\s*\[\s*[-\d]|\s*[\[{].*?\"("
+    rb"[^\[]*(\[\s*){3,}[-\d]|\s*[\[{].*?\"("
     + "|".join(POINT_KEYS).encode()
     + rb')"\s*:\s*(\[\s*([\[{\d-]|null)|\{)',
     re.DOTALL,
@@ -61,7 +65,7 @@ JOINT = re.compile(
     rb"(?:\{\s*\"[xX]\"\s*:\s*\[?\s*[-\d]"
     rb"|\[\s*(?:null\s*,\s*)*(?:\[\s*)?-?\d[^\s,\[\]]*(?:\s*,\s*-?\d[^\s,\[\]]*){2})"
 )
-NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*\[\s*\[\s*[-\d]")
+NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*(\[\s*){2,}[-\d]")
 """The first frame of those that are keyed by their number."""
 
 
@@ -70,7 +74,9 @@ class _Content(NamedTuple):
 
     frames: list[BodiesFrame]
     columns: dict[str, dict[str, int]]
-    """Column of each named joint, by person."""
+    """Column of each named joint, by the identity of a person."""
+    identities: dict[str, str]
+    """By person (`joined_frames`)."""
     rate: float | None
     second: float | None
     """Seconds per unit of the times; None if that is not stated."""
@@ -136,12 +142,12 @@ def open_frames_json(
             f"{path} holds the joints of one frame. Combine all frames in an array of the shape"
             " (frames, joints, 3), and save it with numpy.save."
         )
-    frames, columns, rate, second, listed_names = content
+    frames, columns, identities, rate, second, listed_names = content
     if second is None:
         second = second_of_times(np.array([frame.time for frame in frames]), progress)
 
     def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
-        names = tuple(columns[body]) or listed_names
+        names = tuple(columns[identities[body]]) or listed_names
         return _recording(path, names, body, frames, times, rate, scale, progress)
 
     return open_frames(path, frames, second, read)
@@ -151,7 +157,7 @@ def _read_content(
     path: Path | str, members: Iterable[JsonMember], progress: Progress
 ) -> _Content:
     """Return the frames in the members of a file, or in the files of a take."""
-    by_key: dict[str, list[BodiesFrame]] = {}
+    by_key: dict[str, list[NumberedFrame]] = {}
     columns: dict[str, dict[str, int]] = {}
     rate: float | None = None
     second: float | None = None
@@ -162,8 +168,9 @@ def _read_content(
             rate = float(member.value)
         if member.key in LIST_OF_NAMES and isinstance(member.value, str):
             names.append(member.value)
-        time = np.nan
+        number = time = np.nan
         if isinstance(member.value, dict):
+            number = _number_of(member.value)
             key = next((key for key in TIME_KEYS if _is_number(member.value.get(key))), "")
             time, second = (float(member.value[key]), TIME_KEYS[key]) if key else (time, second)
         found = {}
@@ -176,21 +183,17 @@ def _read_content(
             raise InvalidFileError(
                 f"{path} has joints with other names in each frame. Export it again."
             )
-        by_key.setdefault(member.key, []).append(BodiesFrame(time, found, member.done))
+        frame = BodiesFrame(time, found, member.done)
+        by_key.setdefault(member.key, []).append(NumberedFrame(number, frame))
         progress(0.8 * member.done, "Reading")
-    return _Content(_frames(by_key), columns, rate, second, tuple(names))
+    frames, identities = joined_frames(by_key, path)
+    return _Content(frames, columns, identities, rate, second, tuple(names))
 
 
-def _frames(by_key: Mapping[str, list[BodiesFrame]]) -> list[BodiesFrame]:
-    """Return the elements of the list that has people, or the members that have some."""
-    longest = max(
-        by_key.values(),
-        key=lambda frames: sum(bool(each.bodies) for each in frames),
-        default=[],
-    )
-    if len(longest) > 1:
-        return longest
-    return [each for frames in by_key.values() for each in frames if each.bodies]
+def _number_of(frame: Mapping[str, Any]) -> float:
+    """Return the number that a frame states; NaN if there is none."""
+    values = (frame[key] for key in NUMBER_KEYS if _is_number(frame.get(key)))
+    return float(next(values, np.nan))
 
 
 def _placed(person: JsonPerson, columns: dict[str, int]) -> Array:

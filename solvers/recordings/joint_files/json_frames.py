@@ -1,61 +1,85 @@
-"""Put the members of a JSON file in frames: those keyed by their number, or by joint."""
+"""Put the members of a JSON file in frames: those keyed by number, by joint or by person."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import chain, groupby, pairwise
+from itertools import chain, groupby, islice
 from pathlib import Path
 from typing import Any
 
 from ...errors import InvalidFileError
 from ..containers import JsonMember, shown
 from ..point_bodies import has_layout
-from .json_people import MIN_JOINTS, is_place
+from .body_json import name_of_body
+from .joined_frames import missing_before
+from .json_people import (
+    IDENTITY_KEYS,
+    MIN_JOINTS,
+    PEOPLE_KEYS,
+    POINT_KEYS,
+    is_place,
+    people_of_frame,
+)
 
 FRAME_KEY = re.compile(r"(?i)\s*(?:frame|f|t)?[\s_\-]*(\d+(?:\.\d+)?)\s*")
 """Key of a frame: its number, or its time in seconds."""
-MAX_MISSING_FRAMES = 100_000
-"""Missing numbers, frames, that a file may have. It bounds the memory of damaged files."""
+NUMBERS_KEYS = ("frame_ids", "frameIds", "frame_numbers", "frame_indices")
+"""Members with the numbers of all frames of a person."""
+NAME = "name"
 TIME = "time"
+Take = dict[float, Any]
+"""Frames by their number or time."""
 
 
 def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[JsonMember]:
     """Yield the members of a file, those that are keyed otherwise as a list of frames.
 
-    A file may be keyed by frame, as in `{"0": {"Hips": [x, y, z]}}`, or by joint, as in
-    `{"Hips": [[x, y, z], ...]}`, at the top or below one key.
+    A file may be keyed by frame, as in `{"0": {"Hips": [x, y, z]}}`, by joint, as in
+    `{"Hips": [[x, y, z], ...]}`, or by person, with one of these or a list of frames for each
+    (`_take_of`), at the top or below one key. The key of what is yielded is the person's.
 
     Raises
     ------
     InvalidFileError
-        Joints have different numbers of frames.
+        Joints have different numbers of frames, or frames are left out for very long.
     """
     places: dict[str, list[Any]] = {}
     numbered: dict[str, Any] = {}
+    takes: dict[str, Take] = {}
     for key, group in groupby(members, lambda member: member.key):
         first, rest = _with_nulls(group)
         value = first[-1].value
         if key and value is not None and is_place(value):
-            for member in chain(first, rest):
-                if is_place(member.value):
-                    places.setdefault(key, []).append(member.value)
-                else:
-                    yield member
+            yield from _without_places(chain(first, rest), places)
             continue
-        if FRAME_KEY.fullmatch(key) and isinstance(value, Mapping):
-            people = [member.value for member in rest]
-            numbered[key] = [value, *people] if people else value
+        if FRAME_KEY.fullmatch(key) and (isinstance(value, Mapping) or _has_people(value)):
+            more = [member.value for member in rest]
+            numbered[key] = [*(member.value for member in first), *more] if more else value
             continue
+        first += islice(rest, max(len(_take_of(value, path)), 1))
         second = next(rest, None)
-        is_alone = len(first) == 1 and second is None
-        if is_alone and isinstance(value, Mapping) and _is_keyed(value, bool(key)):
-            yield from _regrouped(first[0], path)
+        if second is None and (found := _takes_of(first, path)):
+            takes |= found
             continue
         yield from first
         if second is not None:
             yield second
         yield from rest
-    yield from _by_number("", numbered, 1.0, path)
-    yield from _regrouped(JsonMember("", places, 1.0), path)
+    takes |= _people_of(numbered, path) or {"": _numbered(numbered)}
+    yield from _by_number("", _keyed(places, path), 0.0, path)
+    start = min((number for take in takes.values() for number in take), default=0.0)
+    for name, take in takes.items():
+        yield from _by_number(name, take, start, path)
+
+
+def _without_places(
+    members: Iterable[JsonMember], places: dict[str, list[Any]]
+) -> Iterator[JsonMember]:
+    """Add the places of joints to those by their key, and yield all else."""
+    for member in members:
+        if is_place(member.value):
+            places.setdefault(member.key, []).append(member.value)
+        else:
+            yield member
 
 
 def _with_nulls(group: Iterator[JsonMember]) -> tuple[list[JsonMember], Iterator[JsonMember]]:
@@ -68,16 +92,95 @@ def _with_nulls(group: Iterator[JsonMember]) -> tuple[list[JsonMember], Iterator
     return first, group
 
 
-def _is_keyed(values: Mapping[str, Any], may_be_numbered: bool) -> bool:
-    """Return whether a mapping has a frame for each number, or a path for each joint.
+def _takes_of(members: list[JsonMember], path: Path | str) -> dict[str, Take]:
+    """Return the take of each person in a member, or in the elements of a list."""
+    key, value = members[0].key, members[0].value
+    if len(members) > 1 or not key:
+        names = [
+            name_of_body(each.value, (NAME, *IDENTITY_KEYS), count)
+            if isinstance(each.value, Mapping)
+            else str(count)
+            for count, each in enumerate(members)
+        ]
+        values = {name: each.value for name, each in zip(names, members, strict=True)}
+        is_named = len(values) == len(members)
+        numbered = {str(count): each.value for count, each in enumerate(members)}
+        found = _people_of(numbered, path)
+        return {names[int(k)] if is_named else k: take for k, take in found.items()}
+    if not isinstance(value, Mapping):
+        return {}
+    people = _people_of(value, path)
+    if len(people) > 1:
+        return people
+    take = {} if key in PEOPLE_KEYS and not people else _take_of(value, path)
+    return {key: take} if take else {}
 
-    The numbers in an element of a list are those of people.
+
+def _people_of(values: Mapping[str, Any], path: Path | str) -> dict[str, Take]:
+    """Return the take of each person among values; none if these are frames or joints.
+
+    Of numbered ones, more are frames: nobody records more people than frames.
     """
-    if len(values) > 1 and all(FRAME_KEY.fullmatch(key) for key in values):
-        return may_be_numbered and all(
-            isinstance(value, Mapping | list) for value in values.values()
-        )
-    return sum(_path(value) is not None for value in values.values()) >= MIN_JOINTS
+    found = {key: take for key, value in values.items() if (take := _take_of(value, path))}
+    is_numbered = all(map(FRAME_KEY.fullmatch, values))
+    n_frames = max(map(len, found.values()), default=0)
+    if not found.keys().isdisjoint(POINT_KEYS) or (is_numbered and len(values) >= n_frames):
+        return {}
+    return found
+
+
+def _take_of(value: Any, path: Path | str) -> Take:
+    """Return the frames of a value; empty if it is a frame, or something else.
+
+    It is a list of frames, is keyed by their numbers or by joint, or has one such member.
+    """
+    if isinstance(value, list):
+        frames = [each for each in value if each is not None]
+        is_take = len(frames) > 1 and _has_people(frames[0]) and not _have_identities(frames)
+        return {float(k): each for k, each in enumerate(value)} if is_take else {}
+    if not isinstance(value, Mapping):
+        return {}
+    if keyed := _keyed(value, path):
+        return keyed
+    inner = {key: value[key] for key in POINT_KEYS if key in value}
+    inner = inner or {key: each for key, each in value.items() if key not in PEOPLE_KEYS}
+    takes = [take for each in inner.values() if (take := _take_of(each, path))]
+    if len(takes) != 1:
+        return {}
+    numbers = next((value[key] for key in NUMBERS_KEYS if key in value), None)
+    return _renumbered(takes[0], numbers)
+
+
+def _keyed(values: Mapping[str, Any], path: Path | str) -> Take:
+    """Return the frames of what is keyed by number or by joint; empty for all else."""
+    is_numbered = len(values) > 1 and all(map(FRAME_KEY.fullmatch, values))
+    n_joints = sum(_path(each) is not None for each in values.values())
+    by_joint = _by_joint(values, path) if n_joints >= MIN_JOINTS else {}
+    if is_numbered and not (has_layout(n_joints) and not has_layout(len(by_joint))):
+        return _numbered(values) if any(map(_has_people, values.values())) else {}
+    return by_joint
+
+
+def _renumbered(take: Take, numbers: Any) -> Take:
+    """Return a take with other numbers, if there is one for each of its frames."""
+    is_list = isinstance(numbers, list) and len(numbers) == len(take)
+    if not is_list or not all(isinstance(number, int | float) for number in numbers):
+        return take
+    return dict(zip(map(float, numbers), take.values(), strict=True))
+
+
+def _have_identities(frames: list[Any]) -> bool:
+    """Return whether all of these are people with identities of their own."""
+    stated = [
+        next((str(each[key]) for key in IDENTITY_KEYS if key in each), None)
+        for each in frames
+        if isinstance(each, Mapping)
+    ]
+    return len({*stated}) == len(frames) and None not in stated
+
+
+def _has_people(frame: Any) -> bool:
+    return any(True for _ in people_of_frame(frame))
 
 
 def _path(value: Any) -> list[Any] | None:
@@ -90,51 +193,47 @@ def _path(value: Any) -> list[Any] | None:
     return value if any(value) else None
 
 
-def _regrouped(member: JsonMember, path: Path | str) -> Iterator[JsonMember]:
-    """Yield the frames of what is keyed by number or by joint."""
-    values = member.value
+def _by_joint(values: Mapping[str, Any], path: Path | str) -> Take:
+    """Return the frames of what is keyed by joint.
+
+    Joints with numbers instead of names become lists of points.
+    """
     paths = {key: found for key, value in values.items() if (found := _path(value))}
     longest = max(map(len, paths.values()), default=0)
     paths = {key: found for key, found in paths.items() if len(found) > 1 or longest == 1}
+    if len(paths) < MIN_JOINTS:
+        return {}
     lengths = sorted({len(found) for found in paths.values()})
-    is_numbered = len(values) > 1 and all(FRAME_KEY.fullmatch(key) for key in values)
-    if is_numbered and not (has_layout(len(paths)) and not has_layout(lengths[-1])):
-        yield from _by_number(member.key, values, member.done, path)
-    elif len(paths) >= MIN_JOINTS:
-        if len(lengths) > 1:
-            short, full = (next(k for k, v in paths.items() if len(v) == n)
-                           for n in (lengths[0], lengths[-1]))  # fmt: skip
-            raise InvalidFileError(
-                f"{path} has {lengths[0]} frames of {shown(short)}, but {lengths[-1]} of"
-                f" {shown(full)}. Export it again, with null where a joint is missing."
-            )
-        for frame in range(lengths[-1]):
-            joints = {name: places[frame] for name, places in paths.items()}
-            value = [*joints.values()] if is_numbered else joints
-            yield JsonMember(member.key, value, member.done)
+    if len(lengths) > 1:
+        short, full = (next(k for k, v in paths.items() if len(v) == n)
+                       for n in (lengths[0], lengths[-1]))  # fmt: skip
+        raise InvalidFileError(
+            f"{path} has {lengths[0]} frames of {shown(short)}, but {lengths[-1]} of"
+            f" {shown(full)}. Export it again, with null where a joint is missing."
+        )
+    is_numbered = len(values) > 1 and all(map(FRAME_KEY.fullmatch, values))
+    frames = [
+        {name: places[frame] for name, places in paths.items()} for frame in range(longest)
+    ]
+    return {float(k): [*f.values()] if is_numbered else f for k, f in enumerate(frames)}
 
 
-def _by_number(
-    key: str, values: Mapping[str, Any], done: float, path: Path | str
-) -> Iterator[JsonMember]:
-    """Yield values in the order of the numbers in their keys, None for missing numbers."""
+def _numbered(values: Mapping[str, Any]) -> Take:
+    """Return values by the numbers in their keys."""
     found = {name: FRAME_KEY.fullmatch(name) for name in values}
-    numbers = {float(match[1]): values[name] for name, match in found.items() if match}
-    ordered = sorted(numbers)
+    return {float(match[1]): values[name] for name, match in found.items() if match}
+
+
+def _by_number(key: str, take: Take, start: float, path: Path | str) -> Iterator[JsonMember]:
+    """Yield the frames of a take in order, None for those that are left out from a start."""
+    ordered = sorted(take)
     if any(not number.is_integer() for number in ordered):
         for number in ordered:
-            value = numbers[number]
+            value = take[number]
             timed = {TIME: number, **value} if isinstance(value, Mapping) else value
-            yield JsonMember(key, timed, done)
+            yield JsonMember(key, timed, 1.0)
         return
-    step = min((after - before for before, after in pairwise(ordered)), default=1.0)
-    missing = [round((after - before) / step) - 1 for before, after in pairwise(ordered)]
-    if sum(missing) > MAX_MISSING_FRAMES:
-        raise InvalidFileError(
-            f"{path} lacks {sum(missing)} frames between {ordered[0]:.0f} and"
-            f" {ordered[-1]:.0f}. Number the frames without large gaps, and export it again."
-        )
-    for n_missing, number in zip([0, *missing], ordered, strict=False):
+    for n_missing, number in zip(missing_before(ordered, start, path), ordered, strict=True):
         for _ in range(n_missing):
-            yield JsonMember(key, None, done)
-        yield JsonMember(key, numbers[number], done)
+            yield JsonMember(key, None, 1.0)
+        yield JsonMember(key, take[number], 1.0)

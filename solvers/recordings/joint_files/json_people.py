@@ -55,6 +55,8 @@ def people_of_frame(frame: Any) -> Iterator[JsonPerson]:
     for count, body in enumerate(listed):
         if isinstance(body, Mapping):
             yield from _person(body, count)
+        elif isinstance(body, list) and (points := _points(body)) is not None:
+            yield JsonPerson(str(count), (), points)
 
 
 def _person(body: Mapping[str, Any], count: int) -> Iterator[JsonPerson]:
