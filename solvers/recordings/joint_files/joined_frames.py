@@ -3,10 +3,9 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
+from math import isnan
 from pathlib import Path
 from typing import NamedTuple
-
-import numpy as np
 
 from ...errors import InvalidFileError
 from .body_json import BodiesFrame, BodyJoints
@@ -75,7 +74,7 @@ def _of_several(people: Mapping[str, list[NumberedFrame]], path: Path | str) -> 
             names = {who: key if is_alone else f"{key} {who}" for who in frame.bodies}
             identities |= {name: who for who, name in names.items()}
             bodies = {names[who]: joints for who, joints in frame.bodies.items()}
-            is_unstated = np.isnan(number) and np.isnan(frame.time)
+            is_unstated = isnan(number) and isnan(frame.time)
             joined.append(
                 NumberedFrame(index if is_unstated else number, frame._replace(bodies=bodies))
             )
@@ -115,16 +114,16 @@ def _by_stamp(
     for stamps in ([row.number for row in rows], [row.frame.time for row in rows]):
         groups: dict[float, list[BodiesFrame]] = {}
         for stamp, row in zip(stamps, rows, strict=True):
-            if row.frame.bodies or not np.isnan(stamp):
+            if row.frame.bodies or not isnan(stamp):
                 groups.setdefault(stamp, []).append(row.frame)
         largest = max(map(len, groups.values()), default=1)
-        if len(groups) > largest and not any(map(np.isnan, groups)):
+        if len(groups) > largest and not any(map(isnan, groups)):
             break
     else:
         return JoinedFrames([row.frame for row in rows], identities)
     ordered = sorted(groups)
     frames = [_one_frame(groups[stamp], identities) for stamp in ordered]
-    if any(not np.isnan(frame.time) for frame in frames):
+    if any(not isnan(frame.time) for frame in frames):
         return JoinedFrames(frames, identities)
     with_gaps = []
     for n_missing, frame in zip(missing_before(ordered, ordered[0], path), frames, strict=True):
@@ -135,6 +134,8 @@ def _by_stamp(
 
 def _one_frame(rows: list[BodiesFrame], identities: dict[str, str]) -> BodiesFrame:
     """Return rows of a frame as one; people of the same name get numbers and identities."""
+    if len(rows) == 1:
+        return rows[0]
     bodies: dict[str, BodyJoints] = {}
     for row in rows:
         for who, joints in row.bodies.items():
