@@ -11,7 +11,7 @@ from .matrix_quaternions import quaternions_of_matrices
 from .quaternion_algebra import (
     Components,
     components_of,
-    cross_components,
+    cross,
     joined,
     multiply_components,
     rotate_components,
@@ -266,8 +266,8 @@ def rotation_between(start: ArrayLike, stop: ArrayLike) -> Array:
     start, stop = np.broadcast_arrays(np.asarray(start, float), np.asarray(stop, float))
     lengths = np.linalg.norm(start, axis=-1) * np.linalg.norm(stop, axis=-1)
     agreement = (lengths + np.einsum("...i,...i->...", start, stop))[..., None]
-    shortest = np.concatenate([agreement, _cross(start, stop)], axis=-1)
-    axis = _cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
+    shortest = np.concatenate([agreement, cross(start, stop)], axis=-1)
+    axis = cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
     half_turn = np.concatenate([np.zeros_like(lengths)[..., None], axis], axis=-1)
     opposite = (shortest[..., 0] <= 1e-12 * lengths) & (lengths > 0.0)
     result = np.where(opposite[..., None], half_turn, shortest)
@@ -292,11 +292,6 @@ def twist_about(rotations: Array, axis: ArrayLike) -> Array:
 def skew_matrices(vectors: Array) -> Array:
     """Return the matrices [v]x of the cross product, [v]x @ u = v x u, shape (..., 3, 3)."""
     return np.asarray((vectors @ _CROSS_FLAT).reshape(*vectors.shape, 3))
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """`np.cross` of (..., 3) arrays without its overhead: three times faster."""
-    return joined(cross_components(components_of(a), components_of(b)))
 
 
 def _within_half_turn(angles: Array) -> Array:
