@@ -21,6 +21,8 @@ from tests.benchmarks.sensitivity.constants import (
 )
 from tests.benchmarks.sensitivity.fixed_constants import GUARD, patterns, reason
 from tests.benchmarks.sensitivity.guards import GUARDS, WITHOUT
+from tests.benchmarks.sensitivity.other_constants import REASONS as OTHER_REASONS
+from tests.benchmarks.sensitivity.other_constants import other_constants
 
 SOURCE = re.compile(
     r"\[[A-Z]\w*\d\d|doi:|eq\. |\bet al\.|learned by|make sensitivity|sweep"
@@ -58,6 +60,20 @@ def test_tuned_numbers_say_their_unit_and_source(family):
     without_unit = [each.key for each in tuned(family) if each.unit == "-"]
     assert not without_source, "no source beside them"
     assert not without_unit, "no unit in the name or beside them"
+
+
+def test_numbers_that_no_family_lists_say_their_unit_and_source():
+    not_tuned = [pattern for some in OTHER_REASONS.values() for pattern in some]
+    others = list(other_constants())
+    tuned_ones = [
+        constant
+        for constant in others
+        if not any(fnmatchcase(constant.key, pattern) for pattern in not_tuned)
+    ]
+    assert not [each.key for each in tuned_ones if not SOURCE.search(each.text)]
+    assert not [each.key for each in tuned_ones if each.unit == "-"]
+    keys = [each.key for each in others]
+    assert all(any(fnmatchcase(key, each) for key in keys) for each in not_tuned)
 
 
 @pytest.mark.parametrize(

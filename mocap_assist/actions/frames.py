@@ -18,8 +18,8 @@ MIN_GRID_KEYS_FRACTION = 0.9
 """Fraction of keys of each curve that must be on the grid. It guards keys that an exporter adds
 between frames."""
 MAX_GRID_OFFSET_STEPS = 0.05
-"""Fraction of a step by which a key is on the grid. Chosen by hand: at 30 Hz 1.7 ms, more than
-times in milliseconds are rounded by."""
+"""Fraction of a step by which a key is on the grid. It guards against rounding of times to
+milliseconds: at 30 Hz it is 1.7 ms."""
 MIN_FILLED_FRACTION = 0.5
 """Fraction of the grid that has keys. It guards takes of exporters that add keys between frames
 where motion is fast; these do not make the grid finer."""
@@ -30,8 +30,8 @@ MAX_FRAMES_OF_FEW_KEYS = 10_000
 """Frames up to which a range may have any number of keys. It guards short actions that an
 animator keyed by hand."""
 SPACING_TOLERANCE = 0.1
-"""Fraction by which times between keys may differ. Chosen by hand: at 30 Hz 3 ms, more than
-times in milliseconds are rounded by."""
+"""Fraction by which times between keys may differ. It guards against rounding of times to
+milliseconds: at 30 Hz it is 3 ms."""
 
 
 class FrameRange(Choice):

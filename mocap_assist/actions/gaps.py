@@ -11,6 +11,10 @@ from .frames import MAX_RECORDED_STEP_FRAMES
 MAX_KEY_SPACING_RATIO = 1.5
 """Distance between neighbors, relative to the median one, that is no gap. By definition between
 1, no gap, and 2, one missing key."""
+MIN_GAP_FRACTION = 0.25
+"""Distance of a frame from the nearest key, as a fraction of the median one, from which it is
+in a gap. By definition half of that from the middle of two keys: a frame closer by shows a key
+whose time was rounded."""
 
 MAX_EXPORTED_SPACING_RATIO = 3.5
 """The same where an exporter may have removed keys. By definition between two missing keys,
@@ -66,5 +70,5 @@ def _holes(
     inside = (after > 0) & (after < len(times))
     ratio = MAX_EXPORTED_SPACING_RATIO if redundant_change else MAX_KEY_SPACING_RATIO
     wide = ~inside | (times[right] - times[left] > ratio * spacing)
-    missing = wide & (nearest > 0.25 * spacing)
+    missing = wide & (nearest > MIN_GAP_FRACTION * spacing)
     return missing, inside & (np.abs(values[left] - values[right]) <= redundant_change)

@@ -14,9 +14,10 @@ from ...solvers.processes import end_with_stdin, lock_for_work_on, try_lock
 OPTION = "--child-of-each"
 """First argument of a child Blender."""
 POLL_INTERVAL_S = 0.2
-"""Seconds."""
+"""Seconds between two looks at the processes. It bounds the delay after each take."""
 LOCK_TIMEOUT_S = 30.0
-"""Seconds to wait for the lock of a Blender that is ending, before an error."""
+"""Seconds to wait for the lock of a Blender that is ending, before an error. It bounds the wait
+for one that hangs."""
 
 
 class ChildResult(NamedTuple):

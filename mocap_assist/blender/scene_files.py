@@ -28,10 +28,17 @@ from .gltf_skins import (
 from .stated_conventions import read_stage
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
+"""Rates of captured and of animated takes, hertz, by definition of film, video and capture
+systems."""
 MIN_RATE_HZ = 12.0
-"""Below it, keys are sparse: no sampled motion, but one that was set by hand."""
+"""Hertz: below it, keys are sparse, no sampled motion, but one that was set by hand. By
+definition half the 24 Hz of film: animation on twos is sampled."""
 RATE_OF_SPARSE_KEYS_HZ = 30.0
+"""Hertz at which motion between sparse keys is sampled. By definition that of files which state
+none (`DEFAULT_FRAME_RATE`)."""
 RATE_TOLERANCE = 0.01
+"""Relative deviation of a measured rate from a common one that is only rounding of key times.
+It guards 23.976 and 24 Hz, 1e-3 apart, which are one."""
 MAX_JSON_BYTES = 1 << 28
 USD_OPTIONS = {
     "import_cameras": False, "import_materials": False,

@@ -23,7 +23,8 @@ from ...solvers.recordings.depth_files import check_exr, sort_naturally
 EXR = ".exr"
 EXTENSION = __package__.rpartition(".mocap_assist")[0]
 MAX_DEPTH = 65_000.0
-"""Units of the image; Blender writes 10 000 000 000, or the largest value, for background."""
+"""Number, in units of the image, from which a pixel is background. By definition below the
+largest half float, 65504; Blender writes 10 000 000 000, or that."""
 
 MAX_COPIES, MAX_COPY_BYTES = 16, 8_000_000_000
 """Copies that are kept: those that were used last, and those that the open file shows."""

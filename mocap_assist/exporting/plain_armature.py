@@ -18,11 +18,14 @@ from ..scene.rig import END, placement_of
 from .export_formats import ExportedBones
 
 MIN_LENGTH_M = 1e-3
-"""Blender deletes bones without a length."""
+"""Length of a bone, meters, at least. It guards bones without a length, which Blender
+deletes."""
 SHIFT_TOLERANCE_M = 1e-5
-"""Travel of a bone within its parent below which it has no location keys."""
+"""Travel of a bone within its parent below which it has no location keys. It guards against
+rounding of poses in single precision."""
 SCALE_TOLERANCE = 1e-2
-"""Relative change of a bone's size below which it is not reported."""
+"""Relative change of a bone's size below which it is not reported. It guards against reports of
+what no one sees: 5 mm of a thigh."""
 DEFORMING, ORIGINAL = "DEF-", "ORG-"
 
 

@@ -34,6 +34,7 @@ from .solve_finding import (
 )
 
 POLL_INTERVAL_S = 0.2  # seconds
+"""Seconds between two looks at a performance. It bounds the delay of its end."""
 PERFORMED = "your performance"
 THE_LIBRARY = "the library"
 NO_LIBRARY = "There is no library yet. Add folders, then press Build Library."

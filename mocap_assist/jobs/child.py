@@ -14,6 +14,7 @@ from types import ModuleType
 from typing import Any
 
 REPORT_INTERVAL_S = 0.1
+"""Seconds between two reports of progress. It bounds the load of the pipe."""
 OURS = Path(__file__).parents[1]
 """The folder `mocap_assist`, whose modules `solve_…` hold all that is called here."""
 IMPORTED_LATE = ("scipy.signal", "scipy.sparse.csgraph")

@@ -32,7 +32,7 @@ from .catalogs import NO_CATALOG, catalog_file, read_catalogs
 from .left_out import find_left_out
 
 ROUNDING = 1e-3
-"""Relative error of lengths that were stored in 32 bits."""
+"""Relative error that is only rounding of lengths stored in 32 bits, after a chain of bones."""
 NAME_ONE = "choose a rig file, or index the file that contains action and rig."
 
 

@@ -18,7 +18,7 @@ from .sources import index_problem
 logger = logging.getLogger(__name__)
 
 POLL_INTERVAL_S = 0.25
-"""Seconds between two queries of the background job."""
+"""Seconds between two queries of the background job. It bounds the delay of its progress."""
 MAX_NAMED_FILES = 3
 """Number of unusable files that a message names; the log has all."""
 

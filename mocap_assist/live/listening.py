@@ -24,7 +24,7 @@ from .stream_state import issue_text
 logger = logging.getLogger(__name__)
 
 TIMER_INTERVAL_S = 1.0 / 30.0
-"""Seconds."""
+"""Seconds between two looks at the socket. It bounds the delay to a frame of 30 Hz."""
 WAITING = "No data yet. Start your tracker."
 MODES = {
     Mode.IDLE: "Clap to perform, raise the right hand for the library",

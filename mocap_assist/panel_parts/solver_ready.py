@@ -11,8 +11,8 @@ CHECK_INTERVAL_S = 1.0
 """Seconds between two looks whether a solver is ready. It bounds how soon after a press the
 next one answers at once."""
 UNUSED_S = 600.0
-"""Seconds without a drawing of the tab after which the solver is ended. It bounds how long its
-memory, 0.13 GB, is kept for nothing."""
+"""Seconds without a drawing of the tab after which the solver is ended. It bounds the time for
+which its memory, 0.13 GB, is kept for nothing."""
 
 _drawn_at = [0.0]
 

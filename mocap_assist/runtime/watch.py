@@ -10,7 +10,8 @@ from ..languages import translated
 from .file_change_handlers import ends_with_file
 
 TIMER_INTERVAL_S = 0.05
-"""Seconds between two looks at a solve, and between two displays of its progress."""
+"""Seconds between two looks at a solve, and between two displays of its progress. It bounds the
+delay of its result."""
 CANCEL = "mocap_assist.cancel_solve"
 CANCELS = "Esc cancels"
 MIN_FRACTION = 0.05

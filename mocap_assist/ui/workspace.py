@@ -16,7 +16,8 @@ SPLITS = (
 """Editor that is split, editor of its lower or right part, direction, and where it is split, as
 a fraction of its height from below or of its width from the left."""
 WAIT_S, MAX_WAITS = 0.1, 50
-"""Seconds from one try or step to the next, and their maximum number."""
+"""Seconds from one try or step to the next, and their maximum number. They bound the wait for
+an editor to open."""
 DONE = object()
 NO_WINDOW = "A workspace needs a Blender with a window."
 

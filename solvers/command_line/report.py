@@ -24,7 +24,8 @@ UNITS = {
 }  # fmt: skip
 UNCHANGED = ("n_frames", "frame_rate_hz")
 MIN_ROUNDED_VALUE = 1000.0
-"""Numbers of at least this size are shown without decimals."""
+"""Size of a number, relative to its unit, from which figures are shown without decimals. It
+bounds the width of a column."""
 SECTION = Template("""<section class="$kind" id="$anchor"><h2>$title</h2>
 <p class="path">$source → $target</p>
 $message<div class="figures"><table>$cells</table></div>

@@ -48,7 +48,7 @@ varies it."""
 CREEP_M = 0.01
 """Meters, for a leg of 0.9 m, by which a foot may creep in Max Hold Time. Chosen by hand, by
 the worst drift within a contact of clean takes, 0.9 mm: x2 makes it 3.1, x0.5 0.2 and turns
-feet by 0.3 degrees more, at the same acceleration of knees."""
+feet by 0.3 degrees more, at the same acceleration of knees. `make sensitivity` varies it."""
 FLOOR_M = 0.002
 """Meters, for a leg of 0.9 m, by which a planted sole may be off the floor. Chosen by hand;
 `make sensitivity` varies it."""

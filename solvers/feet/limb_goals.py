@@ -29,10 +29,10 @@ Shoulder: x0.5 makes it 1.12, x2 leaves it. Elbow: x0.5 makes it 1.00 and turns 
 farther, x2 makes it 1.17."""
 WRIST_RAD = np.radians(15.0)
 """Radians of a wrist, whose hand follows its own rotation in the world. Chosen by hand: x0.5
-and x2 turn arms by 0.1 degrees less and more."""
+and x2 turn arms by 0.1 degrees less and more. `make sensitivity` varies it."""
 HAND_RAD = np.radians(2.5)
 """Radians of a hand in the world. Chosen by hand: x0.5 makes elbows accelerate 1.04 times, x2
-turns arms by 1.9 degrees in place of 1.2."""
+turns arms by 1.9 degrees in place of 1.2. `make sensitivity` varies it."""
 HAND_M = 0.012
 """Meters, for a leg of 0.9 m, by which a wrist may leave its path in contact. Chosen by hand:
 x0.5 makes elbows accelerate 1.11 times; `make sensitivity` varies it."""

@@ -14,13 +14,16 @@ from .legs import SIDES, LegJoints
 MIN_HIP_HEIGHT = 0.2
 """Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
 below which the body sits or lies. Chosen by hand: the pelvis of four HDM05 takes that lie down
-comes to rest at 0.05, that of the deepest squat at 0.28."""
+comes to rest at 0.05, that of the deepest squat at 0.28.
+`test_feet_are_planted_until_the_actor_lies` fails without it."""
 MAX_PELVIS_SIZE = 0.3
 """Distance of the hips from the hip joints, as a ratio to the length of a leg, up to which they
 are a joint of the pelvis. It guards rigs whose hips are at the floor."""
 GROUND_PERCENTILE = 5.0
 """Percentile of the height of the lower foot that is the ground; lower ones are noise. Chosen
-by hand, as for the detection of contacts."""
+by hand, as for the detection of contacts.
+`test_root_that_drops_through_the_floor_for_a_frame_does_not_lower_the_ground` fails without
+it."""
 MIN_CONTACT_S = 0.1
 """Seconds: shorter contacts before and after the body rests on its hips do not count. It guards
 bodies whose hips leave the floor for some frames."""

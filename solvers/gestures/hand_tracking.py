@@ -25,7 +25,11 @@ N_LENGTHS = 60
 hand; `make sensitivity` varies it."""
 HEADING_TIME_S = 0.3
 """Time constant in seconds at which the actor's heading follows the shoulders. Chosen by hand:
-without it UI-PRMD and MSR Action3D have 47 waves less and 33 others."""
+without it UI-PRMD and MSR Action3D have 47 waves less and 33 others. `make sensitivity` varies
+it."""
+MIN_ACROSS_RATIO = 0.2
+"""Level distance of the shoulders, a ratio to `MIN_ARM_M`, from which it is a heading. Chosen
+by hand; `make sensitivity` varies it."""
 MIN_ARM_M = 0.1
 """Minimum arm length in meters. It guards sensors that report all joints at one point
 (`test_joints_in_one_point_give_no_hands`)."""
@@ -118,7 +122,7 @@ class HandEstimator:
         across = (joints[RIGHT[0]] - joints[LEFT[0]])[:2]
         gain = 1.0 if not self._across.any() else 1.0 - np.exp(-elapsed / HEADING_TIME_S)
         self._across = self._across + gain * (across - self._across)
-        return bool(np.linalg.norm(self._across) > 0.2 * MIN_ARM_M)
+        return bool(np.linalg.norm(self._across) > MIN_ACROSS_RATIO * MIN_ARM_M)
 
     def _hands(self, time: float, joints: dict[int, Array], length: float) -> Hands:
         x, y = self._across / np.linalg.norm(self._across)

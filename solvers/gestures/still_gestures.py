@@ -14,7 +14,7 @@ LOWERED_HEIGHT = 0.0
 """Height of the wrist above its shoulder below which the hand counts as lowered."""
 MIN_FORWARD = 0.3
 """Minimum distance of zooming hands in front of the shoulders, in arm lengths. Chosen by hand:
-without it the exercises of UI-PRMD zoom 43 times."""
+without it the exercises of UI-PRMD zoom 43 times. `make sensitivity` varies it."""
 MIN_ZOOM_HEIGHT, MAX_ZOOM_HEIGHT = -0.75, 0.35
 """Range of heights of zooming hands above the shoulders, in arm lengths. Chosen by hand:
 without the second the exercises of UI-PRMD zoom 145 times, without the first MSR Action3D once
@@ -25,19 +25,19 @@ of KIMORE zooms (`test_hands_that_touch_do_not_zoom`,
 `test_arms_that_are_spread_wide_do_not_zoom`)."""
 STRAIGHT_REACH = 0.85
 """Reach, in arm lengths, at which an arm counts as straight. Chosen by hand: with 0.7 the
-exercises of UI-PRMD turn the view 54 times."""
+exercises of UI-PRMD turn the view 54 times. `make sensitivity` varies it."""
 BENT_REACH = 0.7
 """Reach, in arm lengths, below which an arm counts as bent. It guards an arm that turns the
 view and bends a little as it swings across the body."""
 MAX_TILT = 0.4
 """Maximum height of a level arm above or below the shoulder, in arm lengths. Chosen by hand:
-without it the exercises of UI-PRMD turn the view 99 times."""
+without it the exercises of UI-PRMD turn the view 99 times. `make sensitivity` varies it."""
 MAX_HEIGHT_CHANGE = 0.3
 """Height change, in arm lengths, that ends a drag: lowering the hands moves nothing. Chosen by
-hand: without it MSR Action3D turns the view once more."""
+hand: without it MSR Action3D turns the view once more. `make sensitivity` varies it."""
 FILTER_TIME_S = 0.12
 """Time constant in seconds of the filter of dragged values. Chosen by hand: without it three
-turns of MSR Action3D are lost."""
+turns of MSR Action3D are lost. `make sensitivity` varies it."""
 MAX_DRAG_RATE = 4.0
 """Maximum change per second of the angle in radians, or of the logarithm of the gap. It guards
 claps and waves that begin with still hands: faster hands do not drag the view

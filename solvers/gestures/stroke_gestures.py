@@ -18,23 +18,24 @@ lengths. Chosen by hand: without either MSR Action3D has a clap more
 CLAP_START_HEIGHT = -0.85
 """Minimum height of the hands' midpoint at the start of a clap, in arm lengths. Chosen by hand:
 without it arms that swing up from the sides clap in 9 of the 104 other takes of UTD-MHAD
-instead of 4, and in LabanotationSuite once more."""
+instead of 4, and in LabanotationSuite once more. `make sensitivity` varies it."""
 PARTED_FACTOR = 1.3
 """Factor on the touching distance from which on hands have parted. Chosen by hand: with 1, six
-claps of MSR Action3D end at another time."""
+claps of MSR Action3D end at another time. `make sensitivity` varies it."""
 MIN_HAND_FRACTION = 0.2
 """Minimum fraction of the closing distance that each hand covers. Chosen by hand: without it
-MSR Action3D has three claps more and two waves less."""
+MSR Action3D has three claps more and two waves less. `make sensitivity` varies it."""
 MIN_WAVE_HEIGHT = -0.65
 """Minimum height of the right wrist relative to its shoulder in a wave, in arm lengths. Chosen
-by hand: without it UI-PRMD and MSR Action3D have 100 waves more."""
+by hand: without it UI-PRMD and MSR Action3D have 100 waves more. `make sensitivity` varies
+it."""
 MAX_RISE_FRACTION = 0.9
 """Maximum height change of a wave, as a fraction of its length. Chosen by hand: without it
-UI-PRMD and MSR Action3D have 26 waves more."""
+UI-PRMD and MSR Action3D have 26 waves more. `make sensitivity` varies it."""
 MIN_RIGHT_END, MAX_LEFT_END = 0.3, -0.1
 """End position of the wrist, to the right of its shoulder in arm lengths, for waves to the
 right and to the left. Chosen by hand: without the first UI-PRMD and MSR Action3D have 7 waves
-more, without the second 55."""
+more, without the second 55. `make sensitivity` varies them."""
 MAX_HANGING_HEIGHT = -0.45
 """Height of a wrist above its shoulder, in arm lengths, below which its arm hangs. Chosen by
 hand; `make sensitivity` varies it."""

@@ -7,7 +7,14 @@ import numpy as np
 from ..arrays import Array
 from ..progress import Progress, unwatched
 from .body import MarkerBody, Poses, WorldBody
-from .fit_poses import DAMPING, apply_step, compute_residuals, cost_of
+from .fit_poses import (
+    DAMPING,
+    DAMPING_FALL,
+    DAMPING_RISE,
+    apply_step,
+    compute_residuals,
+    cost_of,
+)
 
 N_INDEPENDENT_FRAMES = 10.0
 """Effective number of independent frames of a take: skin motion correlates with the pose.
@@ -71,11 +78,11 @@ def fit_body(
         candidate_poses = apply_step(body, poses, pose_step)
         new_cost = _cost(candidate, observed, candidate_poses, candidate_values / play)
         if new_cost >= cost:
-            damping *= 8.0
+            damping *= DAMPING_RISE
             continue
         converged = cost - new_cost < MIN_COST_GAIN * cost
         body, poses, values, cost = candidate, candidate_poses, candidate_values, new_cost
-        damping /= 5.0
+        damping /= DAMPING_FALL
         if converged:
             break
     progress(1.0, "Measuring the body")

@@ -22,6 +22,10 @@ CAUCHY_SCALE = 3.0
 DAMPING = 1e-3
 """Initial weight of Levenberg-Marquardt damping, relative to the diagonal: that of Madsen,
 Nielsen, Tingleff (2004), Methods for non-linear least squares problems, eq. 3.14."""
+DAMPING_RISE, DAMPING_FALL = 8.0, 5.0
+"""Factors by which the damping rises after a step that raised the cost, and falls after one
+that lowered it, here and in the fit of the body. Chosen by hand; `make sensitivity` varies
+them."""
 MAX_STEP_RAD = 0.5
 """Radians: maximum rotation of a joint in one step. Chosen by hand; `make sensitivity` varies
 it."""
@@ -98,7 +102,7 @@ def _fit(body: MarkerBody, observed: Array, poses: Poses, most_steps: int) -> Po
         )
         settled = (cost - new_cost)[better] <= MIN_COST_GAIN * cost[better]
         cost = np.where(better, new_cost, cost)
-        damping = np.where(better, damping / 5.0, damping * 8.0)
+        damping = np.where(better, damping / DAMPING_FALL, damping * DAMPING_RISE)
         if settled.all() and better.mean() > 0.5:
             break
     return poses

@@ -43,6 +43,19 @@ MIN_LENGTH_M = 0.01
 """Meters, for legs of 0.9 m: a shorter segment is a sphere. It guards rigs with bones of zero
 length, which have no direction (`test_other_skeleton_is_simulated_bone_by_bone`)."""
 
+LEAF_LENGTH_M = 0.1
+"""Meters, for legs of 0.9 m, that each bone of an unknown skeleton counts more in the division
+of the mass. It guards joints without children, which would have no mass
+(`test_other_skeleton_is_simulated_bone_by_bone`)."""
+
+END_LENGTH_M = 0.1
+"""Length of a segment with neither a joint below nor a row of `SEGMENT_LENGTHS_M`, meters, for
+legs of 0.9 m. By definition about that of a toe or a finger."""
+
+MASSLESS_RADIUS_M = 0.02
+"""Radius of a joint without a segment, meters, for legs of 0.9 m. By definition that of a
+finger: it touches nothing."""
+
 
 class JointFrame(NamedTuple):
     """Position and rotation of a joint relative to the moving joint above it."""
@@ -169,7 +182,7 @@ def _body_from_bones(motion: Motion) -> PhysicsBody:
     ]
     extent = np.ptp(skeleton.rest_positions, axis=0).max() if skeleton.n_joints > 1 else 0.0
     size = float(extent) / (2 * HUMAN_LEG_LENGTH_M) or 1.0
-    lengths = np.linalg.norm(ends, axis=1) + 0.1 * size
+    lengths = np.linalg.norm(ends, axis=1) + LEAF_LENGTH_M * size
     masses = HUMAN_MASS_KG * size**3 * lengths / lengths.sum()
     capsules = [
         _capsule(joint, end, mass, size)
@@ -243,7 +256,7 @@ def _segment_end(
     for below in next_roles(role):
         if below in joints:
             return np.asarray(rest[joints[below]] - start)
-    length = SEGMENT_LENGTHS_M.get(role_without_side(role), 0.1) * size
+    length = SEGMENT_LENGTHS_M.get(role_without_side(role), END_LENGTH_M) * size
     children = skeleton.children[joint]
     direction = rest[list(children)].mean(axis=0) - start if children else np.zeros(3)
     if np.linalg.norm(direction) < MIN_LENGTH_M * size:
@@ -256,10 +269,14 @@ def _capsule(joint: int, end: Array, mass: float, size: float) -> Capsule:
     length = float(np.linalg.norm(end))
     if mass <= 0.0:
         return Capsule(
-            joint, np.zeros((2, 3)), 0.02 * size, MIN_MASS_KG * size**3, touches=False
+            joint,
+            np.zeros((2, 3)),
+            MASSLESS_RADIUS_M * size,
+            MIN_MASS_KG * size**3,
+            touches=False,
         )
     if length < MIN_LENGTH_M * size:
-        radius = (0.75 * mass / (np.pi * DENSITY_KG_M3)) ** (1 / 3)
+        radius = (3.0 / 4.0 * mass / (np.pi * DENSITY_KG_M3)) ** (1 / 3)
         return Capsule(joint, np.zeros((2, 3)), min(radius, MAX_RADIUS_M * size), mass)
     radius = (mass / (DENSITY_KG_M3 * np.pi * length)) ** 0.5
     radius = min(radius, MAX_RADIUS_M * size, 0.5 * length)

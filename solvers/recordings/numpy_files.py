@@ -29,7 +29,7 @@ POINT_MEMBERS = (
 )  # fmt: skip
 """Names of joints in archives, the clear ones first."""
 MAX_ROUNDING = 1e-2
-"""Difference from a rotation, without unit, up to which numbers are one. It guards points on a
+"""Difference from a rotation, relative to 1, up to which numbers are one. It guards points on a
 sphere of radius 1; rotations of 16 bits are off by 1e-3."""
 
 

@@ -12,7 +12,7 @@ from ..rotations import angle_between
 Joints = dict[str, int]
 SIDES = ("left", "right")
 MIN_BACKWARD_ANGLE_RAD = np.radians(135.0)
-"""Angle in radians between feet and hips from which the feet point backward. Chosen by hand:
+"""Angle in radians between feet and hips from which the feet point backward. By definition:
 halfway between square and opposite."""
 MIN_KNEE_BEND = 0.08
 """Distance of the knee from the line between hip and ankle, as a fraction of the leg, from

@@ -5,8 +5,8 @@ import numpy as np
 from ..arrays import Array
 
 MAX_SKEW = 1e-5
-"""Difference of a matrix times its transpose from identity up to which it is a rotation; guards
-against scaled ones, and passes matrices of 32 bits."""
+"""Difference, relative to 1, of a matrix times its transpose from identity up to which it is a
+rotation; guards against scaled ones, and passes matrices of 32 bits."""
 
 
 def quaternions_of_matrices(matrices: Array) -> Array:

@@ -18,10 +18,10 @@ from .quaternion_algebra import (
 )
 
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
-SMALL_ANGLE_RAD = 1e-6
+SMALL_ANGLE_RAD = 1e-6  # below it, series replace quotients: what they leave out is rounding
 FULL_TURN_RAD = 2.0 * np.pi
 GIMBAL_LOCK_COSINE = 1e-7
-"""Cosine of the middle Euler angle below which the other two share one axis."""
+"""Cosine of the middle Euler angle below which the others share one axis, up to rounding."""
 QUATERNIONS_PER_BLOCK = 8192
 """Quaternions multiplied at a time, so that they fit into the processor's cache."""
 _CROSS_FLAT = np.zeros((3, 9))

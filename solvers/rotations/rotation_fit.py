@@ -8,7 +8,8 @@ from .representations import quaternion_from_matrix
 RIGID_POINTS = 3
 """Number of points that determine rotation and position of a rigid body, by definition."""
 MIN_SINGULAR_RATIO = 1e-4
-"""Ratio of the second to the first singular value below which the rotation is undetermined."""
+"""Ratio of the second to the first singular value below which the rotation is undetermined. It
+guards points on one line, whose second value is rounding of positions in single precision."""
 
 
 def nearest_rotations(spread: Array) -> tuple[Array, Array]:

@@ -20,9 +20,9 @@ less by 1 / n, since two variants often draw the same example. Chosen by hand;
 SOFTMAX_GAIN = 8.0
 """Factor of the softmax over examples; higher values copy a single example more closely. Chosen
 by hand; `make sensitivity` varies it."""
-SHARED_VARIANCE = np.array([0.95, 0.7, 0.7, 0.95, 0.95])
+SHARED_VARIANCE = (0.95, 0.7, 0.7, 0.95, 0.95)
 """Fraction of the variance that each partition shares with the others. Limbs move together, and
-legs move with the hips that they carry."""
+legs move with the hips that they carry. Chosen by hand; `make sensitivity` varies it."""
 MAX_WEIGHT_RATIO = 1.6
 """Maximum length of a weight vector, relative to the typical one; longer ones are scaled back,
 so that variants stay near the examples. Chosen by hand; `make sensitivity` varies it."""

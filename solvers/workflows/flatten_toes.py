@@ -21,6 +21,9 @@ of this module."""
 DEFAULT_DROP = 0.35
 """Height of the ankle above the toes in foot lengths, a ratio, if no frame measures it. Chosen
 by hand: x0.5 and x2 fail no test of this module."""
+MAX_DROP = 0.7
+"""Largest such height that a frame may measure, a ratio: twice the default. It guards takes
+whose feet hang, which measure a foot on tiptoe."""
 MIN_STANDING_FRAMES = 10
 """Minimum number of reliable standing frames to measure the pose of a foot. Chosen by hand:
 x0.5 and x2 fail no test of this module."""
@@ -87,7 +90,7 @@ def _flat_foot(
     local, drop = rest[leg.toe] - rest[leg.ankle], DEFAULT_DROP * length
     if reliable.sum() >= MIN_STANDING_FRAMES:
         local = np.median(rotate(inverse(shin[reliable]), foot[reliable]), axis=0)
-        drop = float(np.clip(np.median(-foot[reliable, 2]), 0.0, 0.7 * length))
+        drop = float(np.clip(np.median(-foot[reliable, 2]), 0.0, MAX_DROP * length))
     heading = rotate(shin, local)[:, :2]
     heading = smooth_gaussian(heading, HEADING_SMOOTHING_S * motion.frame_rate)
     size = np.linalg.norm(heading, axis=-1, keepdims=True)

@@ -21,8 +21,8 @@ from ..motion.humanoid import (
 from ..signals import find_runs
 
 MIN_GAP_S = 1.0
-"""Minimum duration of a gap of all joints that is reported, seconds. It is meant against a
-remark on every dropped frame. Chosen by hand: x0.5 and x2 fail no test of this module."""
+"""Minimum duration of a gap of all joints that is reported, seconds. Chosen by hand: 1 s is no
+remark on every dropped frame; it decides a sentence of the report only."""
 UNITS = {0.001: "millimeters", 0.01: "centimeters", 0.0254: "inches", 1000.0: "kilometers"}
 KINECT_V1 = dict(zip(POSTURE_JOINTS, SENSOR_JOINTS[Sensor.KINECT_V1], strict=True))
 """Joint names of the Kinect v1 by posture joint."""

@@ -14,7 +14,7 @@ MAX_BLOCK_FRAMES = 512
 run time, which rises with its cube."""
 SMOOTHNESS = np.geomspace(1e-4, 1e6, 61)
 """Candidate weights of the roughness, relative to the squared error, per frame to the fourth
-power. A grid from no smoothing to a straight line."""
+power. It bounds the search: from no smoothing to a straight line."""
 
 
 def smooth_by_spline(samples: Array) -> Smoothed:

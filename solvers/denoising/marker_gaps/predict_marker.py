@@ -36,6 +36,8 @@ KERNELS = (
     FrameKernel(1.0, 1.0, 2.0, 0.1, 0.03, 1e-4),
     FrameKernel(1.0, 1.0, 2.0, 0.1, 0.1, 1e-4),
 )
+"""Kernels whose predictions are blended, with units in `FrameKernel`. Chosen by hand, mostly a
+factor of 2 to 10 apart: the blend weighs each by its errors on the take itself."""
 
 
 class PredictedMarker(NamedTuple):

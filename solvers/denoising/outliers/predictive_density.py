@@ -12,8 +12,8 @@ from ..window_priors import Windows
 from .single_outliers import OUTLIER_DENSITY
 
 OFFSET_DEVIATION = 0.5 / OUTLIER_DENSITY / np.sqrt(3.0)
-"""Standard deviation of an outlier's error, degrees or centimeters. By the width of its uniform
-density."""
+"""Standard deviation of an outlier's error, degrees or centimeters. By definition of the width
+of its uniform density."""
 
 NEW_MOVEMENT_RATE = 1e-3
 """Fraction of suspected movements that begin out of another kind of movement, such as a kick

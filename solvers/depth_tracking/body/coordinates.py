@@ -15,7 +15,10 @@ class CoordinateRow(NamedTuple):
     """Rotation vector per unit, in the frame of the parent segment; x left, y down, z back."""
     lower: float
     upper: float
-    """Soft limits, radians."""
+    """Soft limits, radians. Chosen by hand near the mean ranges of motion of the American
+    Academy of Orthopaedic Surgeons (1965), such as 150 degrees of an elbow, 120 of a flexed
+    hip and 60 of a shoulder that reaches back; most are wider. `LIMIT_WEIGHT` makes them
+    soft."""
 
 
 def _trunk() -> list[CoordinateRow]:

@@ -22,8 +22,12 @@ _REST_WEIGHT = 1e-3
 _FRAME_WEIGHT = 100.0
 """Weight per square meter of a joint's distance. Chosen by hand; `make sensitivity` varies
 it."""
+_SHOULDER_RATIO = 1.1
+"""Ratio of half the distance of the upper arms to a shoulder's length, whose rest direction is
+not quite level. Chosen by hand; `make sensitivity` varies it."""
 _ROTATION_POINTS = 0.05 * np.array([*np.eye(3), *-np.eye(3)])
-"""Points of a segment, meters, that constrain its rotation; larger offsets weigh more."""
+"""Points of a segment, meters, that constrain its rotation; larger offsets weigh more. Chosen
+by hand: 5 cm is about the radius of a limb."""
 
 
 def pose_from_joints(
@@ -182,7 +186,7 @@ def body_from_joints(body: BodyModel, joints: Array) -> BodyModel:
             )
     lengths["hipWidth"] = 0.5 * _median_distance(joints, "leftUpperLeg", "rightUpperLeg")
     width = 0.5 * _median_distance(joints, "leftUpperArm", "rightUpperArm")
-    lengths["leftShoulder"] = lengths["rightShoulder"] = width / 1.1
+    lengths["leftShoulder"] = lengths["rightShoulder"] = width / _SHOULDER_RATIO
     trunk = _median_distance(joints, "hips", "neck")
     default_trunk = sum(body.length(name) for name in ("hips", "spine", "chest"))
     for name in ("hips", "spine", "chest"):

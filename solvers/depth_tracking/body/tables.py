@@ -48,7 +48,8 @@ foot from ankle to toes, the others from joint to joint."""
 
 DEFAULT_LENGTHS_M = np.array([0.09, 0.10, 0.14, 0.325, 0.075, 0.08]
     + 2 * [0.165, 0.26, 0.255, 0.17, 0.43, 0.435, 0.17])  # fmt: skip
-"""Lengths of an adult of 1.75 m."""
+"""Lengths of an adult of 1.75 m, meters: thighs, shanks and forearms by Winter 2009, figure
+4.1, to 5 mm, the others chosen by hand."""
 
 
 class CapsuleRow(NamedTuple):

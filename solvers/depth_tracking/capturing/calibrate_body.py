@@ -39,7 +39,8 @@ MAX_PIXELS = 6000
 STATURE_STEP_M = 0.15
 """Meters between the statures that are tried. Chosen by hand; `make sensitivity` varies it."""
 TESTED_STATURES_M = tuple(1.3 + STATURE_STEP_M * step for step in range(6))
-"""Statures tested by the detector."""
+"""Statures tested by the detector, meters. By definition from 1.3 m in steps of
+`STATURE_STEP_M`."""
 STATURE_RANGE_M = TESTED_STATURES_M[0] - STATURE_STEP_M, TESTED_STATURES_M[-1] + STATURE_STEP_M
 """Range of statures: others are images without a person. Meters."""
 

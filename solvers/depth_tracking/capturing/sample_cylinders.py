@@ -11,6 +11,18 @@ from ...settings import Settings, setting
 POSITION_STD_M, RADIUS_STD, SHRINK_FACTOR = 0.12, 0.15, 0.65
 """Standard deviations of the first perturbations (position; relative radius), and the factor by
 which each round shrinks them. Chosen by hand; `make sensitivity` varies them."""
+MOVED_FRACTION = 0.6
+"""Fraction of the ends that a perturbation moves. Chosen by hand; `make sensitivity` varies
+it."""
+MARGIN_FRACTION = 0.2
+"""Width of the border around a part, a fraction of its size in the image, whose pixels must not
+be hit. Chosen by hand; `make sensitivity` varies it."""
+INLIER_FACTOR = 3.0
+"""Distance from the plane of a part's surface, as a factor of the median distance, up to which
+a point counts. Chosen by hand; `make sensitivity` varies it."""
+MIN_INLIER_M = 1e-3
+"""Meters up to which a point always counts. It guards points in one plane, whose median
+distance is 0."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +113,7 @@ def sample_cylinder(
         spread = SHRINK_FACTOR**round_index
         n = settings.n_samples // 2
         radius = cylinder.radius * np.exp(RADIUS_STD * spread * rng.standard_normal(n))
-        is_moved = rng.random((n, 2, 1)) < 0.6
+        is_moved = rng.random((n, 2, 1)) < MOVED_FRACTION
         offsets = is_moved * (
             POSITION_STD_M / depth_m * spread * rng.standard_normal((n, 2, 3))
         )
@@ -121,14 +133,14 @@ def _surface_plane(points: Array) -> Array:
     for _ in range(3):
         plane = np.linalg.lstsq(rows[inliers], points[inliers, 2], rcond=None)[0]
         residuals = np.abs(rows @ plane - points[:, 2])
-        inliers = residuals <= max(3.0 * float(np.median(residuals)), 1e-3)
+        inliers = residuals <= max(INLIER_FACTOR * float(np.median(residuals)), MIN_INLIER_M)
     return np.asarray(plane)
 
 
 def _rays_around(part_mask: Flags, camera: Camera, max_pixels: int) -> tuple[Array, Flags]:
     """Return the rays (n, 3) in and around a part, and the mask of rays that hit it."""
     rows, columns = np.nonzero(part_mask)
-    margin = 2 + int(0.2 * max(np.ptp(rows), np.ptp(columns)))
+    margin = 2 + int(MARGIN_FRACTION * max(np.ptp(rows), np.ptp(columns)))
     window = (
         slice(max(rows.min() - margin, 0), rows.max() + margin + 1),
         slice(max(columns.min() - margin, 0), columns.max() + margin + 1),

@@ -43,6 +43,9 @@ MAX_RESIDUAL_M = 0.08
 SURFACE_STD_M = 0.06
 """Standard deviation of pixels from the surface of their part. Chosen by hand;
 `make sensitivity` varies it."""
+CENTERS_WEIGHT = 0.3
+"""Weight of the centers of parts, which are biased where a part is partly hidden, next to its
+surface. Chosen by hand; `make sensitivity` varies it."""
 MIN_PROBABILITY = 0.02
 """Minimum probability of a part. Chosen by hand; `make sensitivity` varies it."""
 TRUNK_PARTS = ("hips", "spine", "chest", "neck", "head", "Shoulder", "UpperArm")
@@ -87,7 +90,7 @@ def fit_parts(
 
     def surfaces(frames: Array) -> EquationList:
         return [
-            _centers_term(body, frames, parts, 0.3),
+            _centers_term(body, frames, parts, CENTERS_WEIGHT),
             _surface_term(body, frames, parts.points, capsules),
         ]
 

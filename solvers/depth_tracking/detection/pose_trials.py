@@ -14,7 +14,8 @@ from .robust_parts import FoundParts
 SWAP_GROUPS = ("Leg", "LegEnd", "Foot"), ("Shoulder", "UpperArm", "LowerArm", "Hand")
 """Name suffixes of parts that are swapped together in a trial."""
 HEADING_OFFSETS = (0.0, np.pi / 3.0, -np.pi / 3.0, np.pi)
-"""Heading offsets from the detected heading, radians."""
+"""Heading offsets from the detected heading, radians: starts of trials, by definition ahead, to
+both sides and back."""
 STRIDES = (0.35, -0.35)
 """Forward rotation of the left thigh and backward rotation of the right one, radians: starts of
 trials, by definition with either leg in front."""

@@ -14,6 +14,12 @@ from .part_capsules import part_axes, part_radii
 MEAN_SURFACE_DEPTH = np.pi / 4.0
 """Mean distance of a cylinder's visible surface in front of its axis, relative to the radius.
 By definition: pi / 4."""
+FULL_WEIGHT_FACTOR = 5.0
+"""Number of inliers from which a part has full weight, as a factor of `min_part_pixels`. Chosen
+by hand; `make sensitivity` varies it."""
+MIN_SPAN_FRACTION = 0.2
+"""Minimum distance of the two pixels that define an axis, a fraction of the part's length.
+Chosen by hand; `make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,7 +120,9 @@ def find_parts(
         centers[part] = points[part_inliers].mean(axis=0) + surface_depth * rays[
             part_inliers
         ].mean(axis=0)
-        weights[part] = min(1.0, len(part_inliers) / (5.0 * settings.min_part_pixels))
+        weights[part] = min(
+            1.0, len(part_inliers) / (FULL_WEIGHT_FACTOR * settings.min_part_pixels)
+        )
     return FoundParts(centers, weights, points[is_inlier], labels[is_inlier])
 
 
@@ -133,7 +141,11 @@ def _best_capsule(
     directions = points[second] + radii.mean() * rays[second] - starts
     distances = np.linalg.norm(directions, axis=1)
     max_distance = length + radii.max()
-    usable = (distances <= max_distance) & (distances >= 0.2 * length) & (distances > 0.0)
+    usable = (
+        (distances <= max_distance)
+        & (distances >= MIN_SPAN_FRACTION * length)
+        & (distances > 0.0)
+    )
     if not usable.any():
         usable = np.arange(len(distances)) == distances.argmin()
     starts, directions, distances = (

@@ -64,7 +64,7 @@ CONTACT_MODEL = ContactModel(
     landing_rate=4.43,
     lift_rate=2.43,
 )
-"""Learned by `tests/training/learn_contacts.py`."""
+"""Learned by `tests/training/learn_contacts.py`; meters and seconds, for a leg of 0.9 m."""
 
 
 def detect_contacts(motion: Motion, humanoid_map: HumanoidMap | None = None) -> Flags:

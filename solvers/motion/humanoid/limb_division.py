@@ -32,8 +32,8 @@ FOOT_MISFIT = 0.25
 more, whose last one is rather the toes, and of one after a bone that points away from the leg,
 which is the foot. Chosen by hand on the rigs of `tests/solvers/motion`."""
 MAX_SHANK_COSINE = 0.7
-"""Cosine between a bone and the leg above it, up to which it is a foot. Chosen by hand: 45
-degrees; feet stand at 60 to 90 degrees to the shank."""
+"""Cosine between a bone and the leg above it, up to which it is a foot. Chosen by hand on the
+rigs of `tests/solvers/motion`: 45 degrees; feet stand at 60 to 90 degrees to the shank."""
 
 
 def path_length(skeleton: Skeleton, joints: Sequence[int]) -> float:

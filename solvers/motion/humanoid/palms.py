@@ -11,7 +11,8 @@ MIN_PALM_ROLL_RAD, MAX_PALM_ROLL_RAD = np.radians([30.0, 60.0])
 """Roll of the palms from facing down below which they are unchanged, since all knuckles are a
 little oblique, and from which the roll is fully removed. The transition is smooth."""
 PALM_ROLL_DIFFERENCE_RAD = np.radians([30.0, 60.0])
-"""Difference between both hands up to which the roll is fully removed, and not at all."""
+"""Difference between both hands, radians, up to which the roll is fully removed, and not at
+all. Chosen by hand as `MIN_PALM_ROLL_RAD`: it guards hands that rest unlike each other."""
 ALONG_ARM = np.array([1.0, 0.0, 0.0])
 FINGERS = ("Little", "Ring", "Middle")
 

@@ -33,7 +33,8 @@ LEG_PATH_FRACTION = 0.6
 """Of the height, from the hip joint along the bones to the tip of the foot. Chosen by hand on
 the rigs of `tests/solvers/motion`."""
 HEIGHT_FACTORS = np.exp(np.linspace(-0.4, 0.4, 17))
-"""Heights that are tried, relative to the one that the legs suggest."""
+"""Factors of the height that the legs suggest, which are tried: up to 1.5 times either way.
+Chosen by hand on the rigs of `tests/solvers/motion`."""
 ROUGH_FACTORS = HEIGHT_FACTORS[2::6]
 """Heights that are tried first, of all pairs of limbs."""
 N_REFINED = 8

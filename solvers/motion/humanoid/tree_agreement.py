@@ -25,6 +25,8 @@ MAX_SIDE_RATIO = 1.6
 MIN_BONE_FRACTION = 0.05
 """Of a limb, below which a joint between two others is a helper. Chosen by hand on the rigs of
 `tests/solvers/motion`."""
+MIN_TRUNK_FRACTION = 0.1
+"""Of legs and trunk, below which it is folded. By hand on rigs of `tests/solvers/motion`."""
 
 SKIPPED_JOINT = 0.5
 """Factor of the score of a map that leaves a joint of a limb out. Chosen by hand on the rigs of
@@ -86,13 +88,12 @@ def stands_upright(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
     positions = skeleton.rest_positions
     hips = positions[pelvis].mean(axis=0)
     legs, trunk = hips - positions[feet].mean(axis=0), positions[chest] - hips
-    height = float(np.linalg.norm(legs) + np.linalg.norm(trunk))
+    leg, back = np.linalg.norm(legs), np.linalg.norm(trunk)
+    height = float(leg + back)
     half_distance = np.linalg.norm(positions[feet[0]] - positions[feet[1]]) / 2
-    if half_distance < MIN_SPREAD_FRACTION * height or np.linalg.norm(trunk) < 0.1 * height:
+    if half_distance < MIN_SPREAD_FRACTION * height or back < MIN_TRUNK_FRACTION * height:
         return True  # folded: all bones have one direction
-    return is_human_angle(
-        float(legs @ trunk / max(np.linalg.norm(legs) * np.linalg.norm(trunk), 1e-12))
-    )
+    return is_human_angle(float(legs @ trunk / max(leg * back, 1e-12)))
 
 
 def _has_human_lengths(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:

@@ -14,7 +14,7 @@ HINGES = {"Arm": (0.0, -1.0, 0.0), "Leg": (0.0, 1.0, 0.0)}
 """Direction in which an elbow or a knee flexes, in a T-pose that faces -Y."""
 MIN_FLEXION, FULL_FLEXION = np.radians([8.0, 30.0])
 """Flexion angles (radians) between which the weight of the flexion plane rises from 0 to 1."""
-TWIST_SMOOTHING_S = 0.1
+TWIST_TIME_S = 0.1
 """Time (s) over which the axial rotation is smoothed where the limb is flexed. Chosen by hand;
 `make sensitivity` varies it."""
 REST_WEIGHT = 0.02
@@ -29,16 +29,14 @@ ACTOR_BIAS_S = 0.03
 It guards limbs that hardly flex, which would lose the library's rotation
 (`test_straight_arm_gets_the_twist_of_similar_postures`)."""
 AGREED_WEIGHT = 90.0
-"""Weight of a certain angle; an equal change within `TWIST_SMOOTHING_S` has weight 1. Chosen by
-hand; `make sensitivity` varies it."""
+"""Weight of a certain angle; equal changes have 1. By hand; `make sensitivity` varies it."""
 MIN_WEIGHT = 1e-6
 """Weight of an undefined angle. It guards a division where no frame defines the angle."""
 MIN_PALM_M, FULL_PALM_M = 0.02, 0.05
 """Distances (m) from wrist to palm between which the weight of the direction rises from 0 to 1.
 The first guards against palms too short to have one (`test_impossible_palm_is_ignored`)."""
 MAX_PALM_FLEXION, FULL_PALM_FLEXION = np.radians([100.0, 70.0])
-"""Palm flexions (radians) at which an observation is rejected, and up to which it is accepted.
-"""
+"""Palm flexions (radians) at which observations are rejected, and up to which accepted."""
 
 
 class Limb(NamedTuple):
@@ -212,9 +210,7 @@ def smooth_direction(
         is_known[:, None], local, 0.0
     ) + REST_WEIGHT * unit_vectors(forward)
     smooth = unit_vectors(
-        solve_smooth_paths(
-            weighted, weights + REST_WEIGHT, (TWIST_SMOOTHING_S * frame_rate) ** 2
-        )
+        solve_smooth_paths(weighted, weights + REST_WEIGHT, (TWIST_TIME_S * frame_rate) ** 2)
     )
     lengths = np.linalg.norm(observed, axis=-1, keepdims=True)
     return np.asarray(rotate(above, smooth) * lengths)
@@ -248,7 +244,7 @@ def twist_to_normal(
     """
     observed = _angles_or_zero(axis, reference, normal)
     weights = np.where(observed != 0.0, weights * (0.5 + 0.5 * observed.real), 0.0)
-    stiffness = (TWIST_SMOOTHING_S * frame_rate) ** 2
+    stiffness = (TWIST_TIME_S * frame_rate) ** 2
     weighted, totals = weights * observed + REST_WEIGHT, weights + REST_WEIGHT
     if expected is not None:
         library_twists = _remove_actor_bias(expected.twists, observed, weights, frame_rate)

@@ -30,8 +30,7 @@ from .subsample import subsample_postures
 
 SHIPPED_LIBRARY = Path(__file__).parent / "postures.npz"
 DIRECTION_STEP = 1.0 / 500.0
-"""Step in which components of unit vectors are stored, a ratio. By definition of the file
-format."""
+"""Ratio: step of stored components of unit vectors. By definition of the file format."""
 CHANGE_STEP = 1.0 / 8.0
 """Step in which their changes are stored, a ratio per second. By definition of the file
 format."""
@@ -55,9 +54,10 @@ LAYOUT = ArchiveLayout(
     remedy="Build them again.",
 )
 PACE_S = 0.1
-"""Time (s) that converts the velocity difference of two poses to a distance, where the poses of
-clips are thinned out. Chosen by hand: x0.001 gains 0.02 %, x1000 gains 0.01 %; the shipped
-library was made with it."""
+"""Seconds that convert velocity differences of poses to distances, where clips are thinned out.
+By hand: from x0.001 to x1000 0.02 %. The shipped library was made with it."""
+MAX_LENGTH_ERROR = 0.05
+"""Ratio by which a direction's length may differ from 1. It guards damaged files."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,7 +190,8 @@ def _find_fault(arrays: dict[str, NDArray[Any]]) -> str:
     if (arrays["groups"] >= len(arrays["groups"])).any():
         return "groups has indices out of range"
     sizes = np.linalg.norm(arrays["directions"] * DIRECTION_STEP, axis=-1)
-    return "" if (np.abs(sizes - 1.0) < 0.05).all() else "directions are not of length 1"
+    is_unit = np.abs(sizes - 1.0) < MAX_LENGTH_ERROR
+    return "" if is_unit.all() else "directions are not of length 1"
 
 
 def build_posture_library(

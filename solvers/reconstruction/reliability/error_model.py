@@ -66,10 +66,12 @@ class ErrorModel:
 CENTERED_MODEL = ErrorModel(
     length_weight=0.15, floor=0.0005, level=-1.431, slope=0.395, spread=0.467
 )
+"""Model of the error's logarithm, meters, from frames on both sides. Learned by
+`bench_reliability --fit` from all subjects of UI-PRMD."""
 CAUSAL_MODEL = ErrorModel(
     length_weight=0.5, floor=0.001, level=-2.056, slope=0.344, spread=0.488
 )
-"""Fitted to all subjects of UI-PRMD: `bench_reliability --fit`."""
+"""The same from earlier frames alone, meters. Learned by `bench_reliability --fit`, too."""
 
 
 @dataclass(frozen=True, eq=False)

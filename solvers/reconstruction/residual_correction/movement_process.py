@@ -61,7 +61,9 @@ class Strengths(NamedTuple):
 
 
 SHARED_STRENGTHS = Strengths(9.3, 56.0, 3.5, 2.3)
+"""Weights, relative to the noise, of what all actors share. Chosen by the sweep below."""
 PERSONAL_STRENGTHS = Strengths(2.6, 3.6, 3.0, 0.47)
+"""Weights of what one actor has alone. Chosen by the sweep below."""
 POSTURE_SCALE_M, CONTEXT_SCALE_M, MOVEMENT_SCALE_M = 0.88, 1.63, 0.82
 """Length scales (m) of features. All these values were chosen by a sweep on UI-PRMD that leaves
 out one of four actors; each choice without a fifth actor gives the same values."""

@@ -4,8 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 SPARE_RATIO = 1.02
-"""Spare memory, as a ratio, for later rows that have fewer characters than the first."""
+"""Spare memory, as a ratio, for later rows that have fewer characters than the first. It bounds
+the memory."""
 GROWTH_RATIO = 1.3
+"""Ratio by which memory grows when it is used up. It bounds the copies: about 4 times the
+table."""
 
 
 class GrowingTable:

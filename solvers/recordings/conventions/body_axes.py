@@ -44,8 +44,9 @@ TRAVEL_WEIGHT = 0.5
 """Weight of the evidence of the path: people travel along the ground, 0 to 1. Chosen by hand:
 x2 fails `test_any_axis_may_be_up`."""
 EXPECTED: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05, "-X": -0.2, "-Y": -0.2, "-Z": -0.2}
-"""Evidence of the format: BVH has Y up, some programs write Z up, and a body that is upside
-down stands on its hands rather."""
+"""Weight of the evidence of the format, 0 to 1 (that of motion is 1): BVH has Y up, some
+programs write Z up, and a body that is upside down stands on its hands rather. Chosen by hand
+below all of `FLOOR_WEIGHT`, 0.3."""
 CLEAR_LEAD = 0.5
 """Lead, in the weights above, over the next axis below which the report says that the evidence
 disagrees. Chosen by hand: half of the evidence of the motion, 1; x0.5 and x2 fail no test of

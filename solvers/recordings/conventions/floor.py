@@ -21,7 +21,8 @@ from .file_axes import conventions_of
 Recording = TypeVar("Recording", bound=Motion | Tracks | JointRecording)
 
 SOLE_M = {"Toes": 0.02, "Foot": 0.07, "Hand": 0.03, "LowerLeg": 0.05, "hips": 0.1, "head": 0.1}
-"""Height of a joint above what it stands or lies on, by the end of its role."""
+"""Height of a joint above what it stands or lies on, meters, by the end of its role. Chosen by
+hand, to 0.01 m."""
 OTHER_SOLE_M = 0.06
 """The same of other joints, meters. Chosen by hand within the 0.02 to 0.1 m of `SOLE_M`."""
 FLOOR_PERCENTILE = 5.0
@@ -43,7 +44,7 @@ MIN_UPRIGHT_FRACTION = 0.2
 `test_an_actor_far_below_the_floor_is_put_on_it`."""
 MAX_FLIGHT_STATURES = 10.0
 """Distance from height 0, in statures, above which units of positions and bones differ rather
-than heights. Chosen by hand: confused units give factors of 2.5 to 100."""
+than heights. By definition of the units: confused ones give factors of 2.5 to 100."""
 MIN_OFF_FLOOR_FRACTION = 0.15
 """Distance of the lowest level from height 0, relative to the stature, that is a question.
 Chosen by hand on takes that float or are sunk, see docs/benchmarks/importing.md."""

@@ -12,7 +12,8 @@ from .stack import DepthStack, check_size
 
 NAMES = ("d_depth", "depth")
 KINECT_V1 = Camera(285.63, 285.63, 159.0, 120.0, 320, 240)
-"""Camera of UTD-MHAD after mirroring its images: u = 160 + 285.63 x / z in the file."""
+"""Camera of UTD-MHAD, focal lengths in pixels, after mirroring its images: by definition of the
+data set u = 160 + 285.63 x / z in the file."""
 
 
 def is_depth_mat(path: Path, head: bytes) -> bool:

@@ -27,8 +27,8 @@ WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
 NOSE, ANKLES = [0], [BODY_POINTS.index(f"{side}_ankle") for side in ("left", "right")]
 MAX_EXTENT_M = 20.0
-"""Maximum extent of a body in units of the file, for the units to be meters. Chosen by hand: a
-body of 1 to 3 m is 1000 to 3000 units in millimeters."""
+"""Maximum extent of a body in units of the file, for the units to be meters. By definition of
+the units: a body of 1 to 3 m is 1000 to 3000 units in millimeters."""
 
 
 def is_npy(head: bytes) -> bool:

@@ -29,9 +29,9 @@ from .mediapipe_landmarks import N_POINTS, is_normalized
 from .unnamed_joints import NamedJoints, has_layout, name_joints
 
 UP: dict[AxisName, float] = {"Y": 0.2, "Z": 0.2, "-Y": 0.2}
-"""Evidence for each axis that is possible: scenes have Y or Z up, cameras have Y down."""
+"""Weight, 0 to 1, of each possible axis. Chosen by hand below `FLOOR_WEIGHT`, 0.3."""
 UP_OF_SMPL: dict[AxisName, float] = {"Y": 0.8, "Z": 0.0, "-Y": 0.0}
-"""The same of the joints of HumanML3D, which have Y up."""
+"""The same weight for HumanML3D, which has Y up by definition of the data set."""
 SMPL = "SMPL"
 """Layout of HumanML3D."""
 HUMANML3D_RATE_HZ = 20.0

@@ -67,9 +67,10 @@ N_BODY_POSE = {63, 69}
 SIZES = dict.fromkeys(ROTATIONS, N_NUMBERS) | dict.fromkeys(BODY_POSE, N_BODY_POSE)
 MAX_HEIGHT_M = 10.0
 AMASS_UP: dict[UpAxisName, float] = {"Z": 0.8, "Y": 0.0}
+"""Weight of the evidence of AMASS for each axis (`judge_up_axis`), by definition Z."""
 VIDEO_UP: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05, "-Y": 0.0}
-"""Evidence of the format for each axis (`judge_up_axis`): AMASS has Z up, video models mostly Y
-and, in the camera's axes, -Y."""
+"""The same weight of video models: mostly Y and, in the camera's axes, -Y. Chosen by hand below
+`FLOOR_WEIGHT`, 0.3."""
 
 
 def is_smpl(head: bytes) -> bool:

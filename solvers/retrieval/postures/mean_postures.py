@@ -33,8 +33,9 @@ takes whose joints are lost one after the other: at 0.5 no frame may show all su
 N_HEADING_FRAMES = 24
 """Number of frames, evenly spaced, used for the heading. It bounds the run time."""
 NEAR_ANGLES = np.radians(np.arange(-75.0, 76.0, 5.0))
+"""Candidate headings, radians, if the heading is roughly known. It bounds the run time."""
 ALL_ANGLES = np.radians(np.arange(-180.0, 180.0, 5.0))
-"""Candidate headings if the heading is roughly known, and if it is unknown."""
+"""The same, radians, if the heading is unknown: by definition a full turn."""
 HEADING_ERROR_RAD = np.radians(20.0)
 """Standard deviation of the heading error of a body with missing joints. It guards an actor who
 leans aside while only his trunk is seen: at 40 degrees he is turned to lean forward."""

@@ -14,7 +14,7 @@ from ...motion import Skeleton
 from ..curves import HEIGHT_COLUMN, partition_joints, sample_curves
 
 STEP_RATE_HZ = 30.0
-"""Rate of the steps. Chosen by hand: depth cameras and most video have it."""
+"""Rate of the steps. By definition that of depth cameras and of most video."""
 MIN_RANGE_RAD = 1e-3
 """Minimum range of a joint's angle in the examples; joints below it are not predicted. It
 guards against joints without variance."""

@@ -29,7 +29,8 @@ MIN_STD = 1e-6
 """Minimum of the standard deviations by which features and outputs are divided. It guards a
 division."""
 JITTER_STEPS = (0.0, 1e-12, 1e-10, 1e-8)
-"""Fractions of the mean diagonal to add to it, tried in this order."""
+"""Fractions of the mean diagonal to add to it, tried in this order. They guard a Cholesky
+factor."""
 BATCH_SIZE = 500
 """Number of steps whose kernels are in memory together."""
 

@@ -11,7 +11,8 @@ from ...signals import find_runs
 from .take_origin import MotionFromJoints, Take
 
 MAX_NAMES = 5
-"""Number of markers that a sentence names. Chosen by hand: two lines of a default sidebar."""
+"""Number of markers that a sentence names. It bounds the sentence to two lines of a default
+sidebar."""
 
 
 def drop_missing_points(take: Take) -> tuple[Take, tuple[str, ...]]:

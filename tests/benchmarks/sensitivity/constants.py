@@ -193,7 +193,7 @@ def constants_in(module: Path) -> Iterator[Constant]:
     for node, after in zip_longest(body, body[1:]):
         for name, value in _numbers(node):
             path = str(module.relative_to(ROOT))
-            yield Constant(path, name, value, _text(node, after, lines), node.lineno)
+            yield Constant(path, name, value, text_of(node, after, lines), node.lineno)
 
 
 def assigned_values(node: ast.stmt) -> dict[str, ast.expr]:
@@ -255,7 +255,7 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and value != 0
 
 
-def _text(node: ast.stmt, after: ast.stmt | None, lines: list[str]) -> str:
+def text_of(node: ast.stmt, after: ast.stmt | None, lines: list[str]) -> str:
     """Return the docstring below, or the comment above or at the end of the line."""
     if isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
         return " ".join(str(after.value.value).split())

@@ -114,6 +114,8 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
     ),
     "lengths of bodies, from a table or by definition": (
         "markers/build_body.*_M",
+        "physics/body.END_LENGTH_M",
+        "physics/body.MASSLESS_RADIUS_M",
         "markers/joint_centers.HIPS_ABOVE_JOINTS_M",
         "motion/humanoid/structure.*_FRACTION",
         "retargeting/placement.ANKLE_HEIGHT_FRACTION",
@@ -170,6 +172,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "reconstruction/pose_completion/constrain_lengths.MIN_LENGTH_M",
         "depth_tracking/*_EPSILON",
         "depth_tracking/body/ray_capsules.MIN_DEPTH_M",
+        "depth_tracking/capturing/sample_cylinders.MIN_INLIER_M",
         "depth_tracking/capturing/smooth_take._MIN_WEIGHT",
         "depth_tracking/body/segment_kinematics._SMALL_ANGLE",
         "depth_tracking/terms/closest_surface._NO_SURFACE",
@@ -220,6 +223,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "mocap_assist/track/tracked_checks.MAX_NAMED",
     ),
     "guards against damaged files": (
+        "reconstruction/pose_library/posture_library.MAX_LENGTH_ERROR",
         "denoising/limb_gaps/body_relation.MIN_EIGENVALUE_RATIO",
         "denoising/motion_model/motion_mixture.MAX_*",
         "denoising/motion_model/motion_mixture.MIN_EIGENVALUE_RATIO",

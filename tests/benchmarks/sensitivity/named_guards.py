@@ -40,6 +40,7 @@ NAMED_GUARDS = (
     "motion/skeletons/still_joints.STILL_RAD",
     "motion_fitting/fit_motion.MAX_STEP_RAD",
     "motion_fitting/fit_motion.NEGLIGIBLE_COST",
+    "physics/body.LEAF_LENGTH_M",
     "physics/body.M*_SIZE",
     "physics/body.MIN_FRAME_RATE_HZ",
     "physics/body.MIN_LENGTH_M",

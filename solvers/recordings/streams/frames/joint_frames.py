@@ -25,7 +25,7 @@ MAX_LISTS = 4 * MAX_JOINTS
 in the garbage collector."""
 MAX_NAME_LENGTH = 64
 MAX_POSITION_M = 100.0
-"""Maximum distance from the sensor on each axis, meters."""
+"""Maximum distance from the sensor on each axis, meters. It guards against damaged packets."""
 MAX_BODY = 2**53
 NUMBERS = (int, float)
 

@@ -13,7 +13,8 @@ MAX_PEOPLE = 16
 BODY_TIMEOUT_S = 1.0
 """Duration in seconds without a person after which another one may have the number."""
 NEW_STREAM_S = 2.0
-"""Minimum backward jump in time that starts a new stream, seconds."""
+"""Minimum backward jump in time that starts a new stream, seconds. It guards packets that
+arrive in another order, which are a fraction of a second late."""
 MIN_EXCHANGE_M = 0.25
 """Meters: a person who jumps as far to where another one was has the other's identity. It
 guards people whose places differ by less than sensors err."""

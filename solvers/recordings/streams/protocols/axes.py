@@ -12,8 +12,8 @@ from ....rotations import normalize
 MAX_POSITION_M = 100.0
 """Maximum distance from the origin on each axis, meters. It guards against damaged packets."""
 MIN_NORM, MAX_NORM = 0.5, 2.0
-"""Norms of a quaternion that is a rotation, up to rounding. They guard against damaged
-packets."""
+"""Norms, relative to 1, of a quaternion that is a rotation, up to rounding. They guard against
+damaged packets."""
 
 
 def points_from_unity(points: Array) -> Array:
