@@ -61,7 +61,8 @@ class MOCAP_UL_bones(bpy.types.UIList):
     ) -> None:
         """Draw the role and both bones: missing ones in red, others with confidence bars.
 
-        A narrow list has bars for the less certain bone alone.
+        A narrow list has bars for the less certain bone alone. Names are drawn without the
+        namespace, such as mixamorig:, which would leave no space for them.
         """
         bars = {side: _bars(row, side) for side in SIDES}
         wide, known = is_wide(context), [each for each in bars.values() if each]
@@ -72,7 +73,7 @@ class MOCAP_UL_bones(bpy.types.UIList):
             armature, bone = listed_armature(listed, side), getattr(row, side)
             cell = columns.row()
             cell.alert = bool(bone) and armature is not None and bone not in armature.data.bones
-            _draw_cell(cell, bone or "-", mark if wide else None)
+            _draw_cell(cell, bone.rpartition(":")[2] or "-", mark if wide else None)
 
 
 def _bars(row: bpy.types.PropertyGroup, side: str) -> Mark | None:

@@ -20,6 +20,8 @@ def test_retarget_panel_reports_a_missing_target(draw, actor):
 
 def test_retarget_panel_shows_found_bones_and_presets(blank, draw, actor, make_armature):
     target = make_armature(name="Double")
+    for bone in target.data.bones:
+        bone.name = f"mixamorig:{bone.name}"
     blank.context.view_layer.objects.active = actor
     blank.context.scene.mocap_assist.retarget.target = target.name
     assert "mocap_assist.save_bone_map" not in draw("MOCAP_PT_retarget")
