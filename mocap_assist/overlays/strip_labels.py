@@ -1,7 +1,5 @@
 """Labels of the strip's rows as an image, which is made once: letters are slow to draw."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 import blf
@@ -69,14 +67,10 @@ def _make_image(labels: Labels) -> _Image:
     longest = max(blf.dimensions(font, text)[0] for text in labels.texts)
     width = round(longest + 2 * margin)
     height = round(labels.row_px * len(labels.texts))
-    offscreen = gpu.types.GPUOffScreen(width, height)
-    with (
-        _same_view(),
-        offscreen.bind(),
-        gpu.matrix.push_pop(),
-        gpu.matrix.push_pop_projection(),
-    ):
-        gpu.state.active_framebuffer_get().clear(color=PLATE)
+    texture = gpu.types.GPUTexture((width, height), format="RGBA8")
+    buffer = gpu.types.GPUFrameBuffer(color_slots=texture)  # GPUOffScreen leaves the region
+    with buffer.bind(), gpu.matrix.push_pop(), gpu.matrix.push_pop_projection():
+        buffer.clear(color=PLATE)
         gpu.matrix.load_matrix(Matrix.Identity(4))
         to_screen = Matrix.Diagonal((2.0 / width, 2.0 / height, 1.0, 1.0))
         gpu.matrix.load_projection_matrix(Matrix.Translation((-1.0, -1.0, 0.0)) @ to_screen)
@@ -84,20 +78,7 @@ def _make_image(labels: Labels) -> _Image:
             row = index * labels.row_px + BASELINE_PX * labels.scale
             blf.position(font, margin, row, 0.0)
             blf.draw(font, text)
-    texture = offscreen.texture_color
-    offscreen.free()
     corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
     shader = gpu.shader.from_builtin("IMAGE")
     batch = batch_for_shader(shader, "TRI_STRIP", {"pos": corners, "texCoord": corners})
     return _Image(texture, batch, (width, height))
-
-
-@contextmanager
-def _same_view() -> Iterator[None]:
-    """Draw elsewhere, then in the same region again: Blender goes back to the whole window."""
-    viewport, scissor = gpu.state.viewport_get(), gpu.state.scissor_get()
-    try:
-        yield
-    finally:
-        gpu.state.viewport_set(*viewport)
-        gpu.state.scissor_set(*scissor)

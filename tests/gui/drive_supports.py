@@ -61,6 +61,7 @@ def hold_hips(armature, held):
         scene.frame_set(round(frame))
         armature[HIPS] = value
         assert armature.keyframe_insert(f'["{HIPS}"]')
+        yield 0.2  # a key and the next frame are two steps of an animator
     look_at(armature, (held.first + held.last) / 2.0)
     yield from settle(pointer=AWAY)
     assert "Hips" in rows(), list(rows())

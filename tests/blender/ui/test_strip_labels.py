@@ -7,36 +7,42 @@ from unittest.mock import MagicMock
 
 import pytest
 
-REGION, WINDOW = (0, 0, 801, 411), (0, 0, 1600, 1000)
-
 
 @pytest.fixture
-def state(load, monkeypatch):
-    """The state of a GPU that goes back to the whole window after an image, as Blender does."""
-    state = SimpleNamespace(viewport=REGION, scissor=REGION)
-    gpu = MagicMock()
-    gpu.state.viewport_get = lambda: state.viewport
-    gpu.state.scissor_get = lambda: state.scissor
-    gpu.state.viewport_set = lambda *given: setattr(state, "viewport", given)
-    gpu.state.scissor_set = lambda *given: setattr(state, "scissor", given)
+def target(load, monkeypatch):
+    """What is drawn to, in a GPU that goes back as Blender's does.
 
-    @contextmanager
-    def bind():
-        yield
-        state.viewport = state.scissor = WINDOW
+    After a frame buffer it is what it was before, after an offscreen the whole window.
+    """
+    target, gpu = SimpleNamespace(name="region"), MagicMock()
 
-    gpu.types.GPUOffScreen.return_value.bind = bind
+    def binding(after):
+        @contextmanager
+        def bind():
+            before, target.name = target.name, "image"
+            yield
+            target.name = after or before
+
+        return bind
+
+    gpu.types.GPUOffScreen.return_value.bind = binding("window")
+    gpu.types.GPUFrameBuffer.return_value.bind = binding(None)
     module = load("mocap_assist.overlays.strip_labels")
     monkeypatch.setattr(module, "gpu", gpu)
     monkeypatch.setattr(module, "blf", MagicMock(dimensions=lambda *_: (50.0, 10.0)))
-    monkeypatch.setitem(sys.modules, "gpu_extras.batch", MagicMock())
+    monkeypatch.setattr(module.blf, "draw", lambda *_: target.drawn.append(target.name))
     monkeypatch.setattr(module, "_images", {})
-    return state
+    monkeypatch.setitem(sys.modules, "gpu_extras.batch", MagicMock())
+    target.drawn = []
+    return target
 
 
-def test_first_drawing_is_in_the_region_too(load, state):
+def test_first_drawing_is_in_the_region_too(load, target):
     module = load("mocap_assist.overlays.strip_labels")
+    labels = module.Labels(("Left Foot", "Right Foot"), 13.0, 1.0)
 
-    module.draw_labels(module.Labels(("Left Foot", "Right Foot"), 13.0, 1.0), 20.0)
+    module.draw_labels(labels, 20.0)
+    module.draw_labels(labels, 20.0)
 
-    assert (state.viewport, state.scissor) == (REGION, REGION)
+    assert target.name == "region"
+    assert target.drawn == ["image", "image"]  # once for each label
