@@ -17,8 +17,8 @@ TAKE = Path(__file__).parent / "HDM_dg_lieDownFloor_014_120.amc"
 AWAY = (500, 700)
 HANDS = {"Left Hand", "Right Hand"}
 HIPS = "mocap_contact_hips"
-MAX_MOVED_M = 0.01
-"""Of held hips."""
+MAX_MOVED_M, BLEND_FRAMES = 0.01, 36
+"""Of held hips, away from both ends by the frames of the blend of planting, at 120 Hz."""
 
 
 def import_take():
@@ -76,7 +76,7 @@ def hold_hips(armature, held):
     (shown,) = rows()["Hips"]
     assert np.allclose((shown.first, shown.last), (held.first, held.last), atol=1.0), shown
     places = []
-    for frame in np.linspace(held.first + 5.0, held.last - 5.0, 9):
+    for frame in np.linspace(held.first + BLEND_FRAMES, held.last - BLEND_FRAMES, 9):
         scene.frame_set(round(frame))
         places.append(armature.matrix_world @ armature.pose.bones[0].head)
     moved_m = np.ptp(np.array(places), axis=0).max()
