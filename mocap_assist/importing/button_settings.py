@@ -79,7 +79,7 @@ class ImportChoices(FloorPlacementSettings, ReadingSettings):
     update_scene_duration: bool = setting(
         False,
         "Extend the scene to the end of the recording; never shortens it",
-        label="Update Scene Duration",
+        label="Extend Scene",
     )
     focal_length: float = setting(
         0.0,
