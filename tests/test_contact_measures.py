@@ -5,12 +5,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.feet.legs import find_legs
-from solvers.motion import forward_kinematics
+from solvers.motion import Motion, forward_kinematics
+from solvers.rotations import quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 from tests.benchmarks.contacts.detection_scores import DetectionScores
 from tests.benchmarks.contacts.detectors import by_guo, by_holden, by_thresholds
 from tests.benchmarks.contacts.force_plates import weighed_walks
 from tests.benchmarks.contacts.made_takes import PLANS, made_takes
+from tests.benchmarks.contacts.part_takes import acceleration_ratio
 from tests.benchmarks.peers.blender_ik import has_blender, pin_in_blender
 
 
@@ -42,6 +44,27 @@ def test_frames_without_a_known_contact_are_not_scored():
 
     assert scores.precision() == 1.0
     assert scores.onset_errors == [0.0, 0.0]
+
+
+def test_a_knee_that_passes_half_a_turn_accelerates_as_before():
+    """It turns evenly, then jumps by 46 degrees; planting adds 1 degree in all frames."""
+    walk = walking_gait(GaitSettings(duration=1.0))
+    knee = find_legs(walk.skeleton)[0].knee
+    angles = np.linspace(2.0, 2.74, walk.n_frames)
+    angles[walk.n_frames // 2 :] += 0.8
+    given, planted = (
+        bent(walk, knee, angles),
+        bent(walk, knee, angles + np.radians(1.0)),
+    )
+
+    assert acceleration_ratio(given, planted, [knee]) == pytest.approx(1.0)
+
+
+def bent(motion: Motion, knee: int, angles: np.ndarray) -> Motion:
+    """Return the motion with a knee at angles in radians."""
+    rotations = motion.rotations.copy()
+    rotations[:, knee] = quaternion_from_rotation_vector(angles[:, None] * (1.0, 0.0, 0.0))
+    return motion.with_poses(rotations)
 
 
 @pytest.mark.parametrize("name", PLANS)

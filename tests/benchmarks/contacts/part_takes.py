@@ -12,8 +12,12 @@ from solvers.feet.legs import SIDES, LegJoints, find_legs
 from solvers.feet.sole_contact import find_foot_contact
 from solvers.feet.standing_feet import detect_standing_feet
 from solvers.motion import Motion, find_humanoid_map, forward_kinematics
-from solvers.rotations import angle_between
-from solvers.rotations.representations import IDENTITY
+from solvers.rotations import (
+    angle_between,
+    inverse,
+    multiply,
+    rotation_vector_from_quaternion,
+)
 from solvers.signals import find_runs
 
 from ..shared.noise import seeded
@@ -115,14 +119,23 @@ def _slides(
 
 
 def acceleration_ratio(given: Motion, planted: Motion, joints: Sequence[int]) -> float:
-    """Return the largest acceleration of joint angles relative to that in the given motion."""
+    """Return the largest angular acceleration of joints relative to that in the given motion.
+
+    Angles alone would hide a recorded knee that jumps from 157 degrees to -157.
+    """
     if not joints:
         return 1.0
     before, after = (
-        np.abs(np.diff(angle_between(motion.rotations[:, joints], IDENTITY), 2, axis=0)).max()
+        np.linalg.norm(np.diff(_turns(motion.rotations[:, joints]), axis=0), axis=-1).max()
         for motion in (given, planted)
     )
     return float(after / max(before, 1e-9))
+
+
+def _turns(rotations: Array) -> Array:
+    """Return the rotation vectors from each frame to the next, (n_frames - 1, n_joints, 3)."""
+    steps = multiply(rotations[1:], inverse(rotations[:-1]))
+    return rotation_vector_from_quaternion(steps)
 
 
 def _worst_hips(motion: Motion) -> float:
