@@ -38,7 +38,14 @@ NUMBER_KEYS = ("frame", "frame_id", "frame_number", "frame_index", "frame_idx", 
                "frameNumber", "frameIndex")  # fmt: skip
 """Members with the number of a frame."""
 RATE_KEYS = ("fps", "frame_rate", "framerate", "frameRate")
-TIME_KEYS = {"timestamp": None, "time": None, "timestamp_ms": 0.001, "time_ms": 0.001}
+TIME_KEYS = {
+    "timestamp": None,
+    "Timestamp": None,
+    "time": None,
+    "Time": None,
+    "timestamp_ms": 0.001,
+    "time_ms": 0.001,
+}
 """Seconds per unit of the time of a frame; None where the key does not state it."""
 MAX_SPREAD = 20
 """Columns of named joints in all frames for each point in them, a ratio. It bounds the memory
@@ -51,7 +58,7 @@ MAX_NUMBER = 1e300
 JSON does not limit."""
 HEAD = re.compile(
     rb"[^\[]*(\[\s*){3,}[-\d]|\s*[\[{].*?\"("
-    + "|".join(POINT_KEYS).encode()
+    + "|".join((*POINT_KEYS, *(key[:1].upper() + key[1:] for key in POINT_KEYS))).encode()
     + rb')"\s*:\s*(\[\s*([\[{\d-]|null)|\{)',
     re.DOTALL,
 )

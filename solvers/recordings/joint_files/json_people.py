@@ -17,7 +17,8 @@ POINT_KEYS = (
 PEOPLE_KEYS = ("instances", "people", "persons", "bodies", "skeletons", "annots")
 """Members with the people of a frame."""
 IDENTITY_KEYS = ("id", "track_id", "person_id", "body_id", "personID")
-NAME_KEYS = ("name", "joint", "joint_name", "jointName", "bone", "bone_name", "type", "id")
+NAME_KEYS = ("name", "joint", "joint_name", "jointName", "bone", "bone_name", "type",
+             "jointType", "id")  # fmt: skip
 """Members with the name of a joint, where joints are objects in a list."""
 PLACE_KEYS = ("position", "pos", "translation", "location", "transform", "matrix")
 """Members with the place of a joint, or with the matrix of its pose."""
@@ -48,8 +49,10 @@ def people_of_frame(frame: Any) -> Iterator[JsonPerson]:
             return
         listed = frame
     elif isinstance(frame, dict):
-        key = next((key for key in PEOPLE_KEYS if isinstance(frame.get(key), list)), "")
-        listed = frame[key] if key else [frame]
+        listed = next(
+            (found for found in _members(frame, PEOPLE_KEYS) if isinstance(found, list)),
+            [frame],
+        )
     else:
         return
     for count, body in enumerate(listed):
@@ -60,8 +63,7 @@ def people_of_frame(frame: Any) -> Iterator[JsonPerson]:
 
 
 def _person(body: Mapping[str, Any], count: int) -> Iterator[JsonPerson]:
-    key = next((key for key in POINT_KEYS if body.get(key)), "")
-    joints: Any = body.get(key)
+    joints: Any = next(filter(None, _members(body, POINT_KEYS)), None)
     identity = name_of_body(body, IDENTITY_KEYS, count)
     names: tuple[str, ...] = ()
     if isinstance(joints, Mapping):
@@ -72,7 +74,7 @@ def _person(body: Mapping[str, Any], count: int) -> Iterator[JsonPerson]:
     points = _points(values) if isinstance(values, list) else None
     if points is not None:
         yield JsonPerson(identity, names, points)
-    elif not key:
+    elif not joints:
         yield from _keyed_people(body, identity)
 
 
@@ -90,6 +92,14 @@ def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson
             if points is not None:
                 yield JsonPerson(name, tuple(found), points)
                 break
+
+
+def _members(values: Mapping[str, Any], keys: tuple[str, ...]) -> Iterator[Any]:
+    """Yield the members with these keys, which programs in C# begin with a capital."""
+    for key in keys:
+        for spelled in (key, key[:1].upper() + key[1:]):
+            if spelled in values:
+                yield values[spelled]
 
 
 def is_place(value: Any) -> bool:
@@ -116,7 +126,7 @@ def _is_number(value: Any) -> bool:
 def _names_of(joints: list[Mapping[str, Any]]) -> tuple[str, ...]:
     """Return the names of joints that are objects, by the first member that differs in all."""
     for key in NAME_KEYS:
-        names = tuple(str(joint.get(key)) for joint in joints)
+        names = tuple(str(next(_members(joint, (key,)), None)) for joint in joints)
         if len({*names}) == len(names):
             return names
     return ()
@@ -127,10 +137,10 @@ def place_of(joint: Any) -> Any:
     if joint is None:
         return [None] * 3
     if isinstance(joint, Mapping):
-        inner = next((joint[key] for key in PLACE_KEYS if key in joint), joint)
+        inner = next(_members(joint, PLACE_KEYS), joint)
         if isinstance(inner, Mapping):
             lower = {str(key).lower(): value for key, value in inner.items()}
-            return [lower.get(axis) for axis in "xyz"]
+            return [lower.get(axis, lower.get(f"camera{axis}")) for axis in "xyz"]
         joint = inner
     if isinstance(joint, list) and len(joint) in {4, 16}:
         return _translation(joint)

@@ -28,16 +28,20 @@ from ..conventions import (
 )
 from ..point_bodies import second_of_times
 from .numbered_words import NUMBER, NumberedWords
-from .point_table import TIMES, recording_of_points
+from .point_table import TIMES, ignored_columns, recording_of_points
 from .table_titles import titles_of_line
 
 FRAMES = ("frame", "frame_id", "frameid", "frame_index", "frame_number", "frame_num", "image")
 JOINTS = (
     "joint", "joint_name", "jointname", "joint_id", "joint_index", "landmark", "landmark_name",
     "landmark_id", "landmark_index", "keypoint", "keypoint_name", "keypoint_id", "point",
-    "point_id", "marker", "marker_name", "body_part", "bodypart", "bone", "name", "part",
+    "point_id", "jointtype", "joint_type", "marker", "marker_name", "body_part", "bodypart",
+    "bone", "name", "part",
 )  # fmt: skip
-PEOPLE = ("person", "person_id", "body", "body_id", "track_id", "subject", "skeleton_id")
+PEOPLE = (
+    "person", "person_id", "body", "body_id", "track_id", "trackingid", "tracking_id",
+    "subject", "skeleton_id",
+)  # fmt: skip
 IDENTITIES = ("id", "pid")
 """Titles of the person in tables that state a joint of a frame several times without it; others
 have a number of the line or of the joint there."""
@@ -152,7 +156,11 @@ def _read_table(path: Path | str, progress: Progress) -> _LongTable:
     if columns is None:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
     joints, people = NumberedWords(), NumberedWords()
-    converters: dict[int, Callable[[bytes], bytes]] = {columns.joint: joints}
+    used = {columns.joint, columns.frame, columns.time, *columns.axes}
+    converters: dict[int, Callable[[bytes], bytes]] = {
+        **ignored_columns(len(titles), used),
+        columns.joint: joints,
+    }
     person = columns.identity if columns.person is None else columns.person
     if person is not None:
         converters[person] = people

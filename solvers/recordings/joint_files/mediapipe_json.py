@@ -121,6 +121,7 @@ def _read_content(
     frames: list[Array] = []
     times: list[float] = []
     rate: float | None = None
+    n_several = 0
     for member in members:
         location = f"{path}, frame {len(frames) + 1}"
         if member.key in RATES:
@@ -130,12 +131,21 @@ def _read_content(
             times.append(np.nan)
         elif isinstance(member.value, Mapping) or member.key in WORLD:
             found = frame_landmarks(member.value, location)
+            n_several += len(_bodies_of(member.value)) > 1
             time = frame_time(member.value, location)
             if found is None and np.isnan(time) and KEYS.isdisjoint(member.value):
                 continue  # something else, such as a header
             frames.append(np.full((N_POINTS, 4), np.nan) if found is None else found)
             times.append(time)
             progress(0.9 * member.done, "Reading")
+    if n_several:
+        progress(
+            0.9,
+            Remark(
+                f"{n_several} frames have more than one person; the first of each is read, who"
+                " may change. Use a tracker that identifies people"
+            ),
+        )
     return _MediapipeContent(frames, times, rate)
 
 
@@ -151,6 +161,20 @@ def frame_time(frame: Any, location: str) -> float:
 
 def frame_landmarks(frame: Any, location: str) -> Array | None:
     """Return x, y, z and visibility of the first body, shape (33, 4); None without one."""
+    found = next(iter(_bodies_of(frame)), None)
+    if not found:
+        return None
+    if not isinstance(found, list) or len(found) != N_POINTS:
+        count = len(found) if isinstance(found, list) else 0
+        raise InvalidFileError(
+            f"{location} has {count} landmarks; those of MediaPipe's pose are {N_POINTS}. Save"
+            " all of them."
+        )
+    return np.stack([_point(point, location) for point in found])
+
+
+def _bodies_of(frame: Any) -> list[Any]:
+    """Return the landmarks of each body of a frame, as they are in the file."""
     found = frame
     if isinstance(frame, Mapping):
         inner: Mapping[str, Any] = next(
@@ -164,16 +188,8 @@ def frame_landmarks(frame: Any, location: str) -> Array | None:
         found = next((found[key] for key in FLAT if key in found), found)
     if isinstance(found, list) and len(found) and isinstance(found[0], list):
         deep = found[0] and isinstance(found[0][0], list | Mapping)
-        found = found[0] if deep else found
-    if not found:
-        return None
-    if not isinstance(found, list) or len(found) != N_POINTS:
-        count = len(found) if isinstance(found, list) else 0
-        raise InvalidFileError(
-            f"{location} has {count} landmarks; those of MediaPipe's pose are {N_POINTS}. Save"
-            " all of them."
-        )
-    return np.stack([_point(point, location) for point in found])
+        return found if deep else [found]
+    return [found] if found else []
 
 
 def _point(point: Any, location: str) -> Array:

@@ -1,7 +1,7 @@
 """Read tables of any program whose columns are named after points and coordinates."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -117,7 +117,12 @@ def open_point_table(
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
     reader.take(header.n_lines)
     rows = stream_cells(
-        reader, header.separator, columns.width, path, within(progress, 0.0, 0.8)
+        reader,
+        header.separator,
+        columns.width,
+        path,
+        within(progress, 0.0, 0.8),
+        converters=ignored_columns(columns.width, {*columns.positions.flat, columns.time}),
     )
     points = rows[:, columns.positions.astype(int)]
     times = None if columns.time is None else rows[:, columns.time]
@@ -146,6 +151,13 @@ def open_point_table(
         return recording_of_points(path, person.names, mine, times, unit, progress)
 
     return Bodies(str(path), listed, read)
+
+
+def ignored_columns(
+    width: int, used: Collection[int | None]
+) -> dict[int, Callable[[bytes], bytes]]:
+    """Return converters that leave out all other columns, which may hold words."""
+    return {column: lambda cell: b"" for column in range(width) if column not in used}
 
 
 def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[MarkerSubject]:

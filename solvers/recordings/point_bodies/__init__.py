@@ -14,10 +14,10 @@ from .point_arrays import (
     body_of_points,
     points_of_array,
     read_body,
-    second_of_times,
     stand_body,
     without_undetected,
 )
+from .time_units import second_of_times
 from .unnamed_joints import has_layout
 
 __all__ = [

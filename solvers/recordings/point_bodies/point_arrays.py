@@ -47,9 +47,6 @@ MIN_PIXELS = 10.0
 2D points, 0 to 1, from being read as depth."""
 MAX_STATURE_M, MIN_STATURE_M = 4.0, 0.5
 """Statures, meters, outside which lengths have no known unit. They guard normalized points."""
-MAX_STEP_S = 1.0
-"""Median step between frames, seconds, above which times without a unit are milliseconds. It
-guards slow recordings in seconds; milliseconds of 1000 Hz are mistaken for them."""
 LEGS = ("left", "right")
 MIN_FLEXION = 0.03
 """Distance of the knee from the line between hip and ankle, relative to the leg, that shows
@@ -123,24 +120,6 @@ def without_undetected(points: NDArray[np.float64]) -> NDArray[np.float64]:
     if is_undetected.all():
         is_undetected = ~points.any(axis=-1, keepdims=True)
     return np.where(is_undetected, np.nan, points[..., :3])
-
-
-def second_of_times(times: Array, progress: Progress) -> float:
-    """Return the seconds per unit of times whose unit the file does not state.
-
-    Parameters
-    ----------
-    times : shape (n_frames,); NaN where missing
-    progress : Progress
-        Is given a message where they are milliseconds.
-    """
-    steps = np.diff(times[np.isfinite(times)])
-    if not len(steps) or np.median(steps) <= MAX_STEP_S:
-        return 1.0
-    progress(
-        0.8, Remark("Times have no unit; by their steps they are interpreted as milliseconds")
-    )
-    return 0.001
 
 
 def read_body(

@@ -107,6 +107,18 @@ def test_a_joint_without_confidence_was_not_tracked(read_any):
     assert np.isnan(positions_of(recording, ["Head"])[0]).all()
 
 
+def test_a_second_person_in_world_landmarks_is_reported(read_any, collected_messages):
+    """Before, the report did not mention anybody else."""
+    messages, progress = collected_messages
+    content = json.loads(mediapipe_json(mediapipe()))
+    for frame in content["frames"][:3]:
+        frame["worldLandmarks"] = [frame["worldLandmarks"]] * 2
+
+    read_any(json.dumps(content), progress=progress)
+
+    assert any("3 frames have more than one person" in message for message in messages)
+
+
 def expected_landmarks(points):
     x, y, z = np.moveaxis(points[..., :3], -1, 0)
     return np.stack([x, z, -y], axis=-1)
