@@ -22,8 +22,8 @@ export OPENBLAS_NUM_THREADS := 1
 # The suites start hundreds of Pythons. Without bytecode each compiles all that it imports:
 # 2.9 s of CPU time in place of 1.2 s for a solve of Clean.
 unexport PYTHONDONTWRITEBYTECODE
-# A test that hangs, or a Blender that hangs at its end, must not hold up the rest for ever; a
-# suite takes ten minutes on a quiet machine and an hour beside ten other jobs.
+# A test that hangs, or a Blender that hangs at its end, must not hold up the rest forever; a
+# suite takes ten minutes on a quiet machine and an hour next to ten other jobs.
 AT_MOST := timeout --kill-after=10 3600
 SUBMAKE := $(MAKE) --no-print-directory --jobs=2
 

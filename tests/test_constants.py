@@ -1,4 +1,4 @@
-"""Each tuned number has a unit and a source, in the docstring or comment beside it.
+"""Each tuned number has a unit and a source, in the docstring or comment next to it.
 
 A source is a paper, a standard, a definition, a training script, what it guards or bounds, or
 a sweep: what "`make sensitivity` varies" has a row in docs/benchmarks/sensitivity.md, which
@@ -58,8 +58,8 @@ def tuned(family: str) -> list[Constant]:
 def test_tuned_numbers_say_their_unit_and_source(family):
     without_source = [each.key for each in tuned(family) if not SOURCE.search(each.text)]
     without_unit = [each.key for each in tuned(family) if each.unit == "-"]
-    assert not without_source, "no source beside them"
-    assert not without_unit, "no unit in the name or beside them"
+    assert not without_source, "no source next to them"
+    assert not without_unit, "no unit in the name or next to them"
 
 
 def test_numbers_that_no_family_lists_say_their_unit_and_source():

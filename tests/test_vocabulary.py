@@ -20,6 +20,7 @@ RETIRED_IN_TEXTS = {
     "alike": "similar",
     "amiss": "wrong",
     "anew": "again",
+    "behaviour": "behavior",
     "beside": "next to, in addition to",
     "best seen": "in most frames",
     "colour": "color",
@@ -74,8 +75,8 @@ RETIRED_IN_TEXTS = {
     "whoever": "a user, an actor",
 }
 """Words not used any more, and their replacements, in the pages at the top, docs, the
-manual, and every text of the code: docstrings, labels, tooltips, help, messages and errors.
-A phrase of several words is one entry."""
+manual, `Makefile` and `.ci`, comments and docstrings, and every text of the code: labels,
+tooltips, help, messages and errors. A phrase of several words is one entry."""
 RETIRED_IN_NAMES = {
     "alike": "similar",
     "calmed": "smoothed",
@@ -155,12 +156,12 @@ WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
 
 @cache
 def texts() -> tuple[tuple[str, str], ...]:
-    """Where each text for users stands, and the text."""
+    """Where each text stands, and the text."""
     pages = [
-        ROOT / "README.md",
-        ROOT / "CONTRIBUTING.md",
-        ROOT / "NOTICE.md",
-        ROOT / "SECURITY.md",
+        *sorted(ROOT.glob("*.md")),
+        ROOT / "Makefile",
+        ROOT / "pyproject.toml",
+        *sorted(path for path in (ROOT / ".ci").rglob("*") if is_text(path)),
         *sorted((ROOT / "docs").rglob("*.md")),
         *sorted((ROOT / "mocap_assist").rglob("*.html")),
         *sorted((ROOT / "solvers").rglob("*.html")),
@@ -175,7 +176,37 @@ def texts() -> tuple[tuple[str, str], ...]:
         for module, tree in modules(CODE)
         for node in strings_of(tree)
     ]
-    return *lines, *strings
+    docstrings = [
+        (f"{module.relative_to(ROOT)}:{node.lineno}", node.value)
+        for module, tree in modules(("tests",))
+        for node in docstrings_of(tree)
+    ]
+    comments = [
+        (f"{module.relative_to(ROOT)}:{number}", comment)
+        for module, _ in modules((*CODE, "tests"))
+        for number, comment in comments_of(module)
+    ]
+    return *lines, *strings, *docstrings, *comments
+
+
+def is_text(path: Path) -> bool:
+    """Whether a file of `.ci` is a script or page, and no lock file or compiled module."""
+    return path.is_file() and path.suffix in {"", ".css", ".html", ".js", ".py"}
+
+
+def comments_of(module: Path) -> Iterator[tuple[int, str]]:
+    """What follows a # in each line; in a string this is a text, too."""
+    for number, line in enumerate(module.read_text(encoding="utf-8").splitlines(), 1):
+        if "#" in line:
+            yield number, line.partition("#")[2]
+
+
+def docstrings_of(tree: ast.Module) -> Iterator[ast.Constant]:
+    """Strings that are statements: docstrings, also those of constants."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Expr(value=ast.Constant(value=str()) as text):
+                yield text
 
 
 @cache
@@ -194,9 +225,14 @@ def names() -> dict[str, str]:
     return found
 
 
+def modules(folders: tuple[str, ...]) -> Iterator[tuple[Path, ast.Module]]:
+    for folder in folders:
+        yield from parsed(folder)
+
+
 @cache
-def modules(folders: tuple[str, ...]) -> tuple[tuple[Path, ast.Module], ...]:
-    paths = [path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]
+def parsed(folder: str) -> tuple[tuple[Path, ast.Module], ...]:
+    paths = sorted((ROOT / folder).rglob("*.py"))
     return tuple((path, ast.parse(path.read_text(encoding="utf-8"))) for path in paths)
 
 
@@ -234,7 +270,7 @@ def joined_texts() -> str:
 
 
 @pytest.mark.parametrize("retired", RETIRED_IN_TEXTS)
-def test_texts_for_users_have_no_retired_word(retired):
+def test_texts_have_no_retired_word(retired):
     positions = []
     if retired in joined_texts():
         pattern = re.compile(rf"(?<![\w-]){re.escape(retired)}(?![\w-])", re.IGNORECASE)
@@ -278,6 +314,12 @@ def test_texts_and_names_are_collected():
     assert {"denoise", "skeleton", "settings", "fixtures"} <= set(names())
     found = [node.value for node in strings_of(ast.parse('"""Doc."""\nx = "text"'))]
     assert found == ["Doc.", "text"]
+    assert [node.value for node in docstrings_of(ast.parse('"""Doc."""\nx = "text"'))] == [
+        "Doc."
+    ]
+    described = {where.partition(":")[0] for where, _ in texts()}
+    assert described >= {"CHANGELOG.md", "Makefile", ".ci/run", "tests/test_vocabulary.py"}
+    assert " fmt: skip" in dict(comments_of(Path(__file__))).values()
     named = {name for _, name in names_of(ast.parse("def f(a): b.c = d"))}
     assert named == {"f", "a", "b", "c", "d"}
     assert [*constants_of(ast.parse("A, B = 1, 2\nC: int = 3\nd = 4"))] == ["A", "B", "C"]

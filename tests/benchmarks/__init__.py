@@ -1,7 +1,7 @@
-"""Benchmarks of all methods beside their peers.
+"""Benchmarks of all methods next to their peers.
 
 They compute with one thread and one kernel of linear algebra on every machine. Where a tracker
-that all but fails starts anew is decided by the last digits, so another kernel of the same
+that all but fails starts again is decided by the last digits, so another kernel of the same
 library moves such rows: with 80 columns of depth from 4.70 cm to 5.67.
 """
 

@@ -62,7 +62,7 @@ class Case:
 
     @cached_property
     def noisy(self) -> Array:
-        """Spoilt channels, same shape as `clean`."""
+        """Corrupted channels, same shape as `clean`."""
         rng = seeded(self.name, self.level.sigma, self.level.fraction)
         sigma, fraction = self.level.sigma, self.level.fraction
         if self.level.bursts:

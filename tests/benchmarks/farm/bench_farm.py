@@ -3,7 +3,7 @@
     make bench-farm
     make bench-farm ARGUMENTS=--docs    # into docs/benchmarks/farm.md
 
-All runs clean the same made-up walks with the command line, which starts anew each time. The
+All runs clean the same made-up walks with the command line, which starts again each time. The
 workers of the cluster have worked before.
 """
 

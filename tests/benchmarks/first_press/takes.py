@@ -94,7 +94,7 @@ SCORED = (
     Take("03_01", 30),
 )
 QUICK = DEVELOPMENT[:6]
-"""Development takes at 30 Hz, where fast motion has the fewest samples."""
+"""Development takes at 30 Hz, where fast motion has the lowest number of samples."""
 
 
 @cache

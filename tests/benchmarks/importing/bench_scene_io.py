@@ -4,7 +4,7 @@
     make bench-scene ARGUMENTS="--bones 60 --mode XYZ"
     make bench-scene ARGUMENTS=--docs    # into docs/benchmarks/importing.md
 
-Beside it, in the same run and on the same curves, the fastest bare way that Blender's API
+Next to it, in the same run and on the same curves, the fastest bare way that Blender's API
 offers (`foreach_get`, `foreach_set`, no meaning attached). Each time is the median of three.
 """
 

@@ -3,8 +3,8 @@
 `python -m tests.benchmarks.peers.blender_decimate IN.npz OUT.json` is the child process. Every
 channel is an F-Curve of its own. Rotations are decimated with one margin and positions with
 another, as meters and parts of quaternions have no common one; of the pairs that keep every
-joint within the tolerance at every frame, the one with the fewest keys is taken, and the margin
-of its rotations widened by bisection as far as that holds.
+joint within the tolerance at every frame, the one with the minimum of keys is taken. The margin
+of its rotations is widened by bisection as far as that holds.
 """
 
 import json

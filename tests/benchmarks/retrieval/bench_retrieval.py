@@ -27,7 +27,7 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument(
-        "--method", default="", help="ask only those with this in their name anew"
+        "--method", default="", help="query only those with this in their name again"
     )
     parser.add_argument("--jobs", type=int, default=2, help="methods at a time")
     parser.add_argument("--choose", action="store_true", help="settings of pyramids")

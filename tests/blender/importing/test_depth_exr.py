@@ -132,7 +132,7 @@ def test_a_picture_that_is_none_is_named(folder, lens, blank, name, content, sen
 
 
 def test_a_pipe_in_the_folder_is_passed_over(folder, lens, blank):
-    """Whoever opens one waits for another program, for ever."""
+    """Opening one waits for another program, forever."""
     os.mkfifo(folder / "depth8.exr")
 
     assert bring(blank, folder).name == "z pass"

@@ -13,7 +13,7 @@ def colors(load):
 
 
 def of_bone(armature, shown, name):
-    """Colours of a bone's head and tail."""
+    """Colors of a bone's head and tail."""
     return shown.colors[[bone.name for bone in armature.pose.bones].index(name)]
 
 

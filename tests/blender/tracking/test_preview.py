@@ -85,7 +85,7 @@ def press(load, window, blank, monkeypatch):
 
 
 def ended(button, window):
-    """Let time pass, but not for ever."""
+    """Let time pass, but not forever."""
     for _ in range(5):
         outcome = button.modal(window.context, event("TIMER"))
         if outcome != {"RUNNING_MODAL"}:

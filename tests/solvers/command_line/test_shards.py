@@ -17,7 +17,7 @@ def test_shards_are_disjoint_and_complete_and_do_not_move():
     assert sorted(name for part in parts for name in part) == sorted(names)
     assert all(30 < len(part) < 120 for part in parts)
     assert [name for name in names if Shard(1, 1).has(name)] == names
-    # On another machine, in another year: NFD as on macOS, and the same numbers for ever.
+    # On another machine, in another year: NFD as on macOS, and the same numbers forever.
     parts = [Shard(number, 997) for number in range(1, 998)]
     composed, decomposed = (
         [part.has(f"caf{e}.bvh") for part in parts] for e in ("é", "e\u0301")

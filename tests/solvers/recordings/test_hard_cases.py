@@ -144,7 +144,7 @@ def test_a_jump_is_no_floor():
 
 
 def test_a_platform_stays_where_it_is(tmp_path):
-    """Somebody who stands on a table of a measured room."""
+    """A person who stands on a table of a measured room."""
     take = plain_names(body(hips=(0.0, 0.0, 0.96 + 0.7)))
 
     motion, _ = read(take, tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
@@ -250,7 +250,7 @@ def _between(one, other) -> np.ndarray:
 
 
 def test_an_actor_far_above_the_floor_is_a_question(tmp_path):
-    """Nobody comes near the floor: a platform, or a floor that is elsewhere."""
+    """No person comes near the floor: a platform, or a floor that is elsewhere."""
     take = plain_names(body(hips=(0.0, 0.0, 0.96 + 0.7)))
 
     for floor, asks in (

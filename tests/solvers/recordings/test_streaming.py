@@ -160,7 +160,7 @@ def test_an_empty_table_has_its_width():
 
 @pytest.mark.parametrize("kind", ["bvh", "trc", "amc", "csv"])
 def test_text_is_never_completely_in_memory(kind, tmp_path, monkeypatch):
-    """Beside three times the numbers, which the readers work on, stands only a block."""
+    """Only a block is added to three times the numbers, which the readers work on."""
     read, complete, _ = FILES[kind]
     monkeypatch.setattr(line_reader, "BLOCK_BYTES", 1 << 16)
     (tmp_path / "take.asf").write_bytes(SKELETON)
