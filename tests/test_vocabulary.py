@@ -1,7 +1,7 @@
 """Names and texts use the terms of the field: docs/glossary.md.
 
-To retire a word, replace it everywhere and add it to one table below or to both: some words are
-wrong in names, where they hide what a value is, and right in a sentence.
+To retire a word, replace it everywhere and add it to one table of `retired_words.py` or to
+both: some words are wrong in names, where they hide what a value is, and right in a sentence.
 """
 
 import ast
@@ -12,145 +12,16 @@ from pathlib import Path
 
 import pytest
 
+from tests.retired_words import (
+    RETIRED_FIRST_WORDS,
+    RETIRED_IN_NAMES,
+    RETIRED_IN_TEXTS,
+    STORED_NAMES,
+)
+
 ROOT = Path(__file__).parents[1]
 CODE = ("operators", "mocap_assist", "solvers")
 TESTS = ("tests", ".ci")
-RETIRED_IN_TEXTS = {
-    "albeit": "although",
-    "alike": "similar",
-    "amiss": "wrong",
-    "anew": "again",
-    "behaviour": "behavior",
-    "beside": "next to, in addition to",
-    "best seen": "in most frames",
-    "colour": "color",
-    "colours": "colors",
-    "companion": "reference marker",
-    "companions": "reference markers",
-    "doubted": "of low confidence",
-    "fewest": "minimum",
-    "for ever": "forever",
-    "foresight": "prediction, leave-one-out error",
-    "foretell": "predict",
-    "foretold": "predicted",
-    "girdle": "clavicle, shoulder girdle joint",
-    "girdles": "clavicles, shoulder girdle joints",
-    "gives way": "is offset, is relaxed",
-    "glimpse": "preview",
-    "glimpses": "previews",
-    "grey": "gray",
-    "heat": "confidence colors",
-    "hangs below": "is a descendant of",
-    "hitherto": "until now",
-    "in vain": "without effect",
-    "lest": "so that ... not",
-    "licence": "license",
-    "likeness": "similarity",
-    "likes": "neighbors, similar clips",
-    "mended": "corrected, repaired",
-    "needs an eye": "issue",
-    "neighbour": "neighbor",
-    "neighbours": "neighbors",
-    "nobody": "no person, no one",
-    "onlookers": "observers",
-    "put right": "corrected",
-    "puts right": "corrects",
-    "reckon": "compute",
-    "somebody": "a user, an actor, another process",
-    "spoilt": "corrupted, damaged",
-    "steady": "smooth, constant",
-    "steadying": "smoothing",
-    "telling": "reporting",
-    "tells": "reports, distinguishes",
-    "thereof": "of it",
-    "told": "reported, estimated",
-    "towards": "toward",
-    "trust in colors": "confidence colors",
-    "unseen": "missing",
-    "unsure": "low confidence",
-    "watched": "observed, previewed",
-    "whence": "where ... from",
-    "whilst": "while",
-    "whither": "where",
-    "whoever": "a user, an actor",
-}
-"""Words not used any more, and their replacements, in the pages at the top, docs, the
-manual, `Makefile` and `.ci`, comments and docstrings, and every text of the code: labels,
-tooltips, help, messages and errors. A phrase of several words is one entry."""
-RETIRED_IN_NAMES = {
-    "alike": "similar",
-    "calmed": "smoothed",
-    "calms": "smooths",
-    "centimetre": "centimeter",
-    "centimetres": "centimeters",
-    "centre": "center",
-    "centred": "centered",
-    "centres": "centers",
-    "colour": "color",
-    "colours": "colors",
-    "companion": "reference marker",
-    "companions": "reference markers",
-    "coregionalised": "coregionalized",
-    "doubt": "low confidence",
-    "doubtful": "low confidence",
-    "doubts": "low confidence, error scores",
-    "exchanges": "left-right swaps",
-    "fewest": "minimum",
-    "footing": "contact state",
-    "foresight": "prediction",
-    "foretell": "predict",
-    "foretells": "predicts",
-    "foretold": "predicted",
-    "girdle": "clavicle",
-    "girdles": "clavicles",
-    "grey": "gray",
-    "haste": "time-warp rate, speed gain",
-    "heat": "confidence colors",
-    "lest": "until, unless",
-    "licence": "license",
-    "likeness": "similarity",
-    "likes": "neighbors",
-    "loud": "weight",
-    "mended": "corrected, repaired",
-    "metre": "meter",
-    "metres": "meters",
-    "millimetre": "millimeter",
-    "millimetres": "millimeters",
-    "neighbour": "neighbor",
-    "neighbours": "neighbors",
-    "nobody": "empty, no person",
-    "normalise": "normalize",
-    "normalised": "normalized",
-    "onlooker": "observer",
-    "reckon": "compute",
-    "somebody": "user, actor, any",
-    "spoilt": "corrupted, damaged",
-    "steadied": "smoothed",
-    "steady": "smooth",
-    "surer": "confidence",
-    "tells": "reports",
-    "told": "reported, estimated",
-    "trust": "reliability",
-    "trusted": "reliable",
-    "unseen": "missing",
-    "unsure": "low confidence, uncertain",
-    "ways": "directions, methods",
-    "whither": "target, heading",
-    "whoever": "user, actor",
-}
-"""What no module, class, function, argument, attribute or variable of the code and its tests is
-called any more, as a word of its name, and what is used instead."""
-STORED_NAMES = {
-    "CENTIMETRES", "COREGIONALISED", "METRES", "MILLIMETRES", "grey_opening",
-    "metres",
-}  # fmt: skip
-"""Settings fields and items of their choices, which presets and command lines have stored, and
-`metres`, which belongs to such a choice. `grey_opening` is a function of SciPy."""
-RETIRED_FIRST_WORDS = {
-    "FARTHEST", "FEWEST", "FINEST", "LARGEST", "LEAST", "LONGEST", "MOST", "NARROWEST",
-    "SHORTEST", "SMALLEST", "TALLEST", "WIDEST",
-}  # fmt: skip
-"""No constant of a module begins with these; MAX_ or MIN_, a noun and a unit say more."""
 WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
 
 
@@ -319,7 +190,9 @@ def test_texts_and_names_are_collected():
     ]
     described = {where.partition(":")[0] for where, _ in texts()}
     assert described >= {"CHANGELOG.md", "Makefile", ".ci/run", "tests/test_vocabulary.py"}
-    assert " fmt: skip" in dict(comments_of(Path(__file__))).values()
+    assert (
+        " fmt: skip" in dict(comments_of(Path(__file__).with_name("retired_words.py"))).values()
+    )
     named = {name for _, name in names_of(ast.parse("def f(a): b.c = d"))}
     assert named == {"f", "a", "b", "c", "d"}
     assert [*constants_of(ast.parse("A, B = 1, 2\nC: int = 3\nd = 4"))] == ["A", "B", "C"]

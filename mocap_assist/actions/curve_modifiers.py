@@ -41,33 +41,33 @@ def keep_outside(curve: bpy.types.FCurve, written: Written) -> None:
         if kind in HARMLESS or settings["mute"]:
             _add(curve, kind, settings)
             continue
-        pieces = _steps if kind == "STEPPED" else _pieces
-        for piece in pieces(settings, written):
-            _add(curve, kind, settings | piece)
+        sections = _steps if kind == "STEPPED" else _sections
+        for section in sections(settings, written):
+            _add(curve, kind, settings | section)
 
 
 def _acts(modifier: bpy.types.FModifier) -> bool:
     return modifier.type not in HARMLESS and not modifier.mute
 
 
-def _pieces(settings: dict[str, Any], written: Written) -> Iterator[dict[str, Any]]:
+def _sections(settings: dict[str, Any], written: Written) -> Iterator[dict[str, Any]]:
     """Restrict a modifier to the frames before, and to those after the new keys."""
     limited = settings["use_restricted_range"]
     start, stop = -LAST_FRAME, LAST_FRAME
     if limited:
         start, stop = settings["frame_start"], settings["frame_end"]
     if written.key_before is not None and start < written.first:
-        piece = {"use_restricted_range": True, "frame_start": start, "frame_end": stop}
+        section = {"use_restricted_range": True, "frame_start": start, "frame_end": stop}
         if stop > written.key_before:
             fade = written.first - written.key_before
-            piece |= {"frame_end": written.first, "blend_out": fade}
-        yield piece
+            section |= {"frame_end": written.first, "blend_out": fade}
+        yield section
     if written.key_after is not None and stop > written.last:
-        piece = {"use_restricted_range": True, "frame_start": start, "frame_end": stop}
+        section = {"use_restricted_range": True, "frame_start": start, "frame_end": stop}
         if start < written.key_after:
             fade = written.key_after - written.last
-            piece |= {"frame_start": written.last, "blend_in": fade}
-        yield piece
+            section |= {"frame_start": written.last, "blend_in": fade}
+        yield section
 
 
 def _steps(settings: dict[str, Any], written: Written) -> Iterator[dict[str, Any]]:

@@ -26,7 +26,7 @@ LOAD, LINK = "mocap_assist.load_match", "mocap_assist.link_match"
 LEARN, MARK = "mocap_assist.learn_from_matches", "mocap_assist.mark_asset"
 USE_OPERATOR, BROWSE = "mocap_assist.use_matches", "mocap_assist.browse_matches"
 PARTS = (("trunk",), ("left_arm", "right_arm"), ("left_leg", "right_leg"))
-SHOWN_APART_SETTINGS = {"n_matches", "n_aligned", *(name for row in PARTS for name in row)}
+SEPARATE_SETTINGS = {"n_matches", "n_aligned", *(name for row in PARTS for name in row)}
 MIN_ROWS, MAX_ROWS = 3, 6
 ROW, LARGE = 1.6, 7.0  # sizes of the pictures
 
@@ -116,7 +116,7 @@ def _draw_query(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
     header, body = column.panel("mocap_assist_find_advanced", default_closed=True)
     header.label(text="Advanced")
     if body is not None:
-        for name in ("n_matches", *folded(FindSettings, SHOWN_APART_SETTINGS, find)):
+        for name in ("n_matches", *folded(FindSettings, SEPARATE_SETTINGS, find)):
             body.prop(find, name)
     button = column.row()
     button.scale_y = 1.6

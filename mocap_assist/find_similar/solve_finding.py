@@ -141,12 +141,12 @@ def list_clips(library: str, first: int, *, progress: Progress = unwatched) -> F
         found = []
         for index, number in enumerate(numbers):
             progress(index / len(numbers), "Drawing")
-            found.append(_shown(_whole(entries[number]), number, clips))
+            found.append(_shown(_complete_match(entries[number]), number, clips))
     stage = QueryPath(np.zeros((1, 3)), np.zeros(1), ADULT_BONE_LENGTHS_M, BROWSED_HZ)
     return Finding(tuple(found), stage, len(entries), first)
 
 
-def _whole(entry: ClipEntry) -> Match:
+def _complete_match(entry: ClipEntry) -> Match:
     """Return a complete clip as its own match."""
     last = np.array([(entry.n_frames - 1) / entry.frame_rate * BROWSED_HZ, entry.n_frames - 1])
     alignment = np.stack([np.zeros(2), last]).round().astype(np.intp)

@@ -133,8 +133,8 @@ class Job(Generic[Result]):
         self.cancelled = False
         self._preview_offset = 0
         self._reading: Future[Any] | None = None
-        is_usual = not program and n_threads == 1
-        self._child = (take_waiting() if is_usual else None) or ChildProcess()
+        is_default = not program and n_threads == 1
+        self._child = (take_waiting() if is_default else None) or ChildProcess()
         self._path = self._child.path
         try:
             with _convert_memory_errors():

@@ -9,7 +9,7 @@ NO_END = "（「『【〔《“‘"
 """Characters that they do not put at the end of a line."""
 WIDE = "WF"
 """Classes of Unicode whose characters are twice as wide as a letter."""
-PIECE = re.compile(
+UNIT = re.compile(
     rf"\s+"
     rf"|[{NO_END}]*[^\s\u0000-\u2fff][{NO_START}]*"
     rf"|[^\s\u3000-\uffff]+[{NO_START}]*"
@@ -20,10 +20,10 @@ PIECE = re.compile(
 def broken_lines(text: str, max_letters: int) -> list[str]:
     """Return lines that are at most so many letters wide, except for longer words."""
     lines = [""]
-    for piece in PIECE.findall(text):
-        if lines[-1] and text_width(lines[-1] + piece.rstrip()) > max_letters:
+    for unit in UNIT.findall(text):
+        if lines[-1] and text_width(lines[-1] + unit.rstrip()) > max_letters:
             lines.append("")
-        lines[-1] += piece.lstrip() if not lines[-1] else piece
+        lines[-1] += unit.lstrip() if not lines[-1] else unit
     return [line.rstrip() for line in lines if line.strip()]
 
 

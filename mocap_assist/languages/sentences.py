@@ -53,7 +53,7 @@ def translate_sentence(text: str, translate: Translate) -> str:
     """
     sentences = SENTENCE_END.split(text)
     for n_first in range(len(sentences), 0, -1):
-        first = _translated_whole(" ".join(sentences[:n_first]), translate)
+        first = _translated_text(" ".join(sentences[:n_first]), translate)
         if first is not None:
             break
     else:
@@ -62,16 +62,16 @@ def translate_sentence(text: str, translate: Translate) -> str:
     return f"{first} {translate_sentence(rest, translate)}" if rest else first
 
 
-def _translated_whole(text: str, translate: Translate) -> str | None:
+def _translated_text(text: str, translate: Translate) -> str | None:
     """Return the translation of a text; None if it has none as a whole."""
-    whole = translate(text)
-    if whole != text:
-        return whole
+    translation = translate(text)
+    if translation != text:
+        return translation
     for pattern in _patterns():
         if (values := pattern.values_in(text)) is not None:
             return translate(pattern.template).format_map(_translated_parts(values, translate))
     if text.endswith("."):  # of a remark, whose text has none
-        remark = _translated_whole(text[:-1], translate)
+        remark = _translated_text(text[:-1], translate)
         period = "。" if remark and text_width(remark[-1]) > 1 else "."
         return None if remark is None else remark + period
     return None
@@ -86,7 +86,7 @@ def template_of(text: str) -> str:
         return ""
     sentences = SENTENCE_END.split(text)
     for n_first in range(len(sentences), 0, -1):
-        first = _template_of_whole(" ".join(sentences[:n_first]))
+        first = _template_of_text(" ".join(sentences[:n_first]))
         if first:
             break
     else:
@@ -94,7 +94,7 @@ def template_of(text: str) -> str:
     return " ".join(filter(None, [first, template_of(" ".join(sentences[n_first:]))]))
 
 
-def _template_of_whole(text: str) -> str:
+def _template_of_text(text: str) -> str:
     if text in _texts():
         return text
     found = (each.template for each in _patterns() if each.values_in(text) is not None)

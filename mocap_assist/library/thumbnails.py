@@ -30,9 +30,9 @@ def thumbnail(postures: Array) -> Pixels:
         Relative to the hips, facing -Y; NaN where not tracked.
     """
     canvas = Canvas(CARD_SIZE_PX, CARD_SIZE_PX)
-    moments = np.linspace(0, len(postures) - 1, 2 * N_FIGURES + 1).round().astype(int)[1::2]
+    frames = np.linspace(0, len(postures) - 1, 2 * N_FIGURES + 1).round().astype(int)[1::2]
     scale = (CARD_SIZE_PX - 2.0 * MARGIN_PX) / CARD_HEIGHT_M
-    figures = project_to_view(postures[moments], np.zeros(len(moments)), ViewDirection.QUARTER)
+    figures = project_to_view(postures[frames], np.zeros(len(frames)), ViewDirection.QUARTER)
     color = SERIES[1]
     for index, figure in enumerate(figures):
         middle = CARD_SIZE_PX * (index + 0.5) / N_FIGURES

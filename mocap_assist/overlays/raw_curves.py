@@ -10,7 +10,7 @@ from ...solvers.arrays import Array, Single
 from ..actions.curves import Channel
 from ..blender import compat
 from ..scene import history
-from .strip_ranges import MAX_STEPS_APART
+from .strip_ranges import MAX_STEPS_BETWEEN
 
 MAX_CURVES = 64
 """Number of curves with a recorded one behind them. It bounds the time of a drawing."""
@@ -67,7 +67,7 @@ def curve_lines(curve: bpy.types.FCurve) -> Single:
     """
     keys = Channel(curve).keys
     steps = np.diff(keys[:, 0])
-    observed = steps <= MAX_STEPS_APART * (np.median(steps) if len(steps) else 1.0)
+    observed = steps <= MAX_STEPS_BETWEEN * (np.median(steps) if len(steps) else 1.0)
     points = np.zeros((len(keys), 3), np.float32)
     points[:, :2] = keys
     lines: Single = np.stack([points[:-1], points[1:]], axis=1)[observed]

@@ -11,7 +11,7 @@ from .confidence_colors import COLORS as CONFIDENCE_COLORS
 
 Color = tuple[float, float, float, float]
 
-MAX_STEPS_APART = 1.5
+MAX_STEPS_BETWEEN = 1.5
 """Frames from one key to the next, relative to the frames between samples, that belong to one
 range. By definition between 1, neighbors, and 2, one frame between them."""
 LOW_CONFIDENCE, HIGH_CONFIDENCE = 0.5, 0.75
@@ -125,7 +125,7 @@ def ranges_of(frames: Array, step: float, mark: Mark) -> tuple[Range, ...]:
     if not len(frames):
         return ()
     ordered = np.unique(frames)
-    ends = np.flatnonzero(np.diff(ordered) > MAX_STEPS_APART * step)
+    ends = np.flatnonzero(np.diff(ordered) > MAX_STEPS_BETWEEN * step)
     firsts = ordered[np.append(0, ends + 1)]
     lasts = ordered[np.append(ends, len(ordered) - 1)]
     return tuple(
@@ -191,7 +191,7 @@ def contact_ranges(keys: Array, end: float, step: float, mark: Mark) -> tuple[Ra
             continue
         is_last = index == len(keys) - 1
         last = max(end if is_last else keys[index + 1, 0] - step, frame)
-        if found and frame - found[-1].last <= MAX_STEPS_APART * step:
+        if found and frame - found[-1].last <= MAX_STEPS_BETWEEN * step:
             found[-1] = found[-1]._replace(last=float(last))
         else:
             found.append(Range(float(frame), float(last), mark))

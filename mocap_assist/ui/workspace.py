@@ -69,8 +69,8 @@ def arranging(window: bpy.types.Window) -> Iterator[None]:
     while len(areas := areas_of(window)) > 1 and _close_one(window, areas[1:]):
         yield
     area_by_editor = {"VIEW_3D": areas_of(window)[0]}
-    for whole, part, direction, factor in SPLITS:
-        area = area_by_editor[whole]
+    for divided, part, direction, factor in SPLITS:
+        area = area_by_editor[divided]
         with bpy.context.temp_override(window=window, screen=window.screen, area=area):
             bpy.ops.screen.area_split(direction=direction, factor=factor)
         yield
@@ -80,7 +80,7 @@ def arranging(window: bpy.types.Window) -> Iterator[None]:
             return
         lower, upper = sorted((area, made), key=lambda each: (each.y, each.x))
         is_lower = direction == "HORIZONTAL"
-        area_by_editor[whole], area_by_editor[part] = (
+        area_by_editor[divided], area_by_editor[part] = (
             (upper, lower) if is_lower else (lower, upper)
         )
     for editor, area in area_by_editor.items():

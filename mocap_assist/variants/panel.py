@@ -29,7 +29,7 @@ USE_OPERATOR = "mocap_assist.use_matches"
 MAIN = ("amount", "timing", "length")
 PARTS = ("trunk", "left_arm", "right_arm", "left_leg", "right_leg")
 OTHERS = ("pin_start", "pin_end")
-SHOWN_APART_SETTINGS = {"seed", *MAIN, *OTHERS, *PARTS}
+SEPARATE_SETTINGS = {"seed", *MAIN, *OTHERS, *PARTS}
 CROWD = ("delay", "spread", "turn", "crowd_seed")
 MAX_LISTED = 30
 MIN_ROWS, MAX_ROWS = 3, 7  # rows of the list
@@ -128,7 +128,7 @@ def _draw_folded(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) -> N
         return
     for name in OTHERS:
         body.prop(vary, name)
-    for name in folded(VarySettings, SHOWN_APART_SETTINGS, vary):
+    for name in folded(VarySettings, SEPARATE_SETTINGS, vary):
         body.prop(vary, name)
     feet = body.column()
     feet.active = vary.plant_feet

@@ -10,7 +10,7 @@ from ..errors import InvalidMotionError
 from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import HumanoidMap, find_humanoid_map
 from ..motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
-from ..motion_fitting import FittedMotion, fit_in_pieces, fit_motion
+from ..motion_fitting import FittedMotion, fit_in_windows, fit_motion
 from ..progress import Progress, Remark, collect_remarks, unwatched, within
 from .body_supports import SUPPORTS, detect_supports
 from .foot_goals import planting_goals
@@ -187,14 +187,14 @@ def _plant_segment(
         if leg.knee in knees or contacts[:, SIDES.index(leg.side)].any()
     ]
 
-    def plant_piece(start: int, stop: int, progress: Progress) -> Motion:
-        pieces = [foot.slice(start, stop) for foot in feet]
+    def plant_window(start: int, stop: int, progress: Progress) -> Motion:
+        windows = [foot.slice(start, stop) for foot in feet]
         on_limbs = [limb.slice(start, stop) for limb in limbs]
         weights = ankle_weights[start:stop]
-        piece = motion.slice(start, stop)
-        return _plant_piece(piece, pieces, on_limbs, weights, settings, progress)
+        window = motion.slice(start, stop)
+        return _plant_window(window, windows, on_limbs, weights, settings, progress)
 
-    result = fit_in_pieces(motion, plant_piece, progress)
+    result = fit_in_windows(motion, plant_window, progress)
     before_and_after = poses, forward_kinematics(result)
     slides = [sum(each.slide(one) for each in (*feet, *limbs)) for one in before_and_after]
     return _planted(result, contacts, settings, slides)
@@ -211,7 +211,7 @@ def _planted(
     return Planted(motion, contacts[:, :N_FEET], before, after, supports)
 
 
-def _plant_piece(
+def _plant_window(
     motion: Motion,
     feet: Sequence[FootContact],
     limbs: Sequence[LimbContact],
@@ -219,7 +219,7 @@ def _plant_piece(
     settings: PlantSettings,
     progress: Progress,
 ) -> Motion:
-    """Return the piece of a take with all that bears on the floor planted."""
+    """Return the window of a take with all that bears on the floor planted."""
     legs = [foot.leg for foot in feet]
     joints = [joint for leg in legs for joint in (*leg.chain, leg.toe) if joint is not None]
     joints += limb_tolerances(limbs)

@@ -1,6 +1,6 @@
 """Fit motions to goals, such as soles in place, with the least and smoothest change."""
 
-from .fit_in_pieces import fit_in_pieces
+from .fit_in_windows import fit_in_windows
 from .fit_motion import Fit, fit_motion
 from .goal import Goal
 from .normal_equations import NormalEquations
@@ -11,6 +11,6 @@ __all__ = [
     "FittedMotion",
     "Goal",
     "NormalEquations",
-    "fit_in_pieces",
+    "fit_in_windows",
     "fit_motion",
 ]

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array
 from ..motion import Motion
 from ..motion.humanoid import UP
-from ..motion_fitting import FittedMotion, Goal, fit_in_pieces, fit_motion
+from ..motion_fitting import FittedMotion, Goal, fit_in_windows, fit_motion
 from ..motion_fitting.goals import (
     BonePoint,
     FollowSource,
@@ -83,9 +83,9 @@ def plant_target_feet(
         return motion
     joints = tuple(joint for chain in held.values() for joint in chain)
 
-    def plant_piece(start: int, stop: int, progress: Progress) -> Motion:
-        piece = motion.slice(start, stop)
-        fitted, weights = FittedMotion(piece, piece, joints), hold_weights[start : stop - 1]
+    def plant_window(start: int, stop: int, progress: Progress) -> Motion:
+        window = motion.slice(start, stop)
+        fitted, weights = FittedMotion(window, window, joints), hold_weights[start : stop - 1]
         goals: list[Goal] = [
             FollowSource.of_joints(
                 fitted,
@@ -106,7 +106,7 @@ def plant_target_feet(
         goals += _ground_goals(body, fitted, tuple(held), ground)
         return fit_motion(fitted, goals, progress).motion
 
-    return fit_in_pieces(motion, plant_piece)
+    return fit_in_windows(motion, plant_window)
 
 
 def _foot_goals(

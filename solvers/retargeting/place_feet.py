@@ -5,7 +5,7 @@ import numpy as np
 from ..arrays import Array
 from ..motion import Motion
 from ..motion.humanoid import HUMAN_LEG_LENGTH_M, UP
-from ..motion_fitting import FittedMotion, Goal, fit_in_pieces, fit_motion
+from ..motion_fitting import FittedMotion, Goal, fit_in_windows, fit_motion
 from ..motion_fitting.goals import (
     BonePoint,
     FollowPosition,
@@ -86,9 +86,9 @@ def place_feet(
         return rotations, root_positions
     size = leg_length(target) / HUMAN_LEG_LENGTH_M
 
-    def fit_piece(start: int, stop: int, progress: Progress) -> Motion:
-        piece = motion.slice(start, stop)
-        recorded = FittedMotion(piece, piece, ())
+    def fit_window(start: int, stop: int, progress: Progress) -> Motion:
+        window = motion.slice(start, stop)
+        recorded = FittedMotion(window, window, ())
         knees = {
             path.leg[1]: limb_hinge(target, recorded, path.leg, LATERAL_AXIS) for path in paths
         }
@@ -96,7 +96,7 @@ def place_feet(
         joints: dict[int, float] = dict.fromkeys(toes, TOE_RAD)
         for path in paths:
             joints |= dict(zip(path.leg, (HIP_RAD, KNEE_RAD, ANKLE_RAD), strict=True))
-        fitted = FittedMotion(piece, piece, tuple(joints), hinges=knees | toes)
+        fitted = FittedMotion(window, window, tuple(joints), hinges=knees | toes)
         goals: list[Goal] = [FollowSource.of_joints(fitted, ROOT_M * size, joints, BLEND_S)]
         start_of_fit = fitted
         for path in paths:
@@ -108,14 +108,14 @@ def place_feet(
             start_of_fit = with_bent_hinge(start_of_fit, knee)
         return fit_motion(start_of_fit, goals, progress, "Placing the feet").motion
 
-    result = fit_in_pieces(motion, fit_piece, progress)
+    result = fit_in_windows(motion, fit_window, progress)
     return result.rotations, result.root_positions
 
 
 def _foot_goals(
     transfer: Transfer, fitted: FittedMotion, path: FootPath, size: float, frames: slice
 ) -> list[Goal]:
-    """Return what a foot has to meet in the frames of a piece."""
+    """Return what a foot has to meet in the frames of a window."""
     in_contact, steps = path.in_contact[frames], slice(frames.start, frames.stop - 1)
     foot, ball = foot_bone(transfer.target, path.side)
     ankle_and_ball = BonePoint(foot, np.zeros(3)), BonePoint(ball, np.zeros(3))

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..motion import Motion, WorldPoses, forward_kinematics
-from ..motion_fitting import FittedMotion, Goal, fit_in_pieces, fit_motion
+from ..motion_fitting import FittedMotion, Goal, fit_in_windows, fit_motion
 from ..motion_fitting.goals import (
     BonePoint,
     FollowPosition,
@@ -74,14 +74,14 @@ def place_hands(
         return rotations
     joints = {joint: ARM_RAD for path in paths for joint in path.arm[:2]}
 
-    def fit_piece(start: int, stop: int, progress: Progress) -> Motion:
-        piece, frames = motion.slice(start, stop), slice(start, stop)
-        recorded = FittedMotion(piece, piece, ())
+    def fit_window(start: int, stop: int, progress: Progress) -> Motion:
+        window, frames = motion.slice(start, stop), slice(start, stop)
+        recorded = FittedMotion(window, window, ())
         hinges = {
             path.arm[1]: limb_hinge(target, recorded, path.arm, ELBOW_AXES[path.side])
             for path in paths
         }
-        fitted = FittedMotion(piece, piece, tuple(joints), root_moves=False, hinges=hinges)
+        fitted = FittedMotion(window, window, tuple(joints), root_moves=False, hinges=hinges)
         goals: list[Goal] = [FollowSource.of_joints(fitted, 1.0, joints, BLEND_S)]
         start_of_fit, everywhere = fitted, np.ones((stop - start, 3))
         for path in paths:
@@ -109,7 +109,7 @@ def place_hands(
             goals.append(KeepSeparation(left, right, wanted, weight, tolerance))
         return fit_motion(start_of_fit, goals, progress, "Placing the hands").motion
 
-    result = fit_in_pieces(motion, fit_piece, progress)
+    result = fit_in_windows(motion, fit_window, progress)
     return _with_turned_hands(result, poses, paths)
 
 

@@ -26,15 +26,15 @@ def plant_variant(
 
     Feet stand where those of the examples or of the variant itself do. A loop stays a loop.
     """
-    whole = motion
+    complete = motion
     if loops:
-        whole = repeat_loop(motion, N_CYCLES)
+        complete = repeat_loop(motion, N_CYCLES)
         if contacts is not None:
             contacts = np.concatenate([*[contacts[:-1]] * N_CYCLES, contacts[-1:]])
     if contacts is not None:
-        contacts = contacts | detect_contacts(whole)
+        contacts = contacts | detect_contacts(complete)
     try:
-        planted = plant_feet(whole, contacts, settings=planting, progress=progress).motion
+        planted = plant_feet(complete, contacts, settings=planting, progress=progress).motion
     except InvalidMotionError as error:
         progress(1.0, Remark(f"Feet were not planted. {error}"))
         return motion

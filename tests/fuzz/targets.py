@@ -14,9 +14,9 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import numpy as np
-from complete_files import JOINT_FILES, JOINT_TOKENS, RECORDING, SKELETON, TOKENS, WHOLE
+from complete_files import COMPLETE, JOINT_FILES, JOINT_TOKENS, RECORDING, SKELETON, TOKENS
 from depth_files import depth_npz, matlab, pictures
-from exports.whole_exports import EXPORT_TOKENS, EXPORTS
+from exports.complete_exports import EXPORT_TOKENS, EXPORTS
 from fuzz_seeds import (
     QUERY,
     body_files,
@@ -100,7 +100,7 @@ def targets() -> dict[str, Target]:
     """Return all targets by name."""
     found = {
         kind: Target(
-            WHOLE[kind], read_recording, TOKENS, f"take.{kind}", (("take.asf", SKELETON),)
+            COMPLETE[kind], read_recording, TOKENS, f"take.{kind}", (("take.asf", SKELETON),)
         )
         for kind in ("bvh", "c3d", "trc", "amc")
     }

@@ -108,13 +108,13 @@ def test_a_new_version_takes_the_place_of_the_old_one(tmp_path):
 def test_a_damaged_zip_leaves_the_repository_as_it_was(tmp_path):
     zips, served = tmp_path / "zips", tmp_path / "served"
     zips.mkdir()
-    whole = package(zips, "7.1.0")
+    complete = package(zips, "7.1.0")
     make_repository(zips, served)
     before = {path.name: path.read_bytes() for path in served.iterdir()}
-    whole.write_bytes(whole.read_bytes()[:200])
+    complete.write_bytes(complete.read_bytes()[:200])
 
     made = make_repository(zips, served)
 
     assert made.returncode == 1
-    assert f"Not an extension, or damaged: {whole.name}. Build it again.\n" == made.stderr
+    assert f"Not an extension, or damaged: {complete.name}. Build it again.\n" == made.stderr
     assert {path.name: path.read_bytes() for path in served.iterdir()} == before

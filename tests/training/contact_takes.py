@@ -162,11 +162,11 @@ def _hang(time: Array, rng: np.random.Generator) -> Feet:
     """Swing as a pendulum, from the first frame or after standing."""
     length, angle = rng.uniform(0.5, 2.2), rng.uniform(0.1, 0.45)
     rate = np.sqrt(GRAVITY / length) * rng.uniform(0.8, 1.2)
-    start, apart = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(0.0, np.pi) * rng.integers(2)
+    start, phase = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(0.0, np.pi) * rng.integers(2)
     floor, pitch, contacts = _stand(time, rng)
     ankles = floor.copy()
     for foot in range(2):
-        swing = angle * np.sin(rate * time + start + foot * apart)
+        swing = angle * np.sin(rate * time + start + foot * phase)
         ankles[:, foot, 1] += length * np.sin(swing)
         ankles[:, foot, 2] += length * (1.0 - np.cos(swing))
         ankles[:, foot] += wander(time, rng, rng.uniform(0.005, 0.04))

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...motion import Motion
-from ...motion_fitting import FittedMotion, Goal, fit_in_pieces, fit_motion
+from ...motion_fitting import FittedMotion, Goal, fit_in_windows, fit_motion
 from ...motion_fitting.goals import BonePoint, FollowPosition, FollowSource
 from ...progress import Progress, unwatched
 from ...signals import fill_gaps, fill_rotation_gaps
@@ -47,19 +47,19 @@ def fit_to_positions(
     positions = np.where(is_known[..., None], positions, 0.0)
     residual_weights = np.sqrt(weights) * is_known
 
-    def fit_piece(start: int, stop: int, progress: Progress) -> Motion:
-        piece = gap_free.slice(start, stop)
+    def fit_window(start: int, stop: int, progress: Progress) -> Motion:
+        window = gap_free.slice(start, stop)
         frames = slice(start, stop)
-        return _fit_piece(piece, positions[frames], residual_weights[frames], progress)
+        return _fit_window(window, positions[frames], residual_weights[frames], progress)
 
-    fitted = fit_in_pieces(gap_free, fit_piece, progress)
+    fitted = fit_in_windows(gap_free, fit_window, progress)
     return motion.with_poses(
         np.where(is_complete[:, None, None], fitted.rotations, motion.rotations),
         np.where(is_complete[:, None], fitted.root_positions, motion.root_positions),
     )
 
 
-def _fit_piece(motion: Motion, positions: Array, weights: Array, progress: Progress) -> Motion:
+def _fit_window(motion: Motion, positions: Array, weights: Array, progress: Progress) -> Motion:
     followed = [joint for joint in range(motion.n_joints) if weights[:, joint].any()]
     turning = _turning_joints(motion, followed)
     if not turning:

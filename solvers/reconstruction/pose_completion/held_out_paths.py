@@ -129,12 +129,12 @@ def hermite_paths(ends: Array, n_missing: int) -> Array:
 
 def _end_features(ends: Array, n_missing: int) -> Array:
     """Return how far apart the ends of gaps are, and how far their speeds lead; (n, 3), m."""
-    apart = np.linalg.norm(ends[:, 2] - ends[:, 1], axis=-1)
+    separation = np.linalg.norm(ends[:, 2] - ends[:, 1], axis=-1)
     before, after = (
         np.linalg.norm(ends[:, late] - ends[:, late - 1], axis=-1) * n_missing
         for late in (1, 3)
     )
-    return np.stack([apart, before, after], axis=-1)
+    return np.stack([separation, before, after], axis=-1)
 
 
 def _known_frame(reliable: NDArray[np.bool_], frame: int) -> int:

@@ -286,10 +286,10 @@ def load_residual_prior(path: Path | str) -> ResidualPrior:
 
 def _find_fault(arrays: dict[str, NDArray[Any]]) -> str:
     """Return why these arrays cannot be used, or an empty string."""
-    n_local, n_whole = arrays["local_points"].shape[1], len(arrays["whole_points"])
-    if not (len(arrays["joints"]) and n_local and n_whole):
+    n_local, n_pose_points = arrays["local_points"].shape[1], len(arrays["whole_points"])
+    if not (len(arrays["joints"]) and n_local and n_pose_points):
         return "it holds no learned joint"
-    if arrays["means"].shape[1] != n_local + n_whole + 1:
+    if arrays["means"].shape[1] != n_local + n_pose_points + 1:
         return "the shapes do not match, first that of means"
     if not set(map(str, arrays["joints"])) <= set(POSTURE_JOINTS):
         return "it names unknown joints"

@@ -115,8 +115,8 @@ def is_place(value: Any) -> bool:
 def _width(place: Any) -> int:
     """Return how many numbers a list has, nulls included; 0 for other values."""
     is_row = isinstance(place, list) and any(map(_is_number, place))
-    is_whole = is_row and all(each is None or _is_number(each) for each in place)
-    return len(place) if is_whole else 0
+    is_complete = is_row and all(each is None or _is_number(each) for each in place)
+    return len(place) if is_complete else 0
 
 
 def _is_number(value: Any) -> bool:

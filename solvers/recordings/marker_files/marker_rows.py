@@ -88,8 +88,8 @@ def _counts(
     """Whether frame numbers skip some, and agree with the times if there are any."""
     if _rises(frames) != 1.0 or not (np.diff(frames) > 1.0).any():
         return False
-    apart = (times - times[0]) * stated_rate - (frames - frames[0])
-    return bool(np.isnan(times).all() or (np.abs(apart) < 0.5).all())
+    difference = (times - times[0]) * stated_rate - (frames - frames[0])
+    return bool(np.isnan(times).all() or (np.abs(difference) < 0.5).all())
 
 
 def _rises(values: NDArray[np.float64]) -> float:

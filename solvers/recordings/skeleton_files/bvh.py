@@ -33,7 +33,7 @@ from .bvh_hierarchy import read_hierarchies
 
 COMMON_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 23.976, 29.97, 59.94, 119.88)
 DEFAULT_RATE_HZ = 30.0
-MIN_USUAL_RATE_HZ, MAX_POSES = 10.0, 20
+MIN_TYPICAL_RATE_HZ, MAX_POSES = 10.0, 20
 """Frames per second below which the rate of a file is unusual, and the most frames of a list of
 poses, which has any rate. Chosen by hand: no capture software records less; programs that write
 a frame time of 1 s, as examples of research do, were seen."""
@@ -175,7 +175,7 @@ def _check_header(
                 " short"
             ),
         )
-    if frame_rate < MIN_USUAL_RATE_HZ and n_frames > MAX_POSES:
+    if frame_rate < MIN_TYPICAL_RATE_HZ and n_frames > MAX_POSES:
         progress(
             0.7,
             Remark(

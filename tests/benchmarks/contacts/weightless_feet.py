@@ -90,8 +90,8 @@ def _cartwheel(time: Array) -> Motion:
     motion = _body(rotation, [0.0, 0.0, 1.0], {})
     rotations = motion.rotations.copy()
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
-        apart = quaternion_from_rotation_vector([0.0, -sign * 0.6, 0.0])
-        rotations[:, motion.skeleton.index(f"{side}UpLeg")] = apart
+        spread = quaternion_from_rotation_vector([0.0, -sign * 0.6, 0.0])
+        rotations[:, motion.skeleton.index(f"{side}UpLeg")] = spread
         raised = quaternion_from_rotation_vector([0.0, -sign * 1.1, 0.0])
         rotations[:, motion.skeleton.index(f"{side}Arm")] = raised
     root = motion.root_positions.copy()

@@ -83,8 +83,11 @@ def _cases(names: Sequence[str]) -> Iterator[tuple[str, Case]]:
                 one: walks[one] for one in [one for one in own if one != name][:N_OWN]
             }
             yield f"{N_OWN} walks of the person", leave_one_out(few, [name], LEVELS)[0]
-    for kind, whole in (("all other walks", False), ("walks of other people", True)):
-        for case in leave_one_out(walks, names, LEVELS[:1], whole_subject=whole):
+    for kind, other_subjects in (
+        ("all other walks", False),
+        ("walks of other people", True),
+    ):
+        for case in leave_one_out(walks, names, LEVELS[:1], other_subjects=other_subjects):
             yield kind, case
 
 

@@ -16,15 +16,15 @@ def leave_one_out(
     names: Iterable[str],
     levels: Sequence[Level],
     clean_root: bool = False,
-    whole_subject: bool = False,
+    other_subjects: bool = False,
 ) -> list[Case]:
     """Return the cases of each named clip, with all other clips to learn from.
 
-    With `whole_subject`, the clips of the same subject ("subject_number") are left out too.
+    With `other_subjects`, the clips of the same subject ("subject_number") are left out too.
     """
     cases = []
     for name in names:
-        left_out = f"{name.split('_')[0]}_" if whole_subject else name
+        left_out = f"{name.split('_')[0]}_" if other_subjects else name
         training = tuple(
             motion for other, motion in clips.items() if not other.startswith(left_out)
         )

@@ -19,7 +19,7 @@ from .ours import Ours
 
 ARMS = ("LeftShoulder", "RightShoulder")
 LEG = ("LeftUpLeg",)
-WHOLE = 1e9
+COMPLETE_CLIP_S = 1e9
 N_DRAWS = 3
 
 
@@ -32,12 +32,12 @@ class Gap:
     seconds: float
 
     def __str__(self) -> str:
-        length = "complete clip" if self.seconds >= WHOLE else f"{self.seconds:g} s"
+        length = "complete clip" if self.seconds >= COMPLETE_CLIP_S else f"{self.seconds:g} s"
         return f"{self.title}, {length}"
 
 
 GAPS = (
-    *(Gap("both arms", ARMS, seconds) for seconds in (0.25, 0.5, 1.0, 2.0, WHOLE)),
+    *(Gap("both arms", ARMS, seconds) for seconds in (0.25, 0.5, 1.0, 2.0, COMPLETE_CLIP_S)),
     *(Gap("left leg", LEG, seconds) for seconds in (0.5, 1.0, 2.0)),
 )
 FIRST_OF_LIMB = (GAPS[0], GAPS[5])
@@ -50,7 +50,7 @@ def compare_gaps(cases: list[Case], fillers: Mapping[str, Filler]) -> list[Score
     scores = Scores("CMU walks with gaps: missing joints", "geodesic angle, degrees")
     for case in cases:
         for gap in GAPS:
-            draws = 1 if gap.seconds >= WHOLE else N_DRAWS
+            draws = 1 if gap.seconds >= COMPLETE_CLIP_S else N_DRAWS
             lost = [cut(case, gap, draw) for draw in range(draws)]
             for name, fill in fillers.items():
                 figures = [score(case, fill, *one) for one in lost]

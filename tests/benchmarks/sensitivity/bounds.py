@@ -49,7 +49,7 @@ BOUNDS: dict[str, tuple[str, ...]] = {
         "depth_scene/foreground.MAX_BACKGROUND_FRAMES",
         "depth_tracking/capturing/smooth_pass._WINDOW_FRAMES",
         "markers/fit_poses.FRAMES_PER_BLOCK",
-        "motion_fitting/fit_in_pieces.MAX_FRAMES",
+        "motion_fitting/fit_in_windows.MAX_FRAMES",
         "variation/learn_variation.MAX_VALUES",
         "variation/mixtures.MAX_DRAWN_SAMPLES",
         "variation/synthesize.MAX_BATCH_VALUES",

@@ -232,8 +232,8 @@ GUARDS: dict[str, Guard] = {
         0.0,
         "motion_fitting/test_goals.py::test_a_knee_that_bends_backward_by_a_few_degrees_does_not_bend_farther",
     ),
-    "motion_fitting/fit_in_pieces.OVERLAP_S": Guard(
-        1e-3, "motion_fitting/test_fit_in_pieces.py::test_pieces_cover_a_take_and_overlap"
+    "motion_fitting/fit_in_windows.OVERLAP_S": Guard(
+        1e-3, "motion_fitting/test_fit_in_windows.py::test_windows_cover_a_take_and_overlap"
     ),
     "feet/standing_feet.GROUND_PERCENTILE": Guard(
         1e-9,

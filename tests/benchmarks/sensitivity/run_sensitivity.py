@@ -110,8 +110,8 @@ def _stored(family: str, baseline: Outcome) -> dict[str, Any]:
 def _store(family: str, baseline: Outcome, stored: dict[str, Any]) -> None:
     BUILD.mkdir(parents=True, exist_ok=True)
     now = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime())
-    whole = {"measured": now, "baseline": asdict(baseline), "constants": stored}
-    (BUILD / f"{family}.json").write_text(json.dumps(whole, indent=1), encoding="utf-8")
+    outcome = {"measured": now, "baseline": asdict(baseline), "constants": stored}
+    (BUILD / f"{family}.json").write_text(json.dumps(outcome, indent=1), encoding="utf-8")
 
 
 def _import_what_solvers_need() -> None:

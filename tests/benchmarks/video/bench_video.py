@@ -41,7 +41,7 @@ REAL = (
     "corpus/bvh/smpl_template/template.bvh",
 )
 OURS = "Clean, Plant Feet"
-WHOLE = {
+COMPLETE = {
     "A model that sees one frame at a time": PER_FRAME,
     "A model that sees the whole video": TEMPORAL,
 }
@@ -56,7 +56,7 @@ def main() -> None:
     started = perf_counter()
     captures = dict(list(truths().items())[: chosen.clips])
     tables: list[Scores | str] = [
-        compare(title, captures, faults) for title, faults in WHOLE.items()
+        compare(title, captures, faults) for title, faults in COMPLETE.items()
     ]
     tables.append(compare_faults(dict(list(captures.items())[:: len(captures) // 6 or 1])))
     tables.append(compare_real())

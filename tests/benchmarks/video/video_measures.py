@@ -30,8 +30,8 @@ def figures_of(motion: Motion, contacts: Flags, truth: Motion | None) -> dict[st
     if truth is None:
         return found
     angles = np.degrees(angle_between(motion.rotations, truth.rotations))
-    apart = motion.root_positions[:, :2] - truth.root_positions[:, :2]
-    drift = np.linalg.norm(apart - apart.mean(axis=0), axis=-1).mean()
+    offset = motion.root_positions[:, :2] - truth.root_positions[:, :2]
+    drift = np.linalg.norm(offset - offset.mean(axis=0), axis=-1).mean()
     return {"angle error, °": float(angles.mean()), **found, "root drift, cm": 100.0 * drift}
 
 

@@ -14,9 +14,9 @@ def true_tracks(recordings, load):
     """Two seconds of twelve markers of a walk, complete, at 60 Hz."""
     tracks = load("solvers.recordings").read_recording(recordings / "mocap" / "05_13.c3d")
     motion = load("solvers.motion")
-    whole = np.flatnonzero(tracks.visible.all(axis=0))[:N_MARKERS]
-    names = tuple(tracks.names[point] for point in whole)
-    few = motion.Tracks(names, tracks.positions[:, whole], tracks.frame_rate)
+    complete = np.flatnonzero(tracks.visible.all(axis=0))[:N_MARKERS]
+    names = tuple(tracks.names[point] for point in complete)
+    few = motion.Tracks(names, tracks.positions[:, complete], tracks.frame_rate)
     return motion.resample(few, 60.0).slice(0, 150)
 
 

@@ -78,9 +78,9 @@ def test_a_gap_is_drawn_filled_where_it_was_cleaned_only(blank, overlay, holder)
     raw_lines = overlay.lines_at(raw, blank.context.scene)
     clean_lines = overlay.lines_at(clean, blank.context.scene)
 
-    whole = N_MARKERS * (3 + 24)
-    assert len(raw_lines) == whole - (3 + 24)
-    assert len(clean_lines) == whole
+    complete = N_MARKERS * (3 + 24)
+    assert len(raw_lines) == complete - (3 + 24)
+    assert len(clean_lines) == complete
     played = world_positions(blank, clean.markers, 56)
     assert_allclose(crosses(clean_lines), played, atol=TOLERANCE_M)
 

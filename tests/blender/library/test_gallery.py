@@ -13,7 +13,7 @@ def gallery(load):
 
 @pytest.mark.parametrize("n_matches", [1, 5, 24, 60])
 @pytest.mark.parametrize("size", [(1000, 500), (300, 900), (120, 90)])
-def test_cells_are_within_the_view_and_apart(gallery, n_matches, size):
+def test_cells_are_within_the_view_and_separate(gallery, n_matches, size):
     space = gallery.Box(40.0, 10.0, *size)
 
     cells = gallery.cells_in(space, n_matches, scale=1.0)

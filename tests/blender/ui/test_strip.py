@@ -40,7 +40,7 @@ def shown(strip):
     }
 
 
-def test_frames_one_step_apart_are_one_range(ranges):
+def test_frames_at_successive_steps_are_one_range(ranges):
     frames = np.array([7.0, 1.0, 2.0, 2.0, 3.0, 9.0])
 
     found = ranges.ranges_of(frames, 1.0, ranges.Mark.FILLED)

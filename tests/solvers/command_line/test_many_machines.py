@@ -110,7 +110,7 @@ def test_report_of_two_shards_equals_that_of_one_run(call, small_batch, tmp_path
     out = tmp_path / "out"
     call("convert", small_batch, "--output-folder", out, "--report")
     expected = [(out / name).read_bytes() for name in ("report.json", "report.html")]
-    whole = call("report", out)
+    complete = call("report", out)
     assert [(out / name).read_bytes() for name in ("report.json", "report.html")] == expected
     shutil.rmtree(out)
     for number in (1, 2):
@@ -120,7 +120,7 @@ def test_report_of_two_shards_equals_that_of_one_run(call, small_batch, tmp_path
 
     status, printed, err = call("report", out)
 
-    assert (status, printed, err) == whole
+    assert (status, printed, err) == complete
     assert (status, err.count("\n")) == (2, 1)
     assert "4 done, 1 failed" in printed
     assert [(out / name).read_bytes() for name in ("report.json", "report.html")] == expected

@@ -116,10 +116,10 @@ def test_longest_slide_ends_at_a_cut():
     points[:, :, 0] = 0.01 * np.arange(41)[:, None]
     foot = FootPoints("left", "foot", points)
 
-    whole = measure_foot_slide(foot, np.ones(41, dtype=bool), 60.0)
+    complete = measure_foot_slide(foot, np.ones(41, dtype=bool), 60.0)
     parts = measure_foot_slide(foot, np.ones(41, dtype=bool), 60.0, cuts=(11,))
 
-    assert_allclose(whole.longest, 0.4, rtol=1e-9)
+    assert_allclose(complete.longest, 0.4, rtol=1e-9)
     assert_allclose(parts.longest, 0.29, rtol=1e-9)
 
 

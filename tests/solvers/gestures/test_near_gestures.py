@@ -34,9 +34,11 @@ def test_hands_that_touch_do_not_zoom(monkeypatch):
 
 
 def test_hands_that_meet_behind_the_back_do_not_clap(monkeypatch):
-    apart, behind = (0.4, 0.1, -0.6), (-0.3, -0.15, -0.7)
-    meet = ((0.5, apart, apart), (0.25, behind, behind), (0.1, behind, behind))
-    monkeypatch.setitem(GESTURES, "clap", (*meet, (0.3, apart, apart), *GESTURES["clap"][4:]))
+    open_arms, behind = (0.4, 0.1, -0.6), (-0.3, -0.15, -0.7)
+    meet = ((0.5, open_arms, open_arms), (0.25, behind, behind), (0.1, behind, behind))
+    monkeypatch.setitem(
+        GESTURES, "clap", (*meet, (0.3, open_arms, open_arms), *GESTURES["clap"][4:])
+    )
 
     assert recognized("clap") == []
 

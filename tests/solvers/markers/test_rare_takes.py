@@ -36,10 +36,10 @@ def test_fast_pass_of_two_markers_and_back_is_no_swap(slow, fast):
     """Their relative steps, in meters; nothing else distinguishes them."""
     steps = np.full(60, slow)
     steps[48:52] = fast
-    apart = np.cumsum(steps)
-    apart -= apart[49] - 0.5 * fast
+    separation = np.cumsum(steps)
+    separation -= separation[49] - 0.5 * fast
     positions = np.zeros((120, 2, 3))
-    positions[:, 1, 0] = np.concatenate([apart, apart[::-1]])
+    positions[:, 1, 0] = np.concatenate([separation, separation[::-1]])
 
     assert unswap_markers(tracks_of(positions)).swaps == ()
 

@@ -5,7 +5,7 @@ The bytes that are damaged are made here. To search long:
 """
 
 import pytest
-from complete_files import RECORDING, SKELETON, TOKENS, WHOLE
+from complete_files import COMPLETE, RECORDING, SKELETON, TOKENS
 from damage import damaged, read_or_refuse, searching
 from hypothesis import given
 
@@ -20,7 +20,7 @@ def test_a_damaged_recording(kind, tmp_path):
     (tmp_path / "take.asf").write_bytes(SKELETON)
 
     @searching(EXAMPLES)
-    @given(damaged(WHOLE[kind], TOKENS))
+    @given(damaged(COMPLETE[kind], TOKENS))
     def search(content: bytes) -> None:
         path.write_bytes(content)
         read_or_refuse(lambda: read_recording(path))

@@ -5,8 +5,8 @@ import re
 
 import numpy as np
 import pytest
-from complete_files import KEYPOINTS, RECORDING, SKELETON, V2, WHOLE
-from exports.whole_exports import EXPORTS
+from complete_files import COMPLETE, KEYPOINTS, RECORDING, SKELETON, V2
+from exports.complete_exports import EXPORTS
 
 from solvers.errors import InvalidFileError
 from solvers.recordings import read_recording
@@ -51,7 +51,7 @@ def test_frames_without_rotations_are_refused(refused, monkeypatch, tmp_path):
     assert "300 frames of 31 joints, but hardly any rotations in them" in refused(bvh)
     assert "hardly any rotations" in refused(RECORDING + 900 * b"1\n", "take.amc")
     for kind in ("bvh", "amc"):
-        (tmp_path / f"take.{kind}").write_bytes(WHOLE[kind])
+        (tmp_path / f"take.{kind}").write_bytes(COMPLETE[kind])
         read_recording(tmp_path / f"take.{kind}")
 
 
@@ -91,7 +91,7 @@ def test_a_superscript_as_the_name_of_a_frame_is_no_time(tmp_path):
 
 
 def test_a_signaling_nan_is_no_frame_time(tmp_path):
-    content = re.sub(rb"(Frame Time:).*", rb"\1 sNaN", WHOLE["bvh"])
+    content = re.sub(rb"(Frame Time:).*", rb"\1 sNaN", COMPLETE["bvh"])
     (tmp_path / "take.bvh").write_bytes(content)
 
     assert read_recording(tmp_path / "take.bvh").frame_rate == 30.0

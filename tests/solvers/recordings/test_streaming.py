@@ -5,7 +5,7 @@ from itertools import chain, pairwise
 
 import numpy as np
 import pytest
-from complete_files import JOINT_FILES, JOINT_TOKENS, SKELETON, TOKENS, WHOLE
+from complete_files import COMPLETE, JOINT_FILES, JOINT_TOKENS, SKELETON, TOKENS
 from damage import damaged, searching
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,9 +20,9 @@ from solvers.recordings.marker_files import trc
 from solvers.recordings.skeleton_files import acclaim
 
 FILES = {
-    "bvh": (read_bvh, WHOLE["bvh"], TOKENS),
-    "trc": (read_trc, WHOLE["trc"], TOKENS),
-    "amc": (read_acclaim, WHOLE["amc"], TOKENS),
+    "bvh": (read_bvh, COMPLETE["bvh"], TOKENS),
+    "trc": (read_trc, COMPLETE["trc"], TOKENS),
+    "amc": (read_acclaim, COMPLETE["amc"], TOKENS),
 } | {
     kind: (*JOINT_FILES[kind], JOINT_TOKENS)
     for kind in (
@@ -95,7 +95,7 @@ def test_refusal_is_independent_of_block_borders(kind, message):
 
 @pytest.mark.parametrize("size", [1, 30, 1 << 22])
 def test_later_line_of_a_bone_in_a_frame_is_used(size, message):
-    complete = WHOLE["amc"]
+    complete = COMPLETE["amc"]
     twice = complete.replace(b"thigh 5 2 3\n", b"thigh 80 8 8\nshank 4\nthigh 5 2 3\n")
     assert twice != complete
 

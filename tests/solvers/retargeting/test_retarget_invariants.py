@@ -118,24 +118,24 @@ def test_travel_scale_is_a_setting():
 
 def test_hips_are_lowered_smoothly_for_steps_beyond_reach():
     """Steps of 1.4 times the length do not fit under hips at their height."""
-    usual, far = (
+    default, far = (
         given_to(WALK, mixamo(1.0), RetargetSettings(travel_scale=scale))
         for scale in (1.0, 1.4)
     )
 
-    drop = (usual.root_positions - far.root_positions)[:, 2]
+    drop = (default.root_positions - far.root_positions)[:, 2]
     assert drop.max() > 0.01
     height = far.root_positions[:, 2]
     assert np.abs(np.diff(height, 2)).max() * far.frame_rate**2 < 20.0
 
 
 def test_feet_out_of_reach_do_not_pull_the_hips_to_the_ground():
-    usual, torn = (
+    default, torn = (
         given_to(WALK, mixamo(1.0), RetargetSettings(travel_scale=scale))
         for scale in (1.0, 20.0)
     )
 
-    assert torn.root_positions[:, 2].min() > 0.75 * usual.root_positions[:, 2].min()
+    assert torn.root_positions[:, 2].min() > 0.75 * default.root_positions[:, 2].min()
 
 
 def test_ground_path_rotates_with_the_body():

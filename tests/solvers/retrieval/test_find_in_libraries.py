@@ -71,14 +71,14 @@ def real_libraries(real_clips, tmp_path_factory):
 
 @pytest.mark.parametrize("requested", SETTINGS)
 def test_shards_rank_real_clips_as_one_library_does(real_clips, real_libraries, requested):
-    whole, shards = real_libraries
+    complete, shards = real_libraries
     for query in real_clips[2::25]:
         ignored = (real_clips[0].name,)
         settings = SETTINGS[requested]
 
-        with load_clip_library(whole) as library:
+        with load_clip_library(complete) as library:
             expected = find_similar(query.recording, library, settings=settings, ignore=ignored)
-        one = find_in_libraries(query.recording, [whole], settings=settings, ignore=ignored)
+        one = find_in_libraries(query.recording, [complete], settings=settings, ignore=ignored)
         found = find_in_libraries(query.recording, shards, settings=settings, ignore=ignored)
 
         assert [each.match.clip for each in one] == [each.clip for each in expected]

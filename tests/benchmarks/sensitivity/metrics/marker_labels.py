@@ -67,8 +67,8 @@ def _swapped(tracks: Tracks, n_swaps: int, seed: int) -> Tracks:
     positions = tracks.positions.copy()
     for number, length in enumerate(np.geomspace(0.04, 1.2, n_swaps)):
         first = int(rng.integers(tracks.n_points))
-        apart = np.linalg.norm(tracks.positions - tracks.positions[:, [first]], axis=-1)
-        near = np.argsort(np.nanmean(apart, axis=0))[1:5]
+        distance = np.linalg.norm(tracks.positions - tracks.positions[:, [first]], axis=-1)
+        near = np.argsort(np.nanmean(distance, axis=0))[1:5]
         pair = [first, int(rng.choice(near))]
         last = max(1, round(length * tracks.frame_rate))
         start = int(rng.integers(1, tracks.n_frames - last - 1))

@@ -30,11 +30,11 @@ def measure(takes: dict[str, tuple[Motion, Motion]]) -> dict[str, float]:
         positions, wanted = (
             forward_kinematics(each).positions for each in (result.motion, truth)
         )
-        apart = np.linalg.norm(positions - wanted, axis=-1)
+        distance = np.linalg.norm(positions - wanted, axis=-1)
         jerk = np.linalg.norm(np.diff(positions, 3, axis=0), axis=-1) * given.frame_rate**3
         agreed = (result.contacts == detect_contacts(truth)).mean()
         figures |= {
-            f"{name}: distance mm": 1000.0 * float(apart.mean()),
+            f"{name}: distance mm": 1000.0 * float(distance.mean()),
             f"{name}: jerk m/s3": float(jerk.mean()),
             f"{name}: slide mm": 1.0 + 1000.0 * result.slide_after,
             f"{name}: depth mm": 1.0 + 1000.0 * result.penetration_after,

@@ -214,7 +214,7 @@ def test_quaternions_by_joint_are_no_positions(tmp_path, rng):
         read_recording(write(tmp_path / "take.json", content))
 
 
-def test_unknown_names_apart_from_the_positions_are_ignored(tmp_path, walk):
+def test_unknown_names_separate_from_the_positions_are_ignored(tmp_path, walk):
     """Joints in a known order are recognized by their bones."""
     limbs = {side: [walk[side + role] for role in PARTS.values()] for side in SIDES}
     points = [walk["head"]] * 5 + [limbs[side][k] for k in range(6) for side in SIDES]

@@ -35,8 +35,8 @@ def read(path, joints):
 
 
 def test_a_body_without_a_limb_is_imported_as_markers_and_reported(tmp_path, walk):
-    whole, said = read(tmp_path / "whole.csv", walk)
-    assert not isinstance(whole, Tracks) and "lack" not in said
+    complete, said = read(tmp_path / "whole.csv", walk)
+    assert not isinstance(complete, Tracks) and "lack" not in said
     walk = {role: points for role, points in walk.items() if role != "leftHand"}
 
     recording, said = read(tmp_path / "take.csv", walk)

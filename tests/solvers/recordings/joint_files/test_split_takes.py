@@ -129,7 +129,7 @@ def test_one_array_per_frame_is_one_take(tmp_path, coco):
         read(tmp_path / "0.npy")
 
 
-def test_complete_takes_with_numbers_stay_apart(tmp_path, coco):
+def test_complete_takes_with_numbers_stay_separate(tmp_path, coco):
     for take in range(3):
         np.save(tmp_path / f"take_{take}.npy", coco)
 

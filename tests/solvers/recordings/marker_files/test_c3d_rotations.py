@@ -40,9 +40,9 @@ def test_the_segments_of_a_body_become_its_motion(path):
     file = origins(path)
     for name in ("l_thigh", "r_foot", "r_hand", "head", "l_toes"):
         ours = poses.positions[:, motion.skeleton.names.index(name)]
-        apart = np.linalg.norm(ours - file[:, labels.index(name)], axis=-1)
-        assert np.nanmax(apart) < 0.03, name  # The trunk bends between its two segments.
-        assert np.isfinite(apart).sum() > 330
+        distance = np.linalg.norm(ours - file[:, labels.index(name)], axis=-1)
+        assert np.nanmax(distance) < 0.03, name  # The trunk bends between its two segments.
+        assert np.isfinite(distance).sum() > 330
 
 
 def test_the_rest_pose_stands_and_faces_us(path):

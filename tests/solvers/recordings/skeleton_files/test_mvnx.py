@@ -28,8 +28,8 @@ def test_the_same_take_as_bvh_agrees(path, recordings):
         find_humanoid_map(each.skeleton).indices(each.skeleton) for each in (motion, bvh)
     )
     for role in ("leftHand", "rightLowerArm", "head"):
-        apart = positions(motion)[1:, ours[role]] - positions(bvh)[1:, theirs[role]]
-        assert np.abs(apart).max() < 0.06, role  # the BVH has other joints in the trunk
+        offset = positions(motion)[1:, ours[role]] - positions(bvh)[1:, theirs[role]]
+        assert np.abs(offset).max() < 0.06, role  # the BVH has other joints in the trunk
 
 
 def test_scale_multiplies_lengths(path):

@@ -148,7 +148,7 @@ class TestVmc:
         assert frames[-1].names == ("hips", "leftUpperArm", "leftLowerArm")
         assert_allclose(frames[-1].root_position, (0.0, 0.0, 1.0))
 
-    def test_whole_numbers_are_numbers(self):
+    def test_integers_are_numbers(self):
         hips = write_message("/VMC/Ext/Bone/Pos", "Hips", 0, 1, 0, 0, 0, 0, 1)
 
         frame, *_ = self.decode([hips, hips])
