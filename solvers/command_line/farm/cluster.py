@@ -206,7 +206,7 @@ def _identity(value: Any) -> Any:
 
 def _sent(call: Callable[..., Any], *arguments: Any) -> tuple[Any, ...]:
     """Return a call as function and arguments for Dask; shared values stay as they are."""
-    from cloudpickle import dumps
+    from distributed.protocol.pickle import dumps
 
     return eval, CALL, {"pickle": pickle, "call": dumps(call), "arguments": [*arguments]}
 
