@@ -24,6 +24,7 @@ from .listed_images import is_listed, max_color_size, open_bounded_image, open_l
 from .matlab_file import MatlabArray, is_matlab, matlab_arrays
 from .matroska import Matroska, Track, index_matroska, is_matroska
 from .names import MAX_NAME_LENGTH, UniqueNames, printable, shown
+from .numbered_words import NUMBER, NumberedWords
 from .png_header import PngHeader, is_png, read_png_header
 from .row_stream import stream_rows
 from .size_limits import check_n_joints, check_n_poses
@@ -68,6 +69,7 @@ __all__ = [
     "MAX_DEFLATE_RATIO",
     "MAX_NAME_LENGTH",
     "NPY_MAGIC",
+    "NUMBER",
     "NUMBERS",
     "ROWS_AT_ONCE",
     "ZIP_MEMBER",
@@ -82,6 +84,7 @@ __all__ = [
     "MatlabArray",
     "Matroska",
     "NamesByNumber",
+    "NumberedWords",
     "PackedBytes",
     "PlainBytes",
     "PngHeader",

@@ -109,7 +109,7 @@ def _by_stamp(
     """Return rows by their number or time, those with the same as one frame.
 
     They are left as they are if some state neither, or if more of them state the same than
-    there are frames: nobody records more people than frames.
+    there are frames: no one records more people than frames.
     """
     for stamps in ([row.number for row in rows], [row.frame.time for row in rows]):
         groups: dict[float, list[BodiesFrame]] = {}

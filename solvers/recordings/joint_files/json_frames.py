@@ -119,7 +119,7 @@ def _takes_of(members: list[JsonMember], path: Path | str) -> dict[str, Take]:
 def _people_of(values: Mapping[str, Any], path: Path | str) -> dict[str, Take]:
     """Return the take of each person among values; none if these are frames or joints.
 
-    Of numbered ones, more are frames: nobody records more people than frames.
+    Of numbered ones, more are frames: no one records more people than frames.
     """
     found = {key: take for key, value in values.items() if (take := _take_of(value, path))}
     is_numbered = all(map(FRAME_KEY.fullmatch, values))

@@ -13,7 +13,9 @@ from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
 from ...progress import Progress, unwatched, within
 from ..containers import (
+    NUMBER,
     LineReader,
+    NumberedWords,
     check_n_joints,
     find_separator,
     shown,
@@ -27,7 +29,6 @@ from ..conventions import (
     recorded_seconds,
 )
 from ..point_bodies import second_of_times
-from .numbered_words import NUMBER, NumberedWords
 from .point_table import TIMES, ignored_columns, recording_of_points
 from .table_titles import titles_of_line
 
