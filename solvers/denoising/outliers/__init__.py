@@ -2,7 +2,12 @@
 
 from .outlier_runs import confirm_outliers, find_bursts
 from .predictive_density import OFFSET_DEVIATION, PredictiveDensity
-from .single_outliers import MIN_OUTLIER_RATE, compute_inlier_probability
+from .single_outliers import (
+    MIN_OUTLIER_RATE,
+    compute_inlier_probability,
+    fit_inlier_probability,
+    outlier_rate,
+)
 
 __all__ = [
     "MIN_OUTLIER_RATE",
@@ -11,4 +16,6 @@ __all__ = [
     "compute_inlier_probability",
     "confirm_outliers",
     "find_bursts",
+    "fit_inlier_probability",
+    "outlier_rate",
 ]

@@ -7,9 +7,15 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...progress import Progress, unwatched
-from ...signals import shrink_noise
+from ...signals import DIFFERENCE_ORDER, shrink_noise
+from ..averaging import MIN_NOISE
 from ..channels import Estimate
-from ..outliers import MIN_OUTLIER_RATE, compute_inlier_probability
+from ..outliers import (
+    MIN_OUTLIER_RATE,
+    compute_inlier_probability,
+    fit_inlier_probability,
+    outlier_rate,
+)
 from ..window_priors import WindowPrior, Windows
 from .covariance import adapt_covariance, covariance_from_prior
 from .filter_pass import filter_windows
@@ -31,9 +37,9 @@ varies it."""
 MAX_LEVERAGE = 0.98
 """Largest fraction of its own weight in an estimate that a sample is corrected for. Chosen by
 hand: a limit of 0.99998 gains 0.1 %, one of 0.8 costs 0.1 %; 1 divides by zero."""
-NOISE_BOUNDS = (0.5, 1.1)
-"""Range of the estimated noise, relative to the first estimate. Chosen by hand;
-`make sensitivity` varies it."""
+FIRST_NOISE_SHARE = 0.5
+"""Weight of the first estimate of the noise in a take without outliers, relative to one: by
+definition, that of a mean of two estimates."""
 
 
 def estimate_channels(
@@ -132,16 +138,13 @@ class _PosteriorState:
 
     def update_outliers(self, step: float = 1.0) -> None:
         """Move the weights by this step toward the probability of being no outlier."""
-        error = self.samples - self.estimate
-        prediction_error = error * (self.weight * self.leave_one_out_ratio + 1.0 - self.weight)
-        variance = self.noise**2 + self.variance * self.leave_one_out_ratio
-        inlier_probability = compute_inlier_probability(prediction_error, variance, self.rate)
+        error, variance = self._prediction_error()
+        inlier_probability = compute_inlier_probability(
+            error, self.noise**2 + variance, self.rate
+        )
         target_weight = self.may_be_right * inlier_probability
         self.weight = self.weight + step * (target_weight - self.weight)
-        outlier_fraction = (
-            1.0 - float(self.weight[self.observed].mean()) if self.observed.any() else 0.0
-        )
-        self.rate = float(np.clip(outlier_fraction, MIN_OUTLIER_RATE, 1.0 - MIN_OUTLIER_RATE))
+        self.rate = outlier_rate(self.weight, self.observed)
 
     def update_filters(self, factor: float = 1.0, *, reuse_gapped: bool = False) -> None:
         """Build the filters for the noise, inflated by this factor.
@@ -182,9 +185,34 @@ class _PosteriorState:
             self.covariance = adapt_covariance(
                 self.prior, filtered.slow_moment, filtered.fast_power, coefficient_noise
             )
-            error = self.samples - self.estimate
-            self.noise = _estimate_noise(error, self.weight, self.variance, self.first_noise)
+            self._update_noise()
         return float(np.sqrt(np.mean((self.estimate - before) ** 2)))
+
+    def _prediction_error(self) -> tuple[Array, Array]:
+        """Return the errors of predictions by all other samples, and their variance."""
+        error = self.samples - self.estimate
+        return (
+            error * (self.weight * self.leave_one_out_ratio + 1.0 - self.weight),
+            self.variance * self.leave_one_out_ratio,
+        )
+
+    def _update_noise(self) -> None:
+        """Estimate the noise of each channel from the residuals of the estimate.
+
+        The mean, of logarithms, with the first estimate: the more a take has outliers, the less
+        the first one counts, since each of its differences needs several right samples.
+        """
+        inliers = fit_inlier_probability(
+            *self._prediction_error(), self.may_be_right, self.rate
+        )
+        total = inliers.sum(axis=0)
+        error = self.samples - self.estimate
+        square = (inliers * (error**2 + self.variance)).sum(axis=0) / np.maximum(total, 1e-9)
+        noise = np.where(total > 0.0, np.sqrt(square), self.first_noise)
+        right = 1.0 - outlier_rate(inliers, self.may_be_right)
+        share = FIRST_NOISE_SHARE * right ** (DIFFERENCE_ORDER + 1)
+        noise = self.first_noise**share * np.maximum(noise, MIN_NOISE) ** (1.0 - share)
+        self.noise = shrink_noise(noise, total)
 
     def result(self, iterations: int, converged: bool) -> Estimate:
         """Return the estimate with its standard deviation."""
@@ -202,15 +230,3 @@ class _PosteriorState:
             iterations,
             converged,
         )
-
-
-def _estimate_noise(error: Array, weight: Array, variance: Array, first_noise: Array) -> Array:
-    """Return the noise of each channel, from the residuals of the estimate."""
-    total = weight.sum(axis=0)
-    square = (weight * (error**2 + variance)).sum(axis=0) / np.maximum(total, 1e-9)
-    noise = np.where(total > 0.0, np.sqrt(square), first_noise)
-    noise = np.sqrt(
-        first_noise
-        * np.clip(noise, NOISE_BOUNDS[0] * first_noise, NOISE_BOUNDS[1] * first_noise)
-    )
-    return shrink_noise(noise, total)
