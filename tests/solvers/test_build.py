@@ -1,4 +1,4 @@
-"""A build is told from others of its version by its code and learned data."""
+"""A build differs from others of its version by its code and learned data."""
 
 import shutil
 from pathlib import Path

@@ -2,7 +2,6 @@
 
 from .azure_csv import is_azure_csv, open_azure_csv
 from .azure_json import is_azure_json, open_azure_json
-from .frames_json import is_frame_json, is_frames_json, open_frames_json
 from .freemocap import is_npy, read_freemocap, read_freemocap_points
 from .irds import is_irds, open_irds
 from .joint_csv import is_joint_csv, open_joint_csv, write_joint_csv
@@ -26,6 +25,7 @@ from .nuitrack import (
     open_nuitrack_json,
 )
 from .point_table import is_point_table, open_point_table
+from .pose_estimator_json import is_frame_json, is_frames_json, open_frames_json
 from .table_titles import MAX_TITLE_LINES
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
 from .zed_json import is_zed_json, open_zed_json

@@ -19,25 +19,33 @@ class TimeUnit(NamedTuple):
     """Typical step between frames in this unit, above which it is the next one."""
     second: float
     """Seconds per unit."""
-    said: str
+    remark: Remark
 
 
 TIME_UNITS = (
     TimeUnit(
-        2e3, 1e-3, "Times have no unit; by their steps they are interpreted as milliseconds"
+        2e3,
+        1e-3,
+        Remark("Times have no unit; by their steps they are interpreted as milliseconds"),
     ),
     TimeUnit(
-        1e5, 1e-6, "Times have no unit; by their steps they are interpreted as microseconds"
+        1e5,
+        1e-6,
+        Remark("Times have no unit; by their steps they are interpreted as microseconds"),
     ),
     TimeUnit(
-        2e6, 1e-7, "Times have no unit; by their steps they are interpreted as ticks of 100 ns"
+        2e6,
+        1e-7,
+        Remark("Times have no unit; by their steps they are interpreted as ticks of 100 ns"),
     ),
     TimeUnit(
-        np.inf, 1e-9, "Times have no unit; by their steps they are interpreted as nanoseconds"
+        np.inf,
+        1e-9,
+        Remark("Times have no unit; by their steps they are interpreted as nanoseconds"),
     ),
 )
-"""Units of clocks. Chosen by hand: the steps are 2 s in milliseconds, 10 Hz in microseconds and
-5 Hz in ticks of Windows, in which 30 Hz is 333333."""
+"""Units of clocks, with their seconds. Chosen by hand: the largest steps are 2 s in
+milliseconds, 10 Hz in microseconds and 5 Hz in ticks of Windows, in which 30 Hz is 333333."""
 
 
 def second_of_times(times: Array, progress: Progress) -> float:
@@ -53,5 +61,5 @@ def second_of_times(times: Array, progress: Progress) -> float:
     if not len(steps) or np.median(steps) <= MAX_STEP_S:
         return 1.0
     unit = next(each for each in TIME_UNITS if np.median(steps) <= each.max_step)
-    progress(0.8, Remark(unit.said))
+    progress(0.8, unit.remark)
     return unit.second

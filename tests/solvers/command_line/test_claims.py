@@ -67,7 +67,7 @@ def test_claim_of_another_machine_lasts_while_it_is_renewed(tmp_path, seconds, h
 
 
 def test_claim_is_not_taken_over_with_one_that_is_made_meanwhile(tmp_path, monkeypatch):
-    """A claim is seen as abandoned, then released by who took it over, and claimed anew."""
+    """A claim is seen as abandoned, then released by who took it over, and claimed again."""
     abandoned = tmp_path / "take.1.claim"
     abandoned.write_text(json.dumps({"host": "render03", "machine": "render03", "pid": 1}))
     os.utime(abandoned, (0, 0))
@@ -94,7 +94,7 @@ def test_claim_is_not_taken_over_with_one_that_is_made_meanwhile(tmp_path, monke
 
 
 def test_release_leaves_the_claims_of_others(tmp_path):
-    """The process stalled: its claim was taken over, released and made anew by another one."""
+    """The process stalled: its claim was taken over, released and made again by another one."""
     other = {"host": "render03", "machine": "render03", "pid": 1}
     with claimed(tmp_path / "take") as claim:
         assert not claim.holder

@@ -11,7 +11,7 @@ from solvers.recordings import list_bodies, read_recording
 from solvers.samples import walking_gait
 
 F = 30
-APART_M = 2.0
+DISTANCE_M = 2.0
 PARTS = {"shoulder": "UpperArm", "elbow": "LowerArm", "wrist": "Hand", "hip": "UpperLeg",
          "knee": "LowerLeg", "ankle": "Foot"}  # fmt: skip
 ROLES = {f"{side}_{part}": side + role for part, role in PARTS.items()
@@ -26,7 +26,7 @@ def two():
     roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
 
     def joints(who, frame):
-        place = (APART_M * who, 0.0, 0.0)
+        place = (DISTANCE_M * who, 0.0, 0.0)
         return {name: (positions[frame, roles[role]] + place).tolist()
                 for name, role in ROLES.items()}  # fmt: skip
 
@@ -57,7 +57,7 @@ def rows(two, order):
     return [{"frame": k, "id": who, "joints": two(who, k)} for who, k in order]
 
 
-def apart(path, first, second):
+def distance_between(path, first, second):
     """Return how far the second person is from the first one in each frame."""
     one, other = (read_recording(path, body=name).tracks for name in (first, second))
     knee = one.names.index("left_knee")
@@ -100,8 +100,8 @@ def test_people_are_listed_with_all_their_frames(tmp_path, two, layout):
     bodies = list_bodies(path)
 
     assert [body.n_frames for body in bodies] == [F, F]
-    distances = apart(path, *sorted(body.name for body in bodies))
-    assert distances == pytest.approx([APART_M] * F, abs=1e-6)
+    distances = distance_between(path, *sorted(body.name for body in bodies))
+    assert distances == pytest.approx([DISTANCE_M] * F, abs=1e-6)
 
 
 @pytest.mark.parametrize("axes", ["frames, people", "people, frames"])

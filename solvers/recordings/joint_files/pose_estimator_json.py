@@ -29,8 +29,8 @@ from ..point_bodies import (
 )
 from .body_json import BodiesFrame, BodyJoints, open_frames, stacked
 from .joined_frames import NumberedFrame, joined_frames
-from .json_frames import json_by_frame
 from .json_people import POINT_KEYS, JsonPerson, people_of_frame
+from .keyed_frames import json_by_frame
 
 LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
 """Members with the names of joints, where these stand apart."""
