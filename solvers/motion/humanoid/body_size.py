@@ -11,7 +11,7 @@ ADULT_BONE_LENGTHS_M = np.array(
     + 2 * [0.10, 0.42, 0.40, 0.15]
 )  # fmt: skip
 """Distance of each joint from its parent in an adult of 1.75 m, meters (fractions of stature by
-Drillis et al. 1966; shoulders and hips as the Kinect places them)."""
+Drillis and Contini 1966; shoulders and hips as the Kinect places them)."""
 ADULT_STATURE_M = 1.75
 """Stature of that adult. By definition."""
 MAX_BODY_SCALE, MIN_BODY_SCALE = 3.0, 0.2
