@@ -84,7 +84,8 @@ def forget() -> None:
 def strip_of(context: bpy.types.Context) -> Strip | None:
     """Return the strip of the active armature, or None where there is nothing to show.
 
-    In Pose Mode, confidence and changed frames are those of the selected bones, if any are.
+    In Pose Mode, confidence and changed frames are those of the selected bones, if any are,
+    and of all bones below them.
     """
     armature = context.view_layer.objects.active
     if armature is None or armature.type != "ARMATURE":
@@ -127,12 +128,18 @@ def _make_room(store: dict[Any, Any]) -> None:
 
 
 def _selected(armature: bpy.types.Object) -> tuple[str, ...]:
-    """Return the bones that are selected in Pose Mode; none where all or none are."""
+    """Return the bones that are selected in Pose Mode, and those below them.
+
+    None where these are all bones, or no bone is selected.
+    """
     if armature.mode != "POSE":
         return ()
-    bones = armature.pose.bones
-    names = tuple(bone.name for bone in bones if compat.is_selected(bone))
-    return () if len(names) == len(bones) else names
+    names: dict[str, None] = {}  # an ordered set; parents come before their children
+    for bone in armature.pose.bones:
+        parent = bone.parent
+        if compat.is_selected(bone) or (parent is not None and parent.name in names):
+            names[bone.name] = None
+    return () if len(names) == len(armature.pose.bones) else tuple(names)
 
 
 def strip_from(

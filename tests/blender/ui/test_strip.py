@@ -129,6 +129,11 @@ def test_confidence_is_the_lowest_of_all_or_of_the_selected_bones(
     (found,) = reading.strip_of(blank.context).rows.values()
     assert [(each.first, each.last, each.mark.name) for each in found] == [(1, 60, "HIGH")]
 
+    above = actor.pose.bones["LeftArm"].parent
+    for bone in actor.pose.bones:
+        compat.select_bone(bone, bone == above)
+    assert shown(reading.strip_of(blank.context))["CONFIDENCE"][0] == (1, 20)
+
 
 @pytest.fixture
 def compat(load):
