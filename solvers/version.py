@@ -38,7 +38,8 @@ def build() -> str:
     """
     package = Path(__file__).parent
     digest = sha256()
-    for file in sorted([*package.rglob("*.py"), *package.rglob("*.npz")]):
+    files = [each for end in ("py", "npz") for each in package.rglob(f"[!.]*.{end}")]
+    for file in sorted(each for each in files if each.is_file()):  # without those of editors
         content = file.read_bytes()
         if file.suffix == ".py":
             content = content.replace(b"\r\n", b"\n")  # as Git has it on Windows

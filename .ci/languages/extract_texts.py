@@ -34,7 +34,7 @@ LABELED = {
     "mocap_assist/check/checking.py": {"_summary"},
     "mocap_assist/check/compare_panel.py": {"HOLD"},
     "mocap_assist/check/panel.py": {"_draw_figures", "KINDS"},
-    "mocap_assist/check/held_operator.py": {"HELD", "CLICKED"},
+    "mocap_assist/check/held_operator.py": {"HELD_TEXT", "CLICKED_TEXT"},
     "mocap_assist/clean/feet_panel.py": {"LABELS"},
     "mocap_assist/clean/report.py": {"clean_report"},
     "mocap_assist/overlays/strip_ranges.py": {"StripRow", "Mark"},

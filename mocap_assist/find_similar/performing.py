@@ -74,7 +74,7 @@ def page(context: bpy.types.Context, step: int) -> str:
     In a library with more clips than are listed, the next ones follow. While they are read,
     further calls count from the clip that will be chosen.
     """
-    if _pending and _pending[0].listing.query == THE_LIBRARY:
+    if _pending and _pending[0].is_awaited and _pending[0].listing.query == THE_LIBRARY:
         _pending[0].waves += step
         return ""
     listed, search = bpy.context.window_manager.mocap_assist_matches, searches.listed(context)
@@ -197,9 +197,12 @@ class _Listing(NamedTuple):
     def fill(self, finding: Finding, waves: int = 0) -> str:
         """List the clips; return a sentence that names the chosen one."""
         fill_list(bpy.context, searches.keep(self.query, self.grid, self.meters, finding))
-        row = (self.row + waves) % max(len(finding.found), 1)
-        bpy.context.window_manager.mocap_assist_matches.active = row
-        return chosen_sentence()
+        listed = bpy.context.window_manager.mocap_assist_matches
+        listed.active = self.row % max(len(finding.found), 1)
+        message = chosen_sentence()
+        for _ in range(abs(waves)):  # beyond the page they count for the next one
+            message = page(bpy.context, 1 if waves > 0 else -1) or message
+        return message
 
 
 @dataclass(eq=False)
@@ -213,6 +216,11 @@ class _PendingList:
     waves: int = 0
     """Clips to go on from the one that would be chosen."""
 
+    @property
+    def is_awaited(self) -> bool:
+        """Whether no other search was listed since, such as by Find Similar."""
+        return searches.newest() == self.newest
+
 
 def _poll(pending: _PendingList) -> float | None:
     """Fill the list once the job has ended; otherwise return the seconds to the next call."""
@@ -223,9 +231,10 @@ def _poll(pending: _PendingList) -> float | None:
     _pending.remove(pending)
     try:
         finding = pending.job.result()
-        if searches.newest() != pending.newest:  # Find Similar was pressed meanwhile
-            return None
-        _news[:] = [pending.listing.fill(finding, pending.waves)]
+        if pending.is_awaited:
+            _news[:] = [pending.listing.fill(finding, pending.waves)]
+        else:
+            _news[:] = [chosen_sentence()]
     except MocapAssistError as error:
         _news[:] = [str(error)]
         bpy.context.window_manager.mocap_assist_indexing.report = str(error)

@@ -202,6 +202,6 @@ def _silence_text(port: int, state: ListenerState) -> str:
     if state.counts.why and not state.counts.frames:
         return state.counts.why
     return (
-        f"No actor was received on port {port} for {MAX_SILENCE_S:.0f} seconds."
+        f"No actor data was received on port {port} for {MAX_SILENCE_S:.0f} seconds."
         " Start the tracker, and check the port."
     )

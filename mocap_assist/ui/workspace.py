@@ -91,8 +91,10 @@ def arranging(window: bpy.types.Window) -> Iterator[None]:
 
 
 def _show_tab(area: bpy.types.Area) -> bool:
-    """Open our tab of the sidebar; Blender has its tabs once they were drawn."""
-    sidebar = next(each for each in area.regions if each.type == "UI")
+    """Open our tab of a sidebar; Blender has the tabs once they were drawn."""
+    sidebar = next((each for each in area.regions if each.type == "UI"), None)
+    if sidebar is None:
+        return True
     with suppress(TypeError):
         sidebar.active_panel_category = tab_name()
         return True

@@ -216,8 +216,7 @@ def note_other_builds(tasks: Sequence[Task], screen: Screen) -> None:
     n_other = sum(_is_of_another_build(task) for task in tasks)
     if n_other:
         screen.write_line(
-            f"Made by another version of Mocap Assist, and made again: {n_other} of"
-            f" {len(tasks)} results."
+            f"Results of another version of Mocap Assist that are made again: {n_other}."
         )
 
 

@@ -93,9 +93,9 @@ def write_report(
 ) -> tuple[str, ...]:
     """Write both reports, each atomically, with the records of all machines.
 
-    Where another machine adds a record meanwhile, they are written again, unless a take is
-    claimed: its holder writes them at its end. An entry whose figures cannot be shown is a
-    failure in the report.
+    Where another machine adds a record meanwhile, they are written again, unless it still
+    works on a take: it writes them at its end with `--report`. An entry whose figures cannot
+    be shown is a failure in the report.
 
     Parameters
     ----------

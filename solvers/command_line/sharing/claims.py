@@ -74,17 +74,15 @@ def claimed(path: Path, batch: str = "") -> Iterator[Claim]:
     finally:
         ended.set()
         renewal.join()
-        for file, content in files.items():  # Own one last: it keeps its number from others.
-            with suppress(OSError):
-                if _content(file) == content:
-                    file.unlink()
+        if not _numbered(path, len(files) + 1).exists():  # else it stalled and was taken over
+            _release(files)
 
 
 def _claim(path: Path, batch: str) -> tuple[Claims, dict[str, Any] | None]:
     """Return the claims taken over and the new one, or the content of another one."""
     claims: Claims = {}
     while True:
-        file = path.with_name(f"{path.name}.{len(claims) + 1}.claim")
+        file = _numbered(path, len(claims) + 1)
         own = _created(file, batch)
         if own is not None:
             if all(_content(each) == content for each, content in claims.items()):
@@ -99,6 +97,18 @@ def _claim(path: Path, batch: str) -> tuple[Claims, dict[str, Any] | None]:
             claims[file] = holder
         else:
             return {}, holder
+
+
+def _numbered(path: Path, number: int) -> Path:
+    return path.with_name(f"{path.name}.{number}.claim")
+
+
+def _release(files: Claims) -> None:
+    """Remove the claims; the own one is the last, as it keeps its number from others."""
+    for file, content in files.items():
+        with suppress(OSError):
+            if _content(file) == content:
+                file.unlink()
 
 
 def _created(file: Path, batch: str) -> dict[str, Any] | None:
@@ -145,6 +155,12 @@ def _content(file: Path) -> dict[str, Any] | None:
     except (OSError, ValueError):
         return {}
     return found if isinstance(found, dict) else {}
+
+
+def is_held(file: Path) -> bool:
+    """Return whether a claim exists that is not abandoned."""
+    holder = _content(file)
+    return holder is not None and not _is_abandoned(file, holder)
 
 
 def _is_abandoned(file: Path, holder: dict[str, Any]) -> bool:

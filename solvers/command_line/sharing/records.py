@@ -12,7 +12,7 @@ from ...faults import Failure, attempt
 from ...files import remove_leftovers, write_atomically
 from ...json_text import parse_json
 from ...processes import host_name
-from .claims import remove_abandoned_parts
+from .claims import is_held, remove_abandoned_parts
 from .fingerprints import without_folders
 
 FOLDER = ".mocap_assist"
@@ -67,10 +67,10 @@ class Records:
         return self._path(output, "")
 
     def has_claims(self, but: str) -> bool:
-        """Return whether any output is claimed, except one."""
+        """Return whether a process works on any output, except one."""
         excepted = f"{self.claim(but).name}."
         claims = (self.folder / FOLDER).glob("*.claim")
-        return any(not each.name.startswith(excepted) for each in claims)
+        return any(is_held(each) for each in claims if not each.name.startswith(excepted))
 
     def prepare(self) -> None:
         """Make the folder of the records; a folder that vanishes later is not made again."""

@@ -153,6 +153,14 @@ def test_waves_while_a_page_is_read_count_from_its_first_or_last_clip(
     performing.page(blank.context, -1)
     assert jobs(page, page) == 0 and listed.active == len(listed.rows) - 2
 
+    of_two = replace(page, n_clips=2 * len(page.found))
+    performing.show_all(blank.context)
+    performing.page(blank.context, -1)
+    performing.page(blank.context, -1)
+    assert jobs(page, page, of_two, None) == 1
+    assert jobs(page, page, of_two, of_two) == 0
+    assert listed.active == len(listed.rows) - 2
+
 
 def test_list_of_find_similar_stays_when_an_older_command_ends(
     find, newcomer, performing, performance, jobs, blank, load
@@ -165,8 +173,10 @@ def test_list_of_find_similar_stays_when_an_older_command_ends(
     listed = blank.context.window_manager.mocap_assist_matches
     names, query = [row.name for row in listed.rows], listed.query
     nothing = load("mocap_assist.find_similar.solve_finding").Finding((), None, 0)
+    assert performing.page(blank.context, 1).startswith("2 of ")
     assert jobs(nothing) == 0
     assert [row.name for row in listed.rows] == names and listed.query == query
+    assert performing.news() == performing.chosen_sentence()
 
 
 def test_show_library_turns_on_the_ghost(performing, blank):

@@ -13,7 +13,7 @@ from solvers.command_line.sharing import fingerprints
 from solvers.errors import InvalidSettingError
 from solvers.recordings import read_bvh
 
-OTHER_BUILD = "Made by another version of Mocap Assist, and made again: 1 of 1 results.\n"
+OTHER_BUILD = "Results of another version of Mocap Assist that are made again: 1.\n"
 
 
 @pytest.fixture

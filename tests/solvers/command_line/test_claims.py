@@ -93,6 +93,19 @@ def test_claim_is_not_taken_over_with_one_that_is_made_meanwhile(tmp_path, monke
     assert not list(tmp_path.iterdir())
 
 
+def test_release_leaves_the_claim_that_a_successor_has_taken_over(tmp_path, monkeypatch):
+    """Else a third process could claim the output on which the successor works."""
+    monkeypatch.setattr(claims, "_is_abandoned", lambda file, _: file.name == "take.1.claim")
+    with claimed(tmp_path / "take") as first:
+        successor = claimed(tmp_path / "take")
+        assert not first.holder and successor.__enter__().taken_over
+
+    with claimed(tmp_path / "take") as third:
+        assert third.holder
+    successor.__exit__(None, None, None)
+    assert not list(tmp_path.iterdir())
+
+
 def test_release_leaves_the_claims_of_others(tmp_path):
     """The process stalled: its claim was taken over, released and made again by another one."""
     other = {"host": "render03", "machine": "render03", "pid": 1}

@@ -130,7 +130,7 @@ def test_invalid_recordings_are_reported_in_one_sentence(truth, spoil, message):
     ("state", "settings", "message"),
     [
         (0, ReconstructSettings(), "the tracking state `tracked`, although positions"),
-        (1, ReconstructSettings(inferred=0.0), "infers the others. Raise Weight of Inferred"),
+        (1, ReconstructSettings(inferred=0.0), "infers the others. Raise Inferred Weight"),
     ],
 )
 def test_recordings_of_untracked_joints_are_refused(truth, state, settings, message):
