@@ -113,16 +113,20 @@ def strings_of(tree: ast.Module) -> Iterator[ast.Constant]:
             yield node
 
 
+NAME_FIELDS: dict[type[ast.AST], str] = {
+    ast.FunctionDef: "name", ast.AsyncFunctionDef: "name", ast.ClassDef: "name",
+    ast.arg: "arg", ast.keyword: "arg", ast.Name: "id", ast.Attribute: "attr",
+    ast.alias: "asname", ast.ExceptHandler: "name", ast.MatchAs: "name",
+}  # fmt: skip
+"""Field of a node of the syntax tree that holds its name."""
+
+
 def names_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
     for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-            yield node.lineno, node.name
-        elif isinstance(node, ast.arg):
-            yield node.lineno, node.arg
-        elif isinstance(node, ast.Name):
-            yield node.lineno, node.id
-        elif isinstance(node, ast.Attribute):
-            yield node.lineno, node.attr
+        field = NAME_FIELDS.get(type(node))
+        name = field and getattr(node, field)
+        if name:
+            yield node.lineno, name
 
 
 def constants_of(tree: ast.Module) -> Iterator[str]:

@@ -17,8 +17,8 @@ GLB_MAGIC, GLB_VERSION, GLB_JSON = 0x46546C67, 2, 0x4E4F534A
 HEADER_BYTES = 20
 """Bytes of the headers of the file and of its first chunk."""
 MAX_SCALE_ERROR = 0.05
-"""It guards rounding of scales that exporters bake. Deviation of a joint's scale from 1, a
-ratio; a node of another scale is an object that holds joints."""
+"""Deviation of a joint's scale from 1, a ratio; a node of another scale is an object that holds
+joints. It guards against rounding of scales that exporters bake."""
 
 
 def find_joint_trees(content: Mapping[str, Any]) -> list[list[int]]:

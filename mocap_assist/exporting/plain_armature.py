@@ -18,8 +18,8 @@ from ..scene.rig import END, placement_of
 from .export_formats import ExportedBones
 
 MIN_LENGTH_M = 1e-3
-"""Length of a bone, meters, at least. It guards bones without a length, which Blender
-deletes."""
+"""Length of a bone, meters, at least. It guards against bones without a length, which
+Blender deletes."""
 SHIFT_TOLERANCE_M = 1e-5
 """Travel of a bone within its parent below which it has no location keys. It guards against
 rounding of poses in single precision."""

@@ -33,7 +33,7 @@ from .solve_finding import (
     list_clips,
 )
 
-POLL_INTERVAL_S = 0.2  # seconds
+POLL_INTERVAL_S = 0.2
 """Seconds between two looks at a performance. It bounds the delay of its end."""
 PERFORMED = "your performance"
 THE_LIBRARY = "the library"

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...solvers.arrays import Array
 
-SAME_SAMPLE = 1e-6  # samples; a distance that is only rounding, as in `resample`
+SAME_SAMPLE = 1e-6
 """Relative distance of two samples, in steps between them, that is only rounding, as in
 `resample`."""
 

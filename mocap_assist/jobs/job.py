@@ -26,7 +26,7 @@ from .protocol import (
 from .waiting_child import is_waiting, take_waiting
 
 Result = TypeVar("Result")
-POLL_INTERVAL_S = 0.05  # seconds
+POLL_INTERVAL_S = 0.05
 """Seconds between two looks at a process. It bounds the delay of a result."""
 SHORT_WAIT_S = 0.02
 """Seconds that the window waits for a result to be read before it goes on without. Chosen by

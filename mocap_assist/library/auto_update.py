@@ -17,10 +17,10 @@ from .solve_indexing import IndexProblem, index_sources
 
 logger = logging.getLogger(__name__)
 
-CHECK_INTERVAL_S = 15.0  # seconds
+CHECK_INTERVAL_S = 15.0
 """Seconds between two looks at the folders of a library. It bounds the load of a network
 drive."""
-INDEXING_INTERVAL_S = 0.25  # seconds
+INDEXING_INTERVAL_S = 0.25
 """Seconds between two queries of the background job. It bounds the delay of its progress."""
 Files = frozenset[tuple[str, int, int]]
 """Path, size and time of each."""

@@ -40,4 +40,5 @@ def test_build_changes_with_code_and_data_alone(build_of):
     assert build_of(**{"c.py": b""}) != first
     assert build_of(**{"motion/b.npz": b"2\r\n"}) != first
     assert build_of(**{"a.pyc": b"x"}) == first
+    assert build_of(**{"._a.py": b"x"}) == first  # macOS on a share
     assert build_of(**{"a.py": b"A = 1\r\n"}) == first  # Git on Windows

@@ -52,9 +52,10 @@ def test_lowest_versions_of_the_libraries(wheel, tmp_path):
 
 
 def environment(name: str, version: str, requirements: list[str]) -> Path:
-    """Return the programs of an environment with these libraries; make it if it is missing."""
+    """Return the programs of an environment with these libraries; make it if it has others."""
     home = ROOT / f".venv-wheel-{name}"
-    if not (home / "ready").exists():
+    ready, wanted = home / "ready", "\n".join(requirements)
+    if not ready.exists() or ready.read_text(encoding="utf-8") != wanted:
         found = run(ROOT / ".ci" / "find_python", version)
         if found.returncode:
             pytest.skip(f"no Python {version} was found")
@@ -64,7 +65,7 @@ def environment(name: str, version: str, requirements: list[str]) -> Path:
         if filled.returncode:
             reason = filled.stderr.strip().splitlines()[-1]
             pytest.skip(f"pip cannot install the libraries from the package index: {reason}")
-        (home / "ready").touch()
+        ready.write_text(wanted, encoding="utf-8")
     return home / "bin"
 
 

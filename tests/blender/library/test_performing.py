@@ -157,7 +157,7 @@ def test_waves_while_a_page_is_read_count_from_its_first_or_last_clip(
     performing.show_all(blank.context)
     performing.page(blank.context, -1)
     performing.page(blank.context, -1)
-    assert jobs(page, page, of_two, None) == 1
+    assert jobs(page, page, of_two) == 1
     assert jobs(page, page, of_two, of_two) == 0
     assert listed.active == len(listed.rows) - 2
 

@@ -1,5 +1,6 @@
 """The catalogs have every text of the window, in every language, in the terms of Blender."""
 
+import ast
 import importlib
 import re
 import sys
@@ -28,15 +29,32 @@ def catalogs(languages):
 
 
 @pytest.fixture(scope="module")
-def collected():
+def collector():
+    """Return the function that imports a module of `make catalogs`."""
+    sys.path.insert(0, str(CHECKOUT / ".ci" / "languages"))
+    yield importlib.import_module
+    sys.path.remove(str(CHECKOUT / ".ci" / "languages"))
+
+
+@pytest.fixture(scope="module")
+def collected(collector):
     """Return the texts that classes and source have now, as `make catalogs` collects them."""
     import bpy
 
-    sys.path.insert(0, str(CHECKOUT / ".ci" / "languages"))
-    try:
-        return importlib.import_module("catalogs").all_texts(bpy)
-    finally:
-        sys.path.remove(str(CHECKOUT / ".ci" / "languages"))
+    return collector("catalogs").all_texts(bpy)
+
+
+def test_names_whose_texts_are_collected_exist(collector):
+    source = collector("extract_texts")
+    missing = []
+    for path, names in {**source.LABELED, **source.TERMS}.items():
+        tree = ast.parse((CHECKOUT / path).read_text(encoding="utf-8"))
+        stored = [node for node in ast.walk(tree) if isinstance(node, ast.Name)]
+        defined = {each.id for each in stored if isinstance(each.ctx, ast.Store)}
+        kinds = (ast.FunctionDef, ast.ClassDef)
+        defined |= {node.name for node in ast.walk(tree) if isinstance(node, kinds)}
+        missing += [f"{path} {name}" for name in names - defined]
+    assert not missing
 
 
 def test_catalogs_have_exactly_the_texts_of_the_window(catalogs, collected):
