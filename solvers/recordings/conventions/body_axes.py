@@ -158,9 +158,7 @@ def _weigh(
     best, second = sorted(totals, key=lambda axis: totals[axis], reverse=True)[:2]
     lead = (totals[best] - totals[second]) / CLEAR_LEAD
     on_floor = floor[best] - floor[second] >= CLEAR_FLOOR_LEAD
-    rests_otherwise = max(in_rest.values()) > max(MIN_REST_STANDING, in_rest[best])
-    may_lie = rests_otherwise and (expected or EXPECTED).get(best, 0.0) <= 0.0
-    stands = min(standing[best], floor[best]) if on_floor and not may_lie else 0.0
+    stands = min(standing[best], floor[best]) if on_floor else 0.0
     elsewhere = max((standing[axis] for axis in AXES if axis not in totals), default=0.0)
     is_elsewhere = elsewhere >= CLEAR_STANDING and elsewhere > standing[best]
     is_clear = (lead >= 1.0 or stands >= CLEAR_STANDING) and not is_elsewhere
