@@ -1,24 +1,43 @@
 """Join what a file of JSON holds of each person, or in each row, to the frames of a take."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import pairwise
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import groupby, pairwise
 from math import isnan
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from ...errors import InvalidFileError
 from .body_json import BodiesFrame, BodyJoints
-from .json_people import POINT_KEYS
+from .json_people import PEOPLE_KEYS, POINT_KEYS
 
 MAX_MISSING_FRAMES = 100_000
 """Missing numbers, frames, that a file may have. It bounds the memory of damaged files."""
-
-
+MAX_PEOPLE = 16
+"""Number of people without names or identities in a frame, above which they are frames. It
+guards frames that are called `body_0000` and so on; a stream has as many people."""
+MAX_ROUNDING = 1e-6
+"""Difference of a ratio of numbers to a whole one. It bounds the rounding of numbers with
+decimals."""
+WITHOUT_IDENTITY = frozenset(("0", "untracked 0"))
+"""What people who are alone in a row are called if it does not say who they are."""
 NAME_OF_PERSON = re.compile(
     r"(?i)\D*|\D*(person|people|body|actor|subject|track|player|human|user|skeleton|id)[\W_]*\d+"
 )
 """Key of a member that is no frame: it has no number, or that of a person."""
+WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+")
+PART = re.compile(r"(left|right|l|r)?(hands?|fingers?|faces?|mano)|lh|rh")
+"""Word in the key of a part of a person."""
+WORDS_OF_DATA = frozenset((
+    "frames", "data", "pose", "poses", "tpose", "apose", "rest", "calibration", "reference",
+    "raw", "original", "unfiltered", "filtered", "smooth", "smoothed", "clean", "cleaned",
+    "interpolated", "predicted", "prediction", "predictions", "gt", "truth", "target",
+    "world", "camera", "image", "local", "global", "keypoints", "joints", "positions",
+    "points", "landmarks", "markers",
+))  # fmt: skip
+"""Words in the keys of data of one person, which a file may hold in several versions."""
 
 
 class NumberedFrame(NamedTuple):
@@ -40,57 +59,100 @@ class JoinedFrames(NamedTuple):
 def joined_frames(by_key: Mapping[str, list[NumberedFrame]], path: Path | str) -> JoinedFrames:
     """Return the frames of all people of a file.
 
-    Members with frames each are people, unless they are joints by another name of the same
-    person (`POINT_KEYS`): then the longest is taken. Of members with one frame each, those are
-    the frames. Rows of the same frame, with a person each, become one; frames that are left out
-    by their number are added without people.
+    Members with frames each are people, unless they are called as data of one person
+    (`WORDS_OF_DATA`): then the longest is taken. Of members with one frame each, those are the
+    frames, or people. People of one frame may have a row each (`_by_stamp`); frames that are
+    left out by their number are added without people.
 
     Raises InvalidFileError if very many frames are left out.
     """
-    found = {key: each for key, each in by_key.items() if any(row.frame.bodies for row in each)}
+    identities: dict[str, str] = {}
+    found = {
+        key: _one_of_people(rows, identities) if key.lower() in PEOPLE_KEYS else rows
+        for key, rows in by_key.items()
+        if any(row.frame.bodies for row in rows)
+    }
+    bodies = {key: rows for key, rows in found.items() if not _has_word(key, PART.fullmatch)}
+    found = bodies or found
     longest = max(found, key=lambda key: _n_seen(found[key]), default="")
     if len(found.get(longest, ())) > 1:
-        people = {key: rows for key, rows in found.items() if len(rows) > 1}
-        is_one = longest in POINT_KEYS or len(people) == 1
-        return _of_one(found[longest], path) if is_one else _of_several(people, path)
-    if all(map(NAME_OF_PERSON.fullmatch, found)):
-        return _of_several(found, path)
-    return _of_one([row for rows in found.values() for row in rows], path)
+        people = {
+            key: rows for key, rows in found.items() if len(rows) > 1 and not _is_data(key)
+        }
+        if longest not in people or len(people) == 1:
+            return _of_one(found[longest], identities, path)
+        return _of_several(people, identities, path)
+    n_numbered = sum(any(map(str.isdigit, key)) for key in found)
+    if n_numbered <= MAX_PEOPLE and all(map(NAME_OF_PERSON.fullmatch, found)):
+        return _of_several(found, identities, path)
+    return _of_one([row for rows in found.values() for row in rows], identities, path)
 
 
-def _of_one(rows: list[NumberedFrame], path: Path | str) -> JoinedFrames:
+def _has_word(key: str, is_meant: Callable[[str], object]) -> bool:
+    return any(is_meant(word.lower()) for word in WORD.findall(key))
+
+
+def _is_data(key: str) -> bool:
+    return key in POINT_KEYS or _has_word(key, WORDS_OF_DATA.__contains__)
+
+
+def _one_of_people(
+    rows: list[NumberedFrame], identities: dict[str, str]
+) -> list[NumberedFrame]:
+    """Return rows below a key for people as one frame, if each is a person without a time."""
+    seen = [row for row in rows if row.frame.bodies]
+    if len(seen) > MAX_PEOPLE or not all(
+        len(row.frame.bodies) == 1 and isnan(row.number) and isnan(row.frame.time)
+        for row in seen
+    ):
+        return rows
+    return [seen[0]._replace(frame=_one_frame([row.frame for row in seen], identities))]
+
+
+def _of_one(
+    rows: list[NumberedFrame], identities: dict[str, str], path: Path | str
+) -> JoinedFrames:
     """Return the frames of members that state who is in them."""
-    identities = {who: who for row in rows for who in row.frame.bodies}
-    return _by_stamp(rows, identities, path)
+    known = {who: identities.get(who, who) for row in rows for who in row.frame.bodies}
+    return _by_stamp(rows, known, path) or JoinedFrames([row.frame for row in rows], known)
 
 
-def _of_several(people: Mapping[str, list[NumberedFrame]], path: Path | str) -> JoinedFrames:
-    """Return the frames of members with the frames of a person each."""
-    identities: dict[str, str] = {}
-    joined = []
+def _of_several(
+    people: Mapping[str, list[NumberedFrame]], identities: dict[str, str], path: Path | str
+) -> JoinedFrames:
+    """Return the frames of members with the frames of a person each.
+
+    Those that cannot be joined by what they state are joined by their place in the lists.
+    """
+    known: dict[str, str] = {}
+    stated, placed = [], []
     for key, rows in people.items():
         is_alone = len({who for row in rows for who in row.frame.bodies}) == 1
-        for index, (number, frame) in enumerate(rows):
-            names = {who: key if is_alone else f"{key} {who}" for who in frame.bodies}
-            identities |= {name: who for who, name in names.items()}
-            bodies = {names[who]: joints for who, joints in frame.bodies.items()}
-            is_unstated = isnan(number) and isnan(frame.time)
-            joined.append(
-                NumberedFrame(index if is_unstated else number, frame._replace(bodies=bodies))
-            )
-    return _by_stamp(joined, identities, path)
+        for index, row in enumerate(rows):
+            names = {who: key if is_alone else f"{key} {who}" for who in row.frame.bodies}
+            known |= {name: identities.get(who, who) for who, name in names.items()}
+            bodies = {names[who]: joints for who, joints in row.frame.bodies.items()}
+            frame = row.frame._replace(bodies=bodies)
+            stated.append(NumberedFrame(row.number, frame))
+            placed.append(NumberedFrame(index, frame))
+    found = _by_stamp(stated, known, path) or _by_stamp(placed, known, path)
+    return found or JoinedFrames([], known)
 
 
 def missing_before(numbers: Sequence[float], start: float, path: Path | str) -> list[int]:
     """Return how many frames from a start are left out before each of the numbers, in order.
 
+    None are between numbers without a common step, such as those of other frames, rounded.
+
     Raises InvalidFileError if they are very many.
     """
-    step = min((after - before for before, after in pairwise(numbers)), default=1.0)
-    missing = [
-        round((after - before) / step) - 1
-        for before, after in pairwise((start - step, *numbers))
-    ]
+    if not numbers:
+        return []
+    step = _step(numbers)
+    mean = step or (numbers[-1] - numbers[0]) / (len(numbers) - 1)
+    missing = [round((numbers[0] - start) / mean)]
+    for before, after in pairwise(numbers):
+        missing.append(round((after - before) / step) - 1 if step else 0)
     if sum(missing) > MAX_MISSING_FRAMES:
         raise InvalidFileError(
             f"{path} lacks {sum(missing)} frames between {start:.0f} and"
@@ -99,37 +161,94 @@ def missing_before(numbers: Sequence[float], start: float, path: Path | str) -> 
     return missing
 
 
+def _step(numbers: Sequence[float]) -> float:
+    """Return the smallest step between numbers; 0 if others are no multiples of it."""
+    steps = [after - before for before, after in pairwise(numbers)]
+    step = min(steps, default=1.0)
+    errors = [abs(each / step - float(np.rint(each / step))) for each in steps]
+    return step if all(error < MAX_ROUNDING for error in errors) else 0.0
+
+
 def _n_seen(rows: Iterable[NumberedFrame]) -> int:
     return sum(bool(row.frame.bodies) for row in rows)
 
 
 def _by_stamp(
     rows: list[NumberedFrame], identities: dict[str, str], path: Path | str
-) -> JoinedFrames:
+) -> JoinedFrames | None:
     """Return rows by their number or time, those with the same as one frame.
 
-    They are left as they are if some state neither, or if more of them state the same than
-    there are frames: no one records more people than frames.
+    None if some state neither, or if rows with the same share a person: these are frames of
+    their own, whose numbers restart or whose times are rounded. Rows without identities are
+    people of a frame if they are listed with their number (`_are_listed`).
     """
-    for stamps in ([row.number for row in rows], [row.frame.time for row in rows]):
-        groups: dict[float, list[BodiesFrame]] = {}
-        for stamp, row in zip(stamps, rows, strict=True):
-            if row.frame.bodies or not isnan(stamp):
-                groups.setdefault(stamp, []).append(row.frame)
-        largest = max(map(len, groups.values()), default=1)
-        if len(groups) > largest and not any(map(isnan, groups)):
-            break
-    else:
-        return JoinedFrames([row.frame for row in rows], identities)
-    ordered = sorted(groups)
-    frames = [_one_frame(groups[stamp], identities) for stamp in ordered]
+    numbers = _groups(rows, [row.number for row in rows])
+    if _are_frames(numbers) or _are_listed(numbers, rows):
+        ordered = sorted(numbers)
+        is_joined = any(len(numbers[number]) > 1 for number in ordered)
+        if is_joined or _step(ordered):
+            frames = [_one_frame(numbers[number], identities) for number in ordered]
+            return JoinedFrames(_with_gaps(frames, ordered, path), identities)
+    times = _groups(rows, [row.frame.time for row in rows])
+    if _are_frames(times) and any(len(group) > 1 for group in times.values()):
+        return JoinedFrames(
+            [_one_frame(times[t], identities) for t in sorted(times)], identities
+        )
+    return None
+
+
+def _groups(rows: list[NumberedFrame], stamps: list[float]) -> dict[float, list[BodiesFrame]]:
+    """Return rows by their number or time, without empty ones that state none."""
+    groups: dict[float, list[BodiesFrame]] = {}
+    for stamp, row in zip(stamps, rows, strict=True):
+        if row.frame.bodies or not isnan(stamp):
+            groups.setdefault(stamp, []).append(row.frame)
+    return groups
+
+
+def _are_frames(groups: Mapping[float, list[BodiesFrame]]) -> bool:
+    """Return whether all rows state when they are, and none with the same share a person."""
+    return (
+        bool(groups)
+        and not any(map(isnan, groups))
+        and all(
+            len({who for row in group for who in row.bodies})
+            == sum(len(row.bodies) for row in group)
+            for group in groups.values()
+        )
+    )
+
+
+def _are_listed(groups: Mapping[float, list[BodiesFrame]], rows: list[NumberedFrame]) -> bool:
+    """Return whether people without identities have a row each, next to those of their frame.
+
+    There are as many in all frames, and fewer people than frames.
+    """
+    sizes = {len(group) for group in groups.values()}
+    runs = sum(1 for _ in groupby(row.number for row in rows))
+    return (
+        len(sizes) == 1
+        and max(sizes) <= MAX_PEOPLE
+        and max(sizes) < len(groups) == runs
+        and not any(map(isnan, groups))
+        and all(row.frame.bodies.keys() <= WITHOUT_IDENTITY for row in rows)
+    )
+
+
+def _with_gaps(
+    frames: list[BodiesFrame], numbers: list[float], path: Path | str
+) -> list[BodiesFrame]:
+    """Return frames with those that are left out by their number, which have no people.
+
+    Frames with times have these instead.
+    """
     if any(not isnan(frame.time) for frame in frames):
-        return JoinedFrames(frames, identities)
-    with_gaps = []
-    for n_missing, frame in zip(missing_before(ordered, ordered[0], path), frames, strict=True):
-        with_gaps += [frame._replace(bodies={})] * n_missing
-        with_gaps.append(frame)
-    return JoinedFrames(with_gaps, identities)
+        return frames
+    found = []
+    for n_missing, frame in zip(missing_before(numbers, numbers[0], path), frames, strict=True):
+        found += [frame._replace(bodies={})] * n_missing
+        found.append(frame)
+    return found
 
 
 def _one_frame(rows: list[BodiesFrame], identities: dict[str, str]) -> BodiesFrame:
@@ -141,6 +260,6 @@ def _one_frame(rows: list[BodiesFrame], identities: dict[str, str]) -> BodiesFra
         for who, joints in row.bodies.items():
             names = (who, *(f"{who} {count}" for count in range(2, len(rows) + 1)))
             name = next(name for name in names if name not in bodies)
-            identities.setdefault(name, identities[who])
+            identities.setdefault(name, identities.get(who, who))
             bodies[name] = joints
     return rows[0]._replace(bodies=bodies)
