@@ -15,6 +15,7 @@ from ...progress import Progress, Remark, unwatched
 from ..containers import (
     JsonMember,
     describe_frame_files,
+    frame_files,
     json_content,
     json_frame_files,
     json_members,
@@ -28,7 +29,7 @@ from ..point_bodies import (
     stand_body,
 )
 from .body_json import BodiesFrame, BodyJoints, open_frames, stacked
-from .joined_frames import NumberedFrame, joined_frames
+from .joined_frames import MAX_PEOPLE, NumberedFrame, joined_frames
 from .json_people import POINT_KEYS, JsonPerson, people_of_frame
 from .keyed_frames import json_by_frame
 
@@ -108,7 +109,7 @@ def is_frame_json(path: Path | str) -> bool:
     """Return whether a file holds the joints of one frame."""
     listed = _read_content(path, json_members(path, lists=True), unwatched).n_frames
     outermost = _read_content(path, [json_content(path)], unwatched).n_frames
-    return listed <= 1 and max(listed, outermost) == 1
+    return _may_be_one_frame(listed, path) and (listed > 1 or max(listed, outermost) == 1)
 
 
 def open_frames_json(
@@ -140,7 +141,7 @@ def open_frames_json(
     """
     check_scale(scale)
     content = own = _read_content(path, json_members(path, lists=True), progress)
-    if own.n_frames <= 1:
+    if _may_be_one_frame(own.n_frames, path):
         content = _read_content(path, json_frame_files(path), progress)
         if content.n_frames > 1:
             progress(0.8, Remark(describe_frame_files(len(content.frames))))
@@ -158,6 +159,18 @@ def open_frames_json(
         return _recording(path, names, body, frames, times, rate, scale, progress)
 
     return open_frames(path, frames, second, read)
+
+
+def _may_be_one_frame(n_listed: int, path: Path | str) -> bool:
+    """Return whether a file with as many frames may be one of a take with a file for each.
+
+    A list of few lists of points is the people of one frame if there are more such files.
+    """
+    if not 1 < n_listed <= MAX_PEOPLE:
+        return n_listed <= 1
+    value = json_content(path).value
+    is_bare = isinstance(value, list) and all(isinstance(each, list) for each in value)
+    return is_bare and len(frame_files(path).files) > n_listed
 
 
 def _read_content(

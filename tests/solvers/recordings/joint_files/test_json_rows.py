@@ -168,6 +168,7 @@ def of_openpose(joints, frame):
 
 @pytest.mark.parametrize("content", [
     of_openpose,
+    lambda joints, k: [points(joints, k), points(joints, k, 2.0)],
 ])  # fmt: skip
 def test_files_with_two_people_each_are_frames(tmp_path, joints, content):
     """Before, the first file was a take of two frames, whose body jumps."""
@@ -187,3 +188,11 @@ def test_many_rows_below_a_key_for_people_are_frames(tmp_path, joints):
     content = {"skeletons": [{"joints": joints(k)} for k in range(F)]}
 
     assert people_in(write(tmp_path, content)) == {"": F}
+
+
+def test_short_takes_without_neighbors_stay_takes(tmp_path, joints):
+    path = write(tmp_path, [points(joints, k) for k in range(9)], "walk_1.json")
+    write(tmp_path, [points(joints, k) for k in range(9)], "walk_2.json")
+
+    assert people_in(path) == {"": 9}
+    assert len(recordings_in(tmp_path)) == 2
