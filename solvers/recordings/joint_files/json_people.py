@@ -9,19 +9,36 @@ from ...arrays import Array
 from ..point_bodies import has_layout, without_undetected
 from .body_json import name_of_body
 
-POINT_KEYS = (
+
+def either_case(*keys: str) -> tuple[str, ...]:
+    """Return keys as they are, and as programs in C# write them: with a capital."""
+    return tuple(
+        spelled for key in keys for spelled in dict.fromkeys((key, key[:1].upper() + key[1:]))
+    )
+
+
+POINT_KEYS = either_case(
     "keypoints3d", "keypoints_3d", "joints3d", "joints_3d", "joints3D", "pose_keypoints_3d",
     "pose3d", "pose_3d", "poses_3d", "positions", "joints", "keypoints", "bones", "xyz",
 )  # fmt: skip
 """Members with the joints of a person."""
-PEOPLE_KEYS = ("instances", "people", "persons", "bodies", "skeletons", "annots")
+PEOPLE_KEYS = either_case("instances", "people", "persons", "bodies", "skeletons", "annots")
 """Members with the people of a frame."""
-IDENTITY_KEYS = ("id", "track_id", "person_id", "body_id", "personID")
-NAME_KEYS = ("name", "joint", "joint_name", "jointName", "bone", "bone_name", "type",
-             "jointType", "id")  # fmt: skip
+IDENTITY_KEYS = either_case("id", "track_id", "person_id", "body_id", "personID",
+                            "tracking_id", "trackingId")  # fmt: skip
+NAME_KEYS = either_case("name", "joint", "joint_name", "jointName", "bone", "bone_name", "type",
+                        "jointType", "id")  # fmt: skip
 """Members with the name of a joint, where joints are objects in a list."""
-PLACE_KEYS = ("position", "pos", "translation", "location", "transform", "matrix")
+PLACE_KEYS = either_case("position", "pos", "translation", "location", "transform", "matrix")
 """Members with the place of a joint, or with the matrix of its pose."""
+NUMBER_KEYS = either_case("frame", "frame_id", "frame_number", "frame_index", "frame_idx",
+                          "frameId", "frameNumber", "frameIndex")  # fmt: skip
+"""Members with the number of a frame."""
+RATE_KEYS = (*either_case("fps", "frame_rate", "framerate", "frameRate"), "FPS")
+TIME_KEYS = dict.fromkeys(either_case("timestamp", "time")) | dict.fromkeys(
+    either_case("timestamp_ms", "time_ms"), 0.001
+)
+"""Seconds per unit of the time of a frame; None where the key does not state it."""
 MIN_JOINTS = 8
 """Number of joints of a person. It guards JSON of something else."""
 
@@ -95,11 +112,7 @@ def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson
 
 
 def _members(values: Mapping[str, Any], keys: tuple[str, ...]) -> Iterator[Any]:
-    """Yield the members with these keys, which programs in C# begin with a capital."""
-    for key in keys:
-        for spelled in (key, key[:1].upper() + key[1:]):
-            if spelled in values:
-                yield values[spelled]
+    return (values[key] for key in keys if key in values)
 
 
 def is_place(value: Any) -> bool:
@@ -126,7 +139,7 @@ def _is_number(value: Any) -> bool:
 def _names_of(joints: list[Mapping[str, Any]]) -> tuple[str, ...]:
     """Return the names of joints that are objects, by the first member that differs in all."""
     for key in NAME_KEYS:
-        names = tuple(str(next(_members(joint, (key,)), None)) for joint in joints)
+        names = tuple(str(joint.get(key)) for joint in joints)
         if len({*names}) == len(names):
             return names
     return ()

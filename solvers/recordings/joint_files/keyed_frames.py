@@ -24,7 +24,7 @@ FRAME_KEY = re.compile(r"(?i)\s*(?:frame|f|t)?[\s_\-]*(\d+(?:\.\d+)?)\s*")
 """Key of a frame: its number, or its time in seconds."""
 NUMBERS_KEYS = ("frame_ids", "frameIds", "frame_numbers", "frame_indices")
 """Members with the numbers of all frames of a person."""
-NAME = "name"
+NAMES = ("name", "Name")
 TIME = "time"
 Take = dict[float, Any]
 """Frames by their number or time."""
@@ -97,7 +97,7 @@ def _takes_of(members: list[JsonMember], path: Path | str) -> dict[str, Take]:
     key, value = members[0].key, members[0].value
     if len(members) > 1 or not key:
         names = [
-            name_of_body(each.value, (NAME, *IDENTITY_KEYS), count)
+            name_of_body(each.value, (*NAMES, *IDENTITY_KEYS), count)
             if isinstance(each.value, Mapping)
             else str(count)
             for count, each in enumerate(members)

@@ -30,24 +30,18 @@ from ..point_bodies import (
 )
 from .body_json import BodiesFrame, BodyJoints, open_frames, stacked
 from .joined_frames import MAX_PEOPLE, NumberedFrame, joined_frames
-from .json_people import POINT_KEYS, JsonPerson, people_of_frame
+from .json_people import (
+    NUMBER_KEYS,
+    POINT_KEYS,
+    RATE_KEYS,
+    TIME_KEYS,
+    JsonPerson,
+    people_of_frame,
+)
 from .keyed_frames import json_by_frame
 
 LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
 """Members with the names of joints, where these stand apart."""
-NUMBER_KEYS = ("frame", "frame_id", "frame_number", "frame_index", "frame_idx", "frameId",
-               "frameNumber", "frameIndex")  # fmt: skip
-"""Members with the number of a frame."""
-RATE_KEYS = ("fps", "frame_rate", "framerate", "frameRate")
-TIME_KEYS = {
-    "timestamp": None,
-    "Timestamp": None,
-    "time": None,
-    "Time": None,
-    "timestamp_ms": 0.001,
-    "time_ms": 0.001,
-}
-"""Seconds per unit of the time of a frame; None where the key does not state it."""
 MAX_SPREAD = 20
 """Columns of named joints in all frames for each point in them, a ratio. It bounds the memory
 of files whose names differ between frames."""
@@ -59,7 +53,7 @@ MAX_NUMBER = 1e300
 JSON does not limit."""
 HEAD = re.compile(
     rb"[^\[]*(\[\s*){3,}[-\d]|\s*[\[{].*?\"("
-    + "|".join((*POINT_KEYS, *(key[:1].upper() + key[1:] for key in POINT_KEYS))).encode()
+    + "|".join(POINT_KEYS).encode()
     + rb')"\s*:\s*(\[\s*([\[{\d-]|null)|\{)',
     re.DOTALL,
 )
