@@ -131,7 +131,7 @@ def _read_content(
             times.append(np.nan)
         elif isinstance(member.value, Mapping) or member.key in WORLD:
             found = frame_landmarks(member.value, location)
-            n_several += len(_bodies_of(member.value)) > 1
+            n_several += sum(map(bool, _bodies_of(member.value))) > 1
             time = frame_time(member.value, location)
             if found is None and np.isnan(time) and KEYS.isdisjoint(member.value):
                 continue  # something else, such as a header

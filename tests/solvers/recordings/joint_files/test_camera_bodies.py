@@ -119,6 +119,18 @@ def test_a_second_person_in_world_landmarks_is_reported(read_any, collected_mess
     assert any("3 frames have more than one person" in message for message in messages)
 
 
+@pytest.mark.parametrize("nobody", [[], None])
+def test_an_empty_place_for_a_second_person_is_nobody(read_any, collected_messages, nobody):
+    messages, progress = collected_messages
+    content = json.loads(mediapipe_json(mediapipe()))
+    for frame in content["frames"]:
+        frame["worldLandmarks"] = [frame["worldLandmarks"], nobody]
+
+    read_any(json.dumps(content), progress=progress)
+
+    assert not any("more than one person" in message for message in messages)
+
+
 def expected_landmarks(points):
     x, y, z = np.moveaxis(points[..., :3], -1, 0)
     return np.stack([x, z, -y], axis=-1)
