@@ -51,8 +51,12 @@ MAX_FEW_COLUMNS = 1 << 22
 MAX_NUMBER = 1e300
 """Maximum time in seconds, or rate in hertz. It guards the conversion of whole numbers, which
 JSON does not limit."""
+GEOMETRY = rb"[^\[]*\"(?:MultiLineString|(?:Multi)?Polygon)\""
+"""Type of a geometry in GeoJSON, whose coordinates are nested like joints."""
 HEAD = re.compile(
-    rb"[^\[]*(\[\s*){3,}[-\d]|\s*[\[{].*?\"("
+    rb"\s*(?:\{(?!"
+    + GEOMETRY
+    + rb")[^\[]*)?(?:\[\s*){3,}[-\d]|\s*[\[{].*?\"("
     + "|".join(POINT_KEYS).encode()
     + rb')"\s*:\s*(\[\s*([\[{\d-]|null)|\{)',
     re.DOTALL,

@@ -25,6 +25,25 @@ def test_names_of_joints_are_found(tmp_path, name):
         assert found is not None and found.name == "JSON of joints"
 
 
+@pytest.mark.parametrize("content", [
+    [[[1, 2, 3]]], {"fps": 60, "array": [[[1, 2, 3]]]}, {"coordinates": [[[1, 2, 3]]]},
+])  # fmt: skip
+def test_arrays_are_found(tmp_path, content):
+    found = detect_format(write(tmp_path / "take.json", content))
+    assert found is not None and found.name == "JSON of joints"
+
+
+@pytest.mark.parametrize("text", [
+    "a,[[[1,2,3]]]\n", '"a",[[[1,2,3]]]\n', "name = [[[1, 2]]]",
+    '{"type": "Polygon", "coordinates": [[[7.5, 47.5], [7.6, 47.6]]]}',
+    '{"bbox": null, "type": "MultiPolygon", "coordinates": [[[[7.5, 47.5]]]]}',
+])  # fmt: skip
+def test_other_nested_brackets_are_no_joints(tmp_path, text):
+    path = tmp_path / "take.csv"
+    path.write_text(text)
+    assert detect_format(path) is None
+
+
 def write(path, content):
     path.write_text(json.dumps(content))
     return path
