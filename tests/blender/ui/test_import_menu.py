@@ -61,7 +61,8 @@ def test_panel_shows_the_source_of_the_selected_take(blank, draw, load, tmp_path
     samples = load("solvers.samples")
     walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=25.0))
     load("solvers.recordings").write_bvh(walk, tmp_path / "stroll.bvh")
-    assert draw("MOCAP_PT_import")[:2] == [IMPORT, "mocap_assist.load_sample"]
+    drawn = draw("MOCAP_PT_import")
+    assert drawn[0] == IMPORT and "mocap_assist.load_sample" in drawn
 
     blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / "stroll.bvh"))
 
