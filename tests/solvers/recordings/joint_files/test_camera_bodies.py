@@ -119,12 +119,12 @@ def test_a_second_person_in_world_landmarks_is_reported(read_any, collected_mess
     assert any("3 frames have more than one person" in message for message in messages)
 
 
-@pytest.mark.parametrize("nobody", [[], None])
-def test_an_empty_place_for_a_second_person_is_nobody(read_any, collected_messages, nobody):
+@pytest.mark.parametrize("empty", [[], None])
+def test_an_empty_place_for_a_second_person_is_nobody(read_any, collected_messages, empty):
     messages, progress = collected_messages
     content = json.loads(mediapipe_json(mediapipe()))
     for frame in content["frames"]:
-        frame["worldLandmarks"] = [frame["worldLandmarks"], nobody]
+        frame["worldLandmarks"] = [frame["worldLandmarks"], empty]
 
     read_any(json.dumps(content), progress=progress)
 
