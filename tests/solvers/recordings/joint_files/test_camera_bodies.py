@@ -120,7 +120,7 @@ def test_a_second_person_in_world_landmarks_is_reported(read_any, collected_mess
 
 
 @pytest.mark.parametrize("empty", [[], None])
-def test_an_empty_place_for_a_second_person_is_nobody(read_any, collected_messages, empty):
+def test_an_empty_place_is_no_second_person(read_any, collected_messages, empty):
     messages, progress = collected_messages
     content = json.loads(mediapipe_json(mediapipe()))
     for frame in content["frames"]:
