@@ -1,6 +1,6 @@
 """Find the people in a frame of JSON, and their joints, however these are nested."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,6 +39,17 @@ TIME_KEYS = dict.fromkeys(either_case("timestamp", "time")) | dict.fromkeys(
     either_case("timestamp_ms", "time_ms"), 0.001
 )
 """Seconds per unit of the time of a frame; None where the key does not state it."""
+NUMBERS_KEYS = either_case("frame_ids", "frameIds", "frame_numbers", "frame_indices")
+"""Members with the numbers of all frames of a person."""
+TIMES_KEYS = {key: key for key in TIME_KEYS} | {
+    f"{key.removesuffix('_ms')}s{'_ms' * key.endswith('_ms')}": key for key in TIME_KEYS
+}
+"""Members with the times of all frames of a person, and those that state it of a frame."""
+START_KEYS = either_case("start_frame", "startFrame")
+"""Members with the number of the first frame of a person."""
+MAX_NUMBER = 1e300
+"""Maximum number or time of a frame, or rate in hertz. It guards the conversion of whole
+numbers, which JSON does not limit."""
 MIN_JOINTS = 8
 """Number of joints of a person. It guards JSON of something else."""
 
@@ -113,6 +124,39 @@ def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson
 
 def _members(values: Mapping[str, Any], keys: tuple[str, ...]) -> Iterator[Any]:
     return (values[key] for key in keys if key in values)
+
+
+def as_frame(value: Any) -> dict[str, Any]:
+    """Return a frame as an object: a list is one of points or of people."""
+    if isinstance(value, Mapping):
+        return dict(value)
+    is_body = isinstance(value, list) and _points(value) is not None
+    return {PEOPLE_KEYS[0]: [value] if is_body else value}
+
+
+def is_number(value: Any) -> bool:
+    """Return whether a value is a finite number that fits in a float."""
+    is_real = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_real and abs(value) < MAX_NUMBER
+
+
+def listed_numbers(value: Mapping[str, Any], keys: Iterable[str], n_frames: int) -> list[float]:
+    """Return the numbers in a member, if there is another one for each frame."""
+    listed = next((value[key] for key in keys if key in value), None)
+    if not isinstance(listed, list) or not all(map(is_number, listed)):
+        return []
+    numbers = [float(number) for number in listed]
+    return numbers if len(numbers) == len({*numbers}) == n_frames else []
+
+
+def have_identities(frames: list[Any]) -> bool:
+    """Return whether all of these are people with identities of their own."""
+    stated = [
+        next((str(each[key]) for key in IDENTITY_KEYS if key in each), None)
+        for each in frames
+        if isinstance(each, Mapping)
+    ]
+    return len({*stated}) == len(frames) and None not in stated
 
 
 def is_place(value: Any) -> bool:

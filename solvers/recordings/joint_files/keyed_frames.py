@@ -1,8 +1,8 @@
 """Put the members of a JSON file in frames: those keyed by number, by joint or by person."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from itertools import chain, groupby, islice
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from itertools import chain, count, groupby, islice
 from pathlib import Path
 from typing import Any
 
@@ -14,20 +14,35 @@ from .joined_frames import missing_before
 from .json_people import (
     IDENTITY_KEYS,
     MIN_JOINTS,
+    NUMBERS_KEYS,
     PEOPLE_KEYS,
     POINT_KEYS,
+    RATE_KEYS,
+    START_KEYS,
+    TIMES_KEYS,
+    as_frame,
+    have_identities,
+    is_number,
     is_place,
+    listed_numbers,
     people_of_frame,
 )
 
 FRAME_KEY = re.compile(r"(?i)\s*(?:frame|f|t)?[\s_\-]*(\d+(?:\.\d+)?)\s*")
 """Key of a frame: its number, or its time in seconds."""
-NUMBERS_KEYS = ("frame_ids", "frameIds", "frame_numbers", "frame_indices")
-"""Members with the numbers of all frames of a person."""
 NAMES = ("name", "Name")
 TIME = "time"
-Take = dict[float, Any]
-"""Frames by their number or time."""
+MAX_DEPTH = 6
+"""Levels of members in which frames are looked for. It guards the depth of the recursion."""
+
+
+class Take(dict[float, Any]):
+    """Frames by their number or time."""
+
+    rate: float | None = None
+    """Frames per second; None where that is not stated next to the frames."""
+    is_timed: bool = False
+    """Whether times are stated next to the frames."""
 
 
 def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[JsonMember]:
@@ -40,11 +55,13 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
     Raises
     ------
     InvalidFileError
-        Joints have different numbers of frames, or frames are left out for very long.
+        Joints have different numbers of frames, people have different frame rates, or frames
+        are left out for very long.
     """
     places: dict[str, list[Any]] = {}
     numbered: dict[str, Any] = {}
-    takes: dict[str, Take] = {}
+    groups: list[tuple[str, dict[str, Take]]] = []
+    yielded = set()
     for key, group in groupby(members, lambda member: member.key):
         first, rest = _with_nulls(group)
         value = first[-1].value
@@ -58,17 +75,48 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
         first += islice(rest, max(len(_take_of(value, path)), 1))
         second = next(rest, None)
         if second is None and (found := _takes_of(first, path)):
-            takes |= found
+            groups.append((key, found))
             continue
+        yielded.add(key)
         yield from first
         if second is not None:
             yield second
         yield from rest
-    takes |= _people_of(numbered, path) or {"": _numbered(numbered)}
+    groups.append(("", _people_of(numbered, path) or {"": _numbered(numbered)}))
     yield from _by_number("", _keyed(places, path), 0.0, path)
+    takes = _with_own_names(groups, yielded)
+    yield from _rate_of(takes.values(), path)
     start = min((number for take in takes.values() for number in take), default=0.0)
     for name, take in takes.items():
         yield from _by_number(name, take, start, path)
+
+
+def _with_own_names(
+    groups: Iterable[tuple[str, dict[str, Take]]], others: Collection[str]
+) -> dict[str, Take]:
+    """Return the takes of all groups; names that are there already follow that of the group."""
+    takes: dict[str, Take] = {}
+    for key, found in groups:
+        for name, take in found.items():
+            names = chain((name, f"{key} {name}"), (f"{name} {k}" for k in count(2)))
+            takes[next(each for each in names if each not in takes and each not in others)] = (
+                take
+            )
+    return takes
+
+
+def _rate_of(takes: Collection[Take], path: Path | str) -> Iterator[JsonMember]:
+    """Yield the rate that is stated next to frames, if there is one.
+
+    Raises InvalidFileError if people have different rates, or only some of them have times.
+    """
+    rates = sorted({take.rate for take in takes if take.rate is not None})
+    if len(rates) > 1 or len({take.is_timed for take in takes if take}) > 1:
+        raise InvalidFileError(
+            f"{path} has people at different frame rates, or with and without times. Export it"
+            " with one frame rate for all."
+        )
+    yield from (JsonMember(RATE_KEYS[0], rate, 1.0) for rate in rates)
 
 
 def _without_places(
@@ -111,8 +159,8 @@ def _takes_of(members: list[JsonMember], path: Path | str) -> dict[str, Take]:
         return {}
     people = _people_of(value, path)
     if len(people) > 1:
-        return people
-    take = {} if key in PEOPLE_KEYS and not people else _take_of(value, path)
+        return _with_rate(people, value)
+    take = Take() if key in PEOPLE_KEYS and not people else _take_of(value, path)
     return {key: take} if take else {}
 
 
@@ -129,54 +177,64 @@ def _people_of(values: Mapping[str, Any], path: Path | str) -> dict[str, Take]:
     return found
 
 
-def _take_of(value: Any, path: Path | str) -> Take:
+def _with_rate(takes: dict[str, Take], value: Mapping[str, Any]) -> dict[str, Take]:
+    """Return takes with the rate that a value states next to them."""
+    stated = (float(value[key]) for key in RATE_KEYS if is_number(value.get(key)))
+    rate = next(stated, None)
+    for take in takes.values():
+        take.rate = rate if take.rate is None else take.rate
+    return takes
+
+
+def _take_of(value: Any, path: Path | str, depth: int = MAX_DEPTH) -> Take:
     """Return the frames of a value; empty if it is a frame, or something else.
 
     It is a list of frames, is keyed by their numbers or by joint, or has one such member.
     """
+    if not depth:
+        return Take()
     if isinstance(value, list):
         frames = [each for each in value if each is not None]
-        is_take = len(frames) > 1 and _has_people(frames[0]) and not _have_identities(frames)
-        return {float(k): each for k, each in enumerate(value)} if is_take else {}
+        is_take = len(frames) > 1 and _has_people(frames[0]) and not have_identities(frames)
+        return Take((float(k), each) for k, each in enumerate(value if is_take else ()))
     if not isinstance(value, Mapping):
-        return {}
+        return Take()
     if keyed := _keyed(value, path):
-        return keyed
+        return _stamped(keyed, value)
     inner = {key: value[key] for key in POINT_KEYS if key in value}
     inner = inner or {key: each for key, each in value.items() if key not in PEOPLE_KEYS}
-    takes = [take for each in inner.values() if (take := _take_of(each, path))]
-    if len(takes) != 1:
-        return {}
-    numbers = next((value[key] for key in NUMBERS_KEYS if key in value), None)
-    return _renumbered(takes[0], numbers)
+    takes = [take for each in inner.values() if (take := _take_of(each, path, depth - 1))]
+    return _stamped(takes[0], value) if len(takes) == 1 else Take()
 
 
 def _keyed(values: Mapping[str, Any], path: Path | str) -> Take:
     """Return the frames of what is keyed by number or by joint; empty for all else."""
     is_numbered = len(values) > 1 and all(map(FRAME_KEY.fullmatch, values))
     n_joints = sum(_path(each) is not None for each in values.values())
-    by_joint = _by_joint(values, path) if n_joints >= MIN_JOINTS else {}
+    by_joint = _by_joint(values, path) if n_joints >= MIN_JOINTS else Take()
     if is_numbered and not (has_layout(n_joints) and not has_layout(len(by_joint))):
-        return _numbered(values) if any(map(_has_people, values.values())) else {}
+        return _numbered(values) if any(map(_has_people, values.values())) else Take()
     return by_joint
 
 
-def _renumbered(take: Take, numbers: Any) -> Take:
-    """Return a take with other numbers, if there is one for each of its frames."""
-    is_list = isinstance(numbers, list) and len(numbers) == len(take)
-    if not is_list or not all(isinstance(number, int | float) for number in numbers):
-        return take
-    return dict(zip(map(float, numbers), take.values(), strict=True))
-
-
-def _have_identities(frames: list[Any]) -> bool:
-    """Return whether all of these are people with identities of their own."""
-    stated = [
-        next((str(each[key]) for key in IDENTITY_KEYS if key in each), None)
-        for each in frames
-        if isinstance(each, Mapping)
-    ]
-    return len({*stated}) == len(frames) and None not in stated
+def _stamped(take: Take, value: Mapping[str, Any]) -> Take:
+    """Return a take with the numbers, the times and the rate that a value states next to it."""
+    numbers = listed_numbers(value, NUMBERS_KEYS, len(take))
+    start = next((value[key] for key in START_KEYS if is_number(value.get(key))), 0)
+    if not numbers and min(take) == 0.0 and float(start).is_integer():
+        numbers = [float(start) + number for number in take]
+    frames = [*take.values()]
+    key = next((key for key in TIMES_KEYS if listed_numbers(value, (key,), len(take))), "")
+    if key:
+        times = listed_numbers(value, (key,), len(take))
+        frames = [
+            {TIMES_KEYS[key]: time, **as_frame(frame)}
+            for time, frame in zip(times, frames, strict=True)
+        ]
+    is_unique = len({*numbers}) == len(take)
+    stamped = Take(zip(numbers if is_unique else take, frames, strict=True))
+    stamped.rate, stamped.is_timed = take.rate, take.is_timed or bool(key)
+    return _with_rate({"": stamped}, value)[""]
 
 
 def _has_people(frame: Any) -> bool:
@@ -202,7 +260,7 @@ def _by_joint(values: Mapping[str, Any], path: Path | str) -> Take:
     longest = max(map(len, paths.values()), default=0)
     paths = {key: found for key, found in paths.items() if len(found) > 1 or longest == 1}
     if len(paths) < MIN_JOINTS:
-        return {}
+        return Take()
     lengths = sorted({len(found) for found in paths.values()})
     if len(lengths) > 1:
         short, full = (next(k for k, v in paths.items() if len(v) == n)
@@ -215,13 +273,13 @@ def _by_joint(values: Mapping[str, Any], path: Path | str) -> Take:
     frames = [
         {name: places[frame] for name, places in paths.items()} for frame in range(longest)
     ]
-    return {float(k): [*f.values()] if is_numbered else f for k, f in enumerate(frames)}
+    return Take((float(k), [*f.values()] if is_numbered else f) for k, f in enumerate(frames))
 
 
 def _numbered(values: Mapping[str, Any]) -> Take:
     """Return values by the numbers in their keys."""
     found = {name: FRAME_KEY.fullmatch(name) for name in values}
-    return {float(match[1]): values[name] for name, match in found.items() if match}
+    return Take((float(match[1]), values[name]) for name, match in found.items() if match)
 
 
 def _by_number(key: str, take: Take, start: float, path: Path | str) -> Iterator[JsonMember]:

@@ -36,6 +36,7 @@ from .json_people import (
     RATE_KEYS,
     TIME_KEYS,
     JsonPerson,
+    is_number,
     people_of_frame,
 )
 from .keyed_frames import json_by_frame
@@ -48,9 +49,6 @@ of files whose names differ between frames."""
 MAX_FEW_COLUMNS = 1 << 22
 """Columns of named joints in all frames that any file may have. It bounds the memory:
 130 MB."""
-MAX_NUMBER = 1e300
-"""Maximum time in seconds, or rate in hertz. It guards the conversion of whole numbers, which
-JSON does not limit."""
 GEOMETRY = rb"[^\[]*\"(?:MultiLineString|(?:Multi)?Polygon)\""
 """Type of a geometry in GeoJSON, whose coordinates are nested like joints."""
 HEAD = re.compile(
@@ -182,14 +180,14 @@ def _read_content(
     names: list[str] = []
     n_points = n_columns = 0
     for member in json_by_frame(members, path):
-        if member.key in RATE_KEYS and _is_number(member.value):
+        if member.key in RATE_KEYS and is_number(member.value):
             rate = float(member.value)
         if member.key in LIST_OF_NAMES and isinstance(member.value, str):
             names.append(member.value)
         number = time = np.nan
         if isinstance(member.value, dict):
             number = _number_of(member.value)
-            key = next((key for key in TIME_KEYS if _is_number(member.value.get(key))), "")
+            key = next((key for key in TIME_KEYS if is_number(member.value.get(key))), "")
             time, second = (float(member.value[key]), TIME_KEYS[key]) if key else (time, second)
         found = {}
         for person in people_of_frame(member.value):
@@ -210,7 +208,7 @@ def _read_content(
 
 def _number_of(frame: Mapping[str, Any]) -> float:
     """Return the number that a frame states; NaN if there is none."""
-    values = (frame[key] for key in NUMBER_KEYS if _is_number(frame.get(key)))
+    values = (frame[key] for key in NUMBER_KEYS if is_number(frame.get(key)))
     return float(next(values, np.nan))
 
 
@@ -279,8 +277,3 @@ def _recording(
         scale=scale,
         progress=progress,
     )
-
-
-def _is_number(value: Any) -> bool:
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    return is_number and abs(value) < MAX_NUMBER
