@@ -155,8 +155,8 @@ def missing_before(numbers: Sequence[float], start: float, path: Path | str) -> 
         missing.append(round((after - before) / step) - 1 if step else 0)
     if sum(missing) > MAX_MISSING_FRAMES:
         raise InvalidFileError(
-            f"{path} lacks {sum(missing)} frames between {start:.0f} and"
-            f" {numbers[-1]:.0f}. Number the frames without large gaps, and export it again."
+            f"{path} lacks {sum(missing):.10g} frames between {start:.10g} and"
+            f" {numbers[-1]:.10g}. Number the frames without large gaps, and export it again."
         )
     return missing
 
