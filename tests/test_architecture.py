@@ -76,12 +76,12 @@ def test_solvers_are_free_of_blender():
 def test_modules_of_a_job_are_free_of_blender():
     """A solve runs in a bare Python; so do all modules that one of them imports."""
     jobs = [*modules("mocap_assist/jobs"), *(ROOT / "mocap_assist").rglob("solve_*.py")]
-    seen = set[Path]()
+    visited = set[Path]()
     while jobs:
         module = jobs.pop()
-        if module in seen:
+        if module in visited:
             continue
-        seen.add(module)
+        visited.add(module)
         assert not {name for _, name in imports(module)} & BLENDER, module
         inner = (path.with_suffix(".py") for path in imported_paths(module))
         jobs += [path for path in inner if path.exists() and "mocap_assist" in path.parts]

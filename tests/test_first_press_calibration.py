@@ -21,7 +21,7 @@ from tests.benchmarks.first_press.calibration import (
 from tests.benchmarks.first_press.conditions import CONDITIONS, Case
 from tests.benchmarks.first_press.takes import Take
 
-ARM_LOST = next(one for one in CONDITIONS if one.limb == "arm")
+MISSING_ARM = next(one for one in CONDITIONS if one.limb == "arm")
 BURSTS = next(one for one in CONDITIONS if one.bursts)
 
 
@@ -30,7 +30,7 @@ def case(monkeypatch) -> Case:
     """A walk whose left arm is missing for a second."""
     motion = walking_gait(GaitSettings(duration=3.0))
     monkeypatch.setattr("tests.benchmarks.first_press.conditions.read", lambda take: motion)
-    return Case(Take("walk", 30), ARM_LOST)
+    return Case(Take("walk", 30), MISSING_ARM)
 
 
 def test_true_confidence_has_no_expected_error(rng):
@@ -62,7 +62,7 @@ def test_high_confidence_counts_reports_of_nine_tenths_or_more():
 def test_missing_samples_are_counted_separately(case):
     calibration, reported = Calibration(), np.full(case.truth.rotations.shape[:2], 0.95)
 
-    calibration.add(case, _missing_turned(case, degrees=20.0), reported)
+    calibration.add(case, _missing_rotated(case, degrees=20.0), reported)
 
     n_missing = case.truth.rotations[case.missing_frames][:, case.missing_joints].shape[:2]
     n_all = case.truth.n_frames * int(case.channels.joints.sum())
@@ -116,9 +116,9 @@ def _bins(reported: np.ndarray, is_right: np.ndarray) -> Bins:
     return bins
 
 
-def _missing_turned(case: Case, degrees: float) -> Motion:
+def _missing_rotated(case: Case, degrees: float) -> Motion:
     rotations = case.truth.rotations.copy()
-    turn = quaternion_from_rotation_vector(np.radians([degrees, 0.0, 0.0]))
+    rotation = quaternion_from_rotation_vector(np.radians([degrees, 0.0, 0.0]))
     block = np.ix_(np.arange(case.truth.n_frames)[case.missing_frames], case.missing_joints)
-    rotations[block] = multiply(rotations[block], turn)
+    rotations[block] = multiply(rotations[block], rotation)
     return replace(case.truth, rotations=rotations)

@@ -25,7 +25,7 @@ def walk(monkeypatch) -> Motion:
     """Each take is a walk; ours turns one elbow by OFF_DEG, and the peer returns the truth."""
     motion = walking_gait(GaitSettings(duration=2.0))
     monkeypatch.setattr("tests.benchmarks.first_press.conditions.read", lambda take: motion)
-    monkeypatch.setitem(METHODS, OURS, lambda case: Result(_turned(case.truth, case.take)))
+    monkeypatch.setitem(METHODS, OURS, lambda case: Result(_rotated(case.truth, case.take)))
     monkeypatch.setitem(METHODS, PEER, lambda case: Result(case.truth))
     return motion
 
@@ -42,7 +42,9 @@ def test_the_worst_joint_and_frame_are_found(walk, measured):
 def test_three_worst_takes_of_a_condition_are_drawn(walk, monkeypatch, tmp_path):
     scores, drawn = _scores(CLEAN), []
     monkeypatch.setitem(
-        METHODS, OURS, lambda case: drawn.append(case) or Result(_turned(case.truth, case.take))
+        METHODS,
+        OURS,
+        lambda case: drawn.append(case) or Result(_rotated(case.truth, case.take)),
     )
 
     paths = draw_worst(scores, TAKES, tmp_path)
@@ -81,10 +83,10 @@ def _scores(condition, swapped: bool = False) -> Scores:
     return scores
 
 
-def _turned(motion: Motion, take: Take) -> Motion:
+def _rotated(motion: Motion, take: Take) -> Motion:
     rotations = motion.rotations.copy()
-    turn = quaternion_from_rotation_vector(np.radians([OFF_DEG[take.name], 0.0, 0.0]))
-    rotations[FRAME, _elbow(motion)] = multiply(rotations[FRAME, _elbow(motion)], turn)
+    rotation = quaternion_from_rotation_vector(np.radians([OFF_DEG[take.name], 0.0, 0.0]))
+    rotations[FRAME, _elbow(motion)] = multiply(rotations[FRAME, _elbow(motion)], rotation)
     return motion.with_poses(rotations)
 
 

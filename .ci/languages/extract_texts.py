@@ -30,7 +30,7 @@ damaged libraries fail."""
 SHOWN = ("solvers/command_line/farm/flamenco_",)
 """Beginnings of paths among those whose texts Submit Folder shows."""
 LABELED = {
-    "mocap_assist/blender/fbx_curves.py": {"describe_lost_curves"},
+    "mocap_assist/blender/fbx_curves.py": {"describe_missing_curves"},
     "mocap_assist/check/checking.py": {"_summary"},
     "mocap_assist/check/compare_panel.py": {"HOLD"},
     "mocap_assist/check/panel.py": {"_draw_figures", "KINDS"},
@@ -140,8 +140,8 @@ def _labels(
     tree: ast.Module, hidden: set[int], names: set[str], kind: re.Pattern[str]
 ) -> Iterator[str]:
     """Yield all texts of these constants, classes and functions."""
-    for place in ast.walk(tree):
-        for node in ast.walk(place) if _name_of(place) in names else ():
+    for outer in ast.walk(tree):
+        for node in ast.walk(outer) if _name_of(outer) in names else ():
             if isinstance(node, ast.JoinedStr | ast.Constant) and id(node) not in hidden:
                 yield from kind.findall(_text(node))
 

@@ -21,7 +21,7 @@ def loses_curves(path: str) -> bool:
     return _lacks_x(path, BINARY)
 
 
-def describe_lost_curves(path: str) -> str:
+def describe_missing_curves(path: str) -> str:
     """Return a message that this Blender drops animation of a text FBX file; empty if not.
 
     Text has no other importer.

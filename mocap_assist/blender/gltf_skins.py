@@ -31,11 +31,11 @@ def find_joint_trees(content: Mapping[str, Any]) -> list[list[int]]:
         return []
     animated = _animated_nodes(content)
     below = {child for node in nodes for child in _children(node, len(nodes))}
-    seen: set[int] = set()
+    visited: set[int] = set()
     trees = []
     for top in (index for index in range(len(nodes)) if index not in below):
         for root in _joint_roots(nodes, top, animated):
-            tree = _subtree(nodes, root, seen)
+            tree = _subtree(nodes, root, visited)
             if sum(node in animated for node in tree) >= MIN_BODY_JOINTS:
                 trees.append(tree)
     return trees
@@ -70,12 +70,12 @@ def write_with_skins(
 
 def _joint_roots(nodes: list[dict[str, Any]], top: int, animated: set[int]) -> list[int]:
     """Return the uppermost joints below a node of a scene."""
-    waiting, roots, seen = [top], [], set()
+    waiting, roots, visited = [top], [], set()
     while waiting:
         node = waiting.pop()
-        if node in seen:
+        if node in visited:
             continue
-        seen.add(node)
+        visited.add(node)
         if node in animated and _is_of_scale_one(nodes[node]):
             roots.append(node)
         else:
@@ -83,12 +83,12 @@ def _joint_roots(nodes: list[dict[str, Any]], top: int, animated: set[int]) -> l
     return roots
 
 
-def _subtree(nodes: list[dict[str, Any]], root: int, seen: set[int]) -> list[int]:
+def _subtree(nodes: list[dict[str, Any]], root: int, visited: set[int]) -> list[int]:
     waiting, tree = [root], []
     while waiting:
         node = waiting.pop()
-        if node not in seen:
-            seen.add(node)
+        if node not in visited:
+            visited.add(node)
             tree.append(node)
             waiting += _children(nodes[node], len(nodes))
     return tree

@@ -87,10 +87,10 @@ def _number(pattern: bytes, head: bytes) -> float:
 
 def _fbx_number(head: bytes, name: bytes) -> float | None:
     """Return a number of the global settings of an FBX file, binary or text."""
-    place = head.find(name)
-    if place < 0:
+    index = head.find(name)
+    if index < 0:
         return None
-    rest = head[place + len(name) : place + len(name) + MAX_PROPERTY_BYTES]
+    rest = head[index + len(name) : index + len(name) + MAX_PROPERTY_BYTES]
     if not head.startswith(BINARY_FBX):
         text = re.match(rb'"(?:\s*,\s*"[^"]*")*\s*,\s*([-+.\deE]+)', rest)
         return _number(rb"([-+.\deE]+)", text[1]) if text else None

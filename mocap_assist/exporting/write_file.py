@@ -165,10 +165,10 @@ def _write_bvh(
     root = rig.bones.index(request.body) if request.body in rig.bones else largest
     bones = rig.subtree(root)
     order = [tree.names.index(rig.bones[bone]) for bone in bones]
-    turned = multiply(poses.rotations[:, order], inverse(rig.rest_rotations[bones]))
+    rotated = multiply(poses.rotations[:, order], inverse(rig.rest_rotations[bones]))
     parents = [bones.index(rig.parents[bone]) for bone in bones[1:]]
-    local = turned.copy()
-    local[:, 1:] = multiply(inverse(turned[:, parents]), turned[:, 1:])
+    local = rotated.copy()
+    local[:, 1:] = multiply(inverse(rotated[:, parents]), rotated[:, 1:])
     still = Placement(IDENTITY[None], np.zeros((1, 3)), 1.0)
     skeleton, owners = skeleton_of(rig, bones, still)
     ends = np.tile(IDENTITY, (len(local), len(owners) - len(bones), 1))

@@ -17,7 +17,7 @@ from ..actions.armature_read import read_take
 from ..actions.fitting import fitting_slots, plays, plays_slot
 from ..blender import compat
 from ..blender.compat import Source
-from ..blender.fbx_curves import describe_lost_curves
+from ..blender.fbx_curves import describe_missing_curves
 from ..blender.scene_files import open_scene_file
 from ..blender.skinned_meshes import pack_skinned_meshes
 from ..blender.stated_conventions import stated_conventions
@@ -161,8 +161,8 @@ def _read_file(
         clips += found.clips
         refused += found.refused
     is_empty = not (clips or refused)
-    if suffix_by_content(path) == ".fbx" and (lost := describe_lost_curves(path)):
-        refused.append(lost)
+    if suffix_by_content(path) == ".fbx" and (missing := describe_missing_curves(path)):
+        refused.append(missing)
     if stated is not None:
         clips = _upright(_with_one_root(clips, stated))
     kept = pack_skinned_meshes() if meshes else None

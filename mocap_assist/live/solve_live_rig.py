@@ -34,7 +34,7 @@ class LiveBones(NamedTuple):
     first_frame: float
     rotating: tuple[str, ...]
     moving: tuple[str, ...]
-    judged: tuple[str, ...]
+    rated: tuple[str, ...]
     """Bones with a confidence."""
     has_contacts: bool = False
     """Whether feet are held, and their contacts recorded."""
@@ -50,7 +50,7 @@ class LiveFrameKeys(NamedTuple):
     locations: Single
     """Shape (n_moving, 3)."""
     confidence: Single
-    """Shape (n_judged,)."""
+    """Shape (n_rated,)."""
     contacts: tuple[bool, bool] = (False, False)
     """Left and right foot."""
 
@@ -62,10 +62,10 @@ class LiveFrameKeys(NamedTuple):
 
 def channels_of(bones: LiveBones, rotations: Array, locations: Array) -> dict[str, BoneKeys]:
     """Return the channels of each bone from those of all, (n_frames, n_bones, 4 or 3)."""
-    turned = dict(zip(bones.rotating, rotations.swapaxes(0, 1), strict=True))
+    rotated = dict(zip(bones.rotating, rotations.swapaxes(0, 1), strict=True))
     moved = dict(zip(bones.moving, locations.swapaxes(0, 1), strict=True))
     names = dict.fromkeys((*bones.rotating, *bones.moving))
-    return {name: BoneKeys(turned.get(name), moved.get(name)) for name in names}
+    return {name: BoneKeys(rotated.get(name), moved.get(name)) for name in names}
 
 
 class LiveRig:

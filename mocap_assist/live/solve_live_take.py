@@ -180,7 +180,7 @@ def recorded_take(previews: Iterable[Any]) -> RecordedTake:
         bones.first_frame,
         numbers - numbers[0],
         channels_of(bones, rotations, locations),
-        dict(zip(bones.judged, confidence.T, strict=True)),
+        dict(zip(bones.rated, confidence.T, strict=True)),
         np.array([each.contacts for each in frames]) if bones.has_contacts else None,
         f"{n_skipped} frames were skipped, as the solver was busy." if n_skipped else "",
     )

@@ -143,8 +143,8 @@ def _basis_rotations(
     """Return the rotations of all controls at once, shape (n_controls, n_frames, 4)."""
     axes = np.array([control.axes for control in controls]).reshape(-1, 1, 4)
     carried = np.array([each.rotations for each in carriers]).reshape(len(controls), -1, 4)
-    turned = np.array([each.rotations for each in moved]).reshape(len(controls), -1, 4)
-    local = multiply(inverse(carried), turned)
+    rotated = np.array([each.rotations for each in moved]).reshape(len(controls), -1, 4)
+    local = multiply(inverse(carried), rotated)
     return np.asarray(multiply(multiply(inverse(axes), local), axes))
 
 

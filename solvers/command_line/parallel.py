@@ -62,8 +62,8 @@ def _run_on_workers(
     verb: Verb, tasks: Sequence[Task], shared: Any, workers: Workers, screen: Screen
 ) -> Iterator[FinishedTask]:
     crashes: Counter[tuple[Any, ...]] = Counter()
-    remaining, lost = [*tasks], list[FinishedTask]()
-    while remaining or lost:
+    remaining, given_up = [*tasks], list[FinishedTask]()
+    while remaining or given_up:
         again: list[Task] = []
         n_held = 0
         for group in _groups(remaining, crashes, workers.max_crashes):
@@ -72,17 +72,17 @@ def _run_on_workers(
                 crashes[key] += finished.crashed
                 n_held += finished.is_held
                 if finished.crashed and crashes[key] == workers.max_crashes:
-                    lost.append(finished)
+                    given_up.append(finished)
                 elif finished.crashed or finished.is_held:
                     again.append(finished.task)
                 else:
                     yield finished
-        recorded = [_recorded(finished, workers.batch) for finished in lost]
+        recorded = [_recorded(finished, workers.batch) for finished in given_up]
         yield from (finished for finished in recorded if not finished.is_held)
-        lost = [each for each, end in zip(lost, recorded, strict=True) if end.is_held]
-        if n_held + len(lost):
+        given_up = [each for each, end in zip(given_up, recorded, strict=True) if end.is_held]
+        if n_held + len(given_up):
             screen.note(
-                f"Waiting for takes that lost workers have claimed: {n_held + len(lost)}."
+                f"Waiting for takes that lost workers have claimed: {n_held + len(given_up)}."
             )
             sleep(RENEWAL_INTERVAL_S)
         remaining = again

@@ -52,7 +52,7 @@ feet by 0.3 degrees more, at the same acceleration of knees. `make sensitivity` 
 FLOOR_M = 0.002
 """Meters, for a leg of 0.9 m, by which a planted sole may be off the floor. Chosen by hand;
 `make sensitivity` varies it."""
-MAX_TURN_RAD_S = np.radians(8.0)
+MAX_ROTATION_RAD_S = np.radians(8.0)
 """Radians per second by which a foot may turn while it rests flat. Chosen by hand: 2 degrees
 make knees before depth cameras jerk half as much again; `make sensitivity` varies it."""
 
@@ -99,7 +99,7 @@ def _contact_goals(contact: FootContact, settings: PlantSettings) -> list[Goal]:
         )
     if settings.hold_rotation and contact.flat.any():
         goals.append(
-            StayStill(contact.leg.ankle, _in_all_directions(contact.flat), MAX_TURN_RAD_S)
+            StayStill(contact.leg.ankle, _in_all_directions(contact.flat), MAX_ROTATION_RAD_S)
         )
     return goals
 

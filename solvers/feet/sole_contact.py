@@ -99,8 +99,10 @@ def _flatness(rotations: Array, contact: Flags, load: Array, rate: float) -> Arr
     """
     if len(rotations) == 1:
         return np.zeros(0)
-    turns = rotation_vector_from_quaternion(multiply(rotations[1:], inverse(rotations[:-1])))
-    velocity = gaussian_filter1d(turns * rate, SMOOTHING_S * rate, axis=0)
+    rotation_changes = rotation_vector_from_quaternion(
+        multiply(rotations[1:], inverse(rotations[:-1]))
+    )
+    velocity = gaussian_filter1d(rotation_changes * rate, SMOOTHING_S * rate, axis=0)
     slowness = np.clip(2.0 - 2.0 * np.linalg.norm(velocity, axis=1) / MAX_FLAT_RATE, 0.0, 1.0)
     heel = load[:, 0]
     shared = np.clip(4.0 * heel * (1.0 - heel), 0.0, 1.0)

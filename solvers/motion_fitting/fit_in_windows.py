@@ -50,8 +50,8 @@ def join_windows(windows: Sequence[Motion], ranges: Sequence[tuple[int, int]]) -
     for window, ((_, end), (start, _)) in zip(windows[1:], pairwise(ranges), strict=True):
         fraction = np.linspace(0.0, 1.0, end - start + 2)[1:-1]
         n = end - start
-        turned = slerp(rotations[start:], window.rotations[:n], fraction[:, None])
+        blended = slerp(rotations[start:], window.rotations[:n], fraction[:, None])
         moved = roots[start:] + fraction[:, None] * (window.root_positions[:n] - roots[start:])
-        rotations = np.concatenate([rotations[:start], turned, window.rotations[n:]])
+        rotations = np.concatenate([rotations[:start], blended, window.rotations[n:]])
         roots = np.concatenate([roots[:start], moved, window.root_positions[n:]])
     return windows[0].with_poses(rotations, roots)

@@ -68,8 +68,8 @@ def fit_motion(
     for number in range(1, MAX_ROUNDS + 1):
         progress(number / (MAX_ROUNDS + 1), message)
         step = equations.step
-        turns = step[:, 3 * fitted.root_moves :]
-        damping = min(damping, MAX_STEP_RAD / float(np.abs(turns).max(initial=1e-9)))
+        rotations = step[:, 3 * fitted.root_moves :]
+        damping = min(damping, MAX_STEP_RAD / float(np.abs(rotations).max(initial=1e-9)))
         for _ in range(MAX_HALVINGS):
             trial = fitted.moved(damping * step)
             tried = _equations(trial, goals)

@@ -66,8 +66,8 @@ class FittedMotion:
         axes = []
         for joint in self.joints:
             parent, own = self.motion.skeleton.parents[joint], self.axes_of(joint)
-            turns = matrix_from_quaternion(self.poses.rotations[:, parent])
-            axes.append((turns if parent >= 0 else np.eye(3)) @ own)
+            rotations = matrix_from_quaternion(self.poses.rotations[:, parent])
+            axes.append((rotations if parent >= 0 else np.eye(3)) @ own)
         return axes
 
     def axes_of(self, joint: int) -> Array:
@@ -85,10 +85,10 @@ class FittedMotion:
     def deviations(self) -> Array:
         """Return the change of each variable since the source, (n_frames, n_variables)."""
         chosen = list(self.joints)
-        turns = multiply(
+        rotations = multiply(
             self.motion.rotations[:, chosen], inverse(self.source.rotations[:, chosen])
         )
-        vectors = rotation_vector_from_quaternion(turns)
+        vectors = rotation_vector_from_quaternion(rotations)
         changes = np.empty((self.motion.n_frames, self.n_variables))
         if self.root_moves:
             changes[:, :3] = self.motion.root_positions - self.source.root_positions
@@ -143,8 +143,8 @@ class FittedMotion:
             along = step[:, self.columns(joint), None]
             vectors[:, index] = (self.axes_of(joint) @ along)[..., 0]
         chosen, rotations = list(self.joints), self.motion.rotations.copy()
-        turns = quaternion_from_rotation_vector(vectors)
-        rotations[:, chosen] = multiply(turns, rotations[:, chosen])
+        changes = quaternion_from_rotation_vector(vectors)
+        rotations[:, chosen] = multiply(changes, rotations[:, chosen])
         root = self.motion.root_positions
         if self.root_moves:
             root = root + step[:, :3]

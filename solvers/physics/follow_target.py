@@ -79,8 +79,8 @@ def follow_target(
         engine.mj_step1(world.model, world.data)
         distances[frame] = _mean_distance(engine, world, states.coordinates[0])
         n_far = n_far + 1 if distances[frame] > MAX_MEAN_DISTANCE_M * control.size else 0
-        is_lost = n_far * target.dt > MAX_DISTANCE_S or np.isinf(distances[frame])
-        if frame == 0 or is_lost:
+        is_reset = n_far * target.dt > MAX_DISTANCE_S or np.isinf(distances[frame])
+        if frame == 0 or is_reset:
             n_far = 0
             _reset_to_target(engine, world, states)
             reset_frames += [frame] if frame else []

@@ -27,7 +27,7 @@ BLEND_S = 0.35
 """Seconds over which a released foot blends to its own motion, and a simulated body to the take
 next to a failure. Chosen by hand; `make sensitivity` varies it."""
 
-MAX_TURN_RATE_RAD_S = 0.6
+MAX_ROTATION_RATE_RAD_S = 0.6
 """Radians per second: a foot that rotates faster on the ground does so on purpose. Chosen by
 hand; `make sensitivity` varies it."""
 
@@ -35,7 +35,7 @@ CREEP_M_S = 0.001
 """Meters per second, for legs of 0.9 m, by which the loaded part of a held sole may creep. It
 guards loaded feet against slides (`test_loaded_foot_rests_on_a_fixed_point`)."""
 
-TURN_RAD_S = np.radians(2.0)
+FOOT_ROTATION_RAD_S = np.radians(2.0)
 """Radians per second by which a held foot may turn. Chosen by hand; `make sensitivity` varies
 it."""
 
@@ -122,17 +122,17 @@ def _foot_goals(
     ]
     heights = lowest_points(body, motion)[:, ends, 2] - ground
     load = distribute_load(heights, motion.frame_rate, body.size)
-    turns = rotation_vector_from_quaternion(
+    rotations = rotation_vector_from_quaternion(
         multiply(poses.rotations[1:, ankle], inverse(poses.rotations[:-1, ankle]))
     )
-    rates = np.abs(turns[:, 2]) * motion.frame_rate
-    slow = np.clip(2.0 - 2.0 * rates / MAX_TURN_RATE_RAD_S, 0.0, 1.0)
+    rates = np.abs(rotations[:, 2]) * motion.frame_rate
+    slow = np.clip(2.0 - 2.0 * rates / MAX_ROTATION_RATE_RAD_S, 0.0, 1.0)
     in_place = np.sqrt(hold_weights)[:, None] * (1.0 - UP)
     still = np.sqrt(hold_weights * slow)[:, None] * UP
     one_point, all_frames = np.ones((motion.n_frames, 1)), np.ones(motion.n_frames)
     return [
         StayInPlace(points, 0.5 * (load[1:] + load[:-1]), in_place, CREEP_M_S * body.size),
-        StayStill(ankle, still, TURN_RAD_S),
+        StayStill(ankle, still, FOOT_ROTATION_RAD_S),
         *(
             StayAtHeight(
                 [point],

@@ -24,7 +24,7 @@ from .soles_and_ground import add_soles, find_ground, has_long_contact
 from .target import blend_motions, fade_around, fill_motion_gaps
 
 DEFAULT_SETTINGS = SimulateSettings()
-MAX_LOST_FRACTION = 0.3
+MAX_MISSED_FRACTION = 0.3
 """Fraction of frames that the body may fail to follow; with more, the result is the take. It
 guards takes that no body can follow
 (`test_body_far_above_the_ground_is_unchanged_and_reported`)."""
@@ -210,7 +210,7 @@ def _assemble_result(
 ) -> Simulated:
     """Blend the simulated segments with the take, and measure the result."""
     followed = np.concatenate([segment.followed for segment in segments])
-    given_up = float((~followed).mean()) > MAX_LOST_FRACTION
+    given_up = float((~followed).mean()) > MAX_MISSED_FRACTION
     if given_up:
         followed[:] = False
     rotations = np.concatenate([segment.motion.rotations for segment in segments])

@@ -37,7 +37,7 @@ def read_as(
 ) -> Tracked:
     """Read a recording as `read_tracked` does, by settings for what the file may not say.
 
-    What was judged is in the `conventions` of the motion or tracks. `progress` receives a
+    What was estimated is in the `conventions` of the motion or tracks. `progress` receives a
     question where the actor is of an odd size.
 
     Parameters

@@ -20,7 +20,7 @@ class Axis(Choice):
 
     @property
     def axis(self) -> AxisName | None:
-        """The axis of the file; None judges it."""
+        """The axis of the file; None estimates it."""
         return AXES.get(self)
 
     @classmethod

@@ -110,10 +110,10 @@ def place_hands(
         return fit_motion(start_of_fit, goals, progress, "Placing the hands").motion
 
     result = fit_in_windows(motion, fit_window, progress)
-    return _with_turned_hands(result, poses, paths)
+    return _with_rotated_hands(result, poses, paths)
 
 
-def _with_turned_hands(motion: Motion, before: WorldPoses, paths: Sequence[HandPath]) -> Array:
+def _with_rotated_hands(motion: Motion, before: WorldPoses, paths: Sequence[HandPath]) -> Array:
     """Return the local rotations with hands that are turned in the world as before."""
     rotations, after = motion.rotations.copy(), forward_kinematics(motion)
     for hand in (path.arm[2] for path in paths):

@@ -13,7 +13,7 @@ import bpy
 from driver_scene import empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
-MOMENTS = {
+TIMES = {
     "HDM_bd_hopBothLegs1hops_002_120": (0.3, 0.45, 0.6, 0.75),
     "HDM_bd_lieDownFloor_002_120": (0.3, 0.5, 0.65, 0.9),
     "HDM_bd_kickLFront1Reps_001_120": (0.3, 0.4, 0.5, 0.7),
@@ -51,7 +51,7 @@ def steps():
     body = bpy.context.view_layer.objects.active
     body.location.x += 1.2
     bgui.area().spaces.active.shading.type = "SOLID"
-    for name, moments in MOMENTS.items():
+    for name, times in TIMES.items():
         yield from bring(f"{name}.amc")
         source = bpy.context.view_layer.objects.active
         assert source is not body
@@ -61,10 +61,10 @@ def steps():
         view = bgui.area().spaces.active.region_3d
         view.view_rotation, view.view_distance = (0.76, 0.6, 0.15, 0.2), 3.2
         first, last = action.frame_range
-        for fraction in moments:
+        for fraction in times:
             bpy.context.scene.frame_set(round(first + fraction * (last - first)))
-            places = [each.matrix_world @ each.pose.bones[0].head for each in (source, body)]
-            view.view_location = 0.5 * (places[0] + places[1])
+            positions = [each.matrix_world @ each.pose.bones[0].head for each in (source, body)]
+            view.view_location = 0.5 * (positions[0] + positions[1])
             view.view_location.z = 0.7
             yield from settle()
             bgui.shot(f"{name.split('_')[2]}-{round(100 * fraction)}.png")

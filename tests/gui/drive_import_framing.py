@@ -36,9 +36,12 @@ def check_framed(active):
     region, view = bgui.region("WINDOW"), bgui.area().spaces.active.region_3d
     points = [location_3d_to_region_2d(region, view, point) for point in points_of(active)]
     assert all(point is not None for point in points)
-    places = np.array(points) / (region.width, region.height)
-    assert (places > 0.0).all() and (places < 1.0).all(), (places.min(0), places.max(0))
-    assert np.ptp(places, axis=0).max() > 0.33, np.ptp(places, axis=0)
+    positions = np.array(points) / (region.width, region.height)
+    assert (positions > 0.0).all() and (positions < 1.0).all(), (
+        positions.min(0),
+        positions.max(0),
+    )
+    assert np.ptp(positions, axis=0).max() > 0.33, np.ptp(positions, axis=0)
 
 
 def bring(name):

@@ -75,11 +75,11 @@ def hold_hips(armature, held):
     yield from settle(pointer=AWAY)
     (shown,) = rows()["Hips"]
     assert np.allclose((shown.first, shown.last), (held.first, held.last), atol=1.0), shown
-    places = []
+    positions = []
     for frame in np.linspace(held.first + BLEND_FRAMES, held.last - BLEND_FRAMES, 9):
         scene.frame_set(round(frame))
-        places.append(armature.matrix_world @ armature.pose.bones[0].head)
-    moved_m = np.ptp(np.array(places), axis=0).max()
+        positions.append(armature.matrix_world @ armature.pose.bones[0].head)
+    moved_m = np.ptp(np.array(positions), axis=0).max()
     print(f"bgui: held hips move {1000.0 * moved_m:.1f} mm", flush=True)
     assert moved_m < MAX_MOVED_M, moved_m
     look_at(armature, (held.first + held.last) / 2.0)

@@ -9,12 +9,12 @@ are known.
 from solvers.depth_tracking.tracking.failure_test import FEATURES
 
 from ..benchmarks.depth.depth_tuning import TAKES, tuning_sequence
-from ..benchmarks.depth.failures import MIN_FAILURE_ERROR_M, judged, learned
+from ..benchmarks.depth.failures import MIN_FAILURE_ERROR_M, failure_cases, learned
 
 
 def main() -> None:
     """Track, learn and print."""
-    found = judged(tuning_sequence(name) for name in TAKES)
+    found = failure_cases(tuning_sequence(name) for name in TAKES)
     failed = found.errors > MIN_FAILURE_ERROR_M
     print(f"{failed.sum()} of {len(failed)} poses have failed")
     *weights, bias = learned(found.features, failed)

@@ -77,7 +77,7 @@ def smooth_window(
     tracker = actor.tracker
     # Second differences shrink with the square of the frame rate.
     rate_factor = (actor.depth.frame_rate / REFERENCE_RATE_HZ) ** 4
-    stiffness = np.full(N_COORDINATES, smoothing * rate_factor * tracker.turn_weight)
+    stiffness = np.full(N_COORDINATES, smoothing * rate_factor * tracker.rotation_weight)
     stiffness[:3] = smoothing * rate_factor * tracker.shift_weight
     equations = []
     for index, pose in enumerate(poses):

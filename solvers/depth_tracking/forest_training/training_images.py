@@ -174,7 +174,7 @@ def _before_camera(
         if rng.random() < 0.5
         else rng.uniform(-np.pi, np.pi)
     )
-    rotation = _turn(yaw, 2)
+    rotation = _rotation_about(yaw, 2)
     lowest, highest = vertices[:, 2].min(), vertices[:, 2].max()
     middle = np.array([0.0, 0.0, (lowest + highest) / 2.0])
     points = (vertices - middle) @ rotation.T
@@ -183,13 +183,16 @@ def _before_camera(
     height = rng.uniform(-0.6, 1.1)
     tilt = np.arctan2(height, distance) * rng.uniform(0.3, 1.1) + 0.05 * rng.standard_normal()
     camera_points += [0.0, height, distance]
-    camera_points = camera_points @ (_turn(tilt, 0) @ _turn(0.05 * rng.standard_normal(), 2)).T
+    camera_points = (
+        camera_points
+        @ (_rotation_about(tilt, 0) @ _rotation_about(0.05 * rng.standard_normal(), 2)).T
+    )
     aside = rng.uniform(-0.3, 0.3) * distance + 0.02 * rng.standard_normal()
     shift = np.array([aside, 0.05 * distance * rng.standard_normal(), 0.0])
     return np.asarray(camera_points + shift)
 
 
-def _turn(angle: float, axis: int) -> Array:
+def _rotation_about(angle: float, axis: int) -> Array:
     """Return the rotation matrix about a coordinate axis."""
     first, second = (axis + 1) % 3, (axis + 2) % 3
     rotation = np.eye(3)

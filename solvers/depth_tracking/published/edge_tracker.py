@@ -44,7 +44,7 @@ EDGE_TRACKER = TrackerSettings(
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=0.0, extra_weight=0.0, silhouette_weight=0.0,
     similar_weight=0.001 * PER_DEGREE,
-    shift_weight=1e-5, turn_weight=1e-5 * PER_DEGREE, prediction=0.0,
+    shift_weight=1e-5, rotation_weight=1e-5 * PER_DEGREE, prediction=0.0,
     limit_weight=0.0, natural_weight=0.0, ankle_weight=NO_ANKLES, damping=1e-6,
     max_step=10.0, accept_only_better=False,
 )  # fmt: skip

@@ -10,7 +10,7 @@ REGISTRATION_TRACKER = TrackerSettings(
     iterations=5, coarse_iterations=0, limit=0.08,
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=4.0, extra_weight=4.0 / 0.29**2, silhouette_weight=4.0 / 100.0**2,
-    shift_weight=1.0 / 14.3**2, turn_weight=1.0 / 14.3**2,
+    shift_weight=1.0 / 14.3**2, rotation_weight=1.0 / 14.3**2,
     prediction=1.0, start_ahead=False,
     limit_weight=0.0, natural_weight=0.0, ankle_weight=NO_ANKLES, damping=1e-6,
     max_step=10.0, accept_only_better=False,

@@ -53,7 +53,7 @@ class TrackerSettings(Settings):
     shift_weight: float = _weight(
         400.0, "Smoothness of the hip translation; higher is smoother and follows slower"
     )
-    turn_weight: float = _weight(
+    rotation_weight: float = _weight(
         60.0,
         "Smoothness of the joint rotations; higher is smoother and follows slower",
         "1/rad2",

@@ -142,7 +142,7 @@ def next_pose_prior(
     poses: list[Array], settings: TrackerSettings, motion_prior: MotionPrior | None = None
 ) -> NextPose:
     """Return the prior of the next pose from the poses (36,) of the previous frames."""
-    weights = np.full(N_COORDINATES, settings.turn_weight)
+    weights = np.full(N_COORDINATES, settings.rotation_weight)
     weights[:3] = settings.shift_weight
     similar = None if motion_prior is None else local_pca(motion_prior, poses[-1])
     expected = predict_pose(poses, settings.prediction)

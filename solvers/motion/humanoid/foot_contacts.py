@@ -291,9 +291,9 @@ def _speeds(path: Array, frame_rate: float) -> Array:
     return np.asarray(np.minimum(steps[:-1], steps[1:]))
 
 
-def _above_ground(heights: Array, seen: Flags, frame_rate: float) -> Array:
+def _above_ground(heights: Array, observed: Flags, frame_rate: float) -> Array:
     """Return the heights of both ankles (or toes) above the ground, shape (n_frames, 2)."""
-    if not seen.any():
+    if not observed.any():
         return heights
-    ground = ground_level(heights[:, seen].min(axis=1), frame_rate)
+    ground = ground_level(heights[:, observed].min(axis=1), frame_rate)
     return np.asarray(heights - ground[:, None])

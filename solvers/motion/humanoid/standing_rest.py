@@ -142,10 +142,13 @@ def _with_rest(
     """
     skeleton = motion.skeleton
     # From the old rest pose to the new one, in the world.
-    turns = multiply(upright, poses.rotations[chosen, np.arange(skeleton.n_joints)])
-    parent_turns = np.concatenate([IDENTITY[None], turns[list(skeleton.parents[1:])]])
-    rotations = multiply(multiply(parent_turns, motion.rotations), inverse(turns))
-    offsets = rotate(parent_turns, skeleton.offsets)
+    rest_rotations = multiply(upright, poses.rotations[chosen, np.arange(skeleton.n_joints)])
+    parent_rotations = np.concatenate([
+        IDENTITY[None],
+        rest_rotations[list(skeleton.parents[1:])],
+    ])
+    rotations = multiply(multiply(parent_rotations, motion.rotations), inverse(rest_rotations))
+    offsets = rotate(parent_rotations, skeleton.offsets)
     offsets[0] = 0.0
     standing = Skeleton(skeleton.names, skeleton.parents, offsets)
     offsets[0] = -standing.rest_positions[hips]

@@ -14,7 +14,7 @@ OFFSET_ADDED = "positions added to offsets"
 
 @dataclass(frozen=True)
 class FileConventions:
-    """Interpretation of the numbers of a file; stated by it, or judged from the body."""
+    """Interpretation of the numbers of a file; stated by it, or estimated from the body."""
 
     up: AxisName = "Z"
     """Axis of the file that became +Z."""
@@ -41,7 +41,7 @@ class FileConventions:
         return f"{self.confidence:.0%}" == "100%"
 
     def sentence(self) -> str:
-        """Return what was judged, for a report: without a period."""
+        """Return what was estimated, for a report: without a period."""
         certainty = "" if self.is_certain else self._confidence_in_up()
         rest = "" if self.rest_up in {None, self.up} else self._up_at_rest()
         added = f", {OFFSET_ADDED}" if self.offset_added else ""

@@ -24,10 +24,11 @@ class FollowRotation:
 
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""
-        turns = multiply(fitted.poses.rotations[:, self.bone], inverse(self.wanted))
+        rotation_changes = multiply(fitted.poses.rotations[:, self.bone], inverse(self.wanted))
         jacobian = fitted.rotation_jacobian(self.bone)
         equations.add_frames(
-            rotation_vector_from_quaternion(turns) / self.tolerance, jacobian / self.tolerance
+            rotation_vector_from_quaternion(rotation_changes) / self.tolerance,
+            jacobian / self.tolerance,
         )
 
 
@@ -50,11 +51,13 @@ class StayStill:
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""
         rotations = fitted.poses.rotations[:, self.bone]
-        turns = rotation_vector_from_quaternion(
+        rotation_changes = rotation_vector_from_quaternion(
             multiply(rotations[1:], inverse(rotations[:-1]))
         )
         scale = self.weight * (fitted.motion.frame_rate / self.tolerance)
         jacobian = fitted.rotation_jacobian(self.bone)
         equations.add_steps(
-            turns * scale, -jacobian[:-1] * scale[..., None], jacobian[1:] * scale[..., None]
+            rotation_changes * scale,
+            -jacobian[:-1] * scale[..., None],
+            jacobian[1:] * scale[..., None],
         )

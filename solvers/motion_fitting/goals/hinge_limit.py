@@ -103,9 +103,9 @@ def bone_directions(fitted: FittedMotion, joint: int, end: int) -> tuple[Array, 
     """Return the directions of upper and lower bone in the axes of the joint's parent."""
     skeleton, poses = fitted.motion.skeleton, fitted.poses
     parent = skeleton.parents[joint]
-    turn = inverse(poses.rotations[:, parent])
-    upper = rotate(turn, poses.positions[:, joint] - poses.positions[:, parent])
-    lower = rotate(turn, poses.positions[:, end] - poses.positions[:, joint])
+    parent_from_world = inverse(poses.rotations[:, parent])
+    upper = rotate(parent_from_world, poses.positions[:, joint] - poses.positions[:, parent])
+    lower = rotate(parent_from_world, poses.positions[:, end] - poses.positions[:, joint])
     return tuple(
         each / np.maximum(np.linalg.norm(each, axis=1, keepdims=True), 1e-9)
         for each in (upper, lower)

@@ -143,9 +143,9 @@ def resize_skeleton(
         if _parent_name(measured, skeleton.names[joint]) == _parent_name(skeleton, joint)
     ]
     found = measured.offsets[[measured.index(skeleton.names[joint]) for joint in known]]
-    turn = fit_rotations(found, offsets[known][None])[0]
-    if np.isfinite(turn).all():
-        offsets[known] = rotate(turn, found)
+    rotation = fit_rotations(found, offsets[known][None])[0]
+    if np.isfinite(rotation).all():
+        offsets[known] = rotate(rotation, found)
     return Skeleton(skeleton.names, skeleton.parents, offsets)
 
 

@@ -246,8 +246,8 @@ def bodies_of_frames(
         for key in frame:
             found.setdefault(key, []).append(index)
     return tuple(found), tuple(
-        observed_body(name(number, key), np.array(seen), len(frames), duration_s)
-        for number, (key, seen) in enumerate(found.items(), start=1)
+        observed_body(name(number, key), np.array(observed), len(frames), duration_s)
+        for number, (key, observed) in enumerate(found.items(), start=1)
     )
 
 

@@ -75,7 +75,9 @@ class UpAxis(NamedTuple):
     """From 0.5, where two axes are equally likely, to 1 with a clear lead over the next."""
 
 
-def judge_up_axis(motion: Motion, expected: Mapping[UpAxisName, float] | None = None) -> UpAxis:
+def estimate_up_axis(
+    motion: Motion, expected: Mapping[UpAxisName, float] | None = None
+) -> UpAxis:
     """Return the axis along which the actor stands.
 
     Four kinds of evidence are weighed against each other: whether the head is above the hips
@@ -96,20 +98,20 @@ def judge_up_axis(motion: Motion, expected: Mapping[UpAxisName, float] | None = 
     roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
     body = StandingJoints.from_roles(roles)
     if body is None or not len(positions):
-        return _judge_by_extent(motion.skeleton, positions)
+        return _estimate_by_extent(motion.skeleton, positions)
     rest = motion.skeleton.rest_positions[None]
     in_rest = dict.fromkeys(AXES, 0.0)
     if expected is None and is_unfolded(rest[0], body):
         in_rest = measure_standing(rest, body)
-    judged = _weigh(positions, body, in_rest, expected)
+    estimated = _weigh(positions, body, in_rest, expected)
     rest_best = max(AXES, key=lambda axis: in_rest[axis])
     if expected:
-        return judged._replace(rest_axis="Y")
+        return estimated._replace(rest_axis="Y")
     stands = in_rest[rest_best] > MIN_REST_STANDING
-    return judged._replace(rest_axis=rest_best) if stands else judged
+    return estimated._replace(rest_axis=rest_best) if stands else estimated
 
 
-def judge_up_of_joints(
+def estimate_up_of_joints(
     positions: Array, roles: Mapping[str, int], expected: Mapping[UpAxisName, float]
 ) -> UpAxis:
     """Return the axis along which joints stand that were read with Y up.
@@ -172,23 +174,23 @@ def stand_upright(
     progress: Progress = unwatched,
     expected: Mapping[UpAxisName, float] | None = None,
 ) -> Motion:
-    """Turn a motion that was read with Y up so that the actor stands (`judge_up_axis`).
+    """Turn a motion that was read with Y up so that the actor stands (`estimate_up_axis`).
 
-    What was judged is noted in its conventions. `progress` is given a message where the
+    What was estimated is noted in its conventions. `progress` is given a message where the
     evidence disagrees.
     """
-    judged = judge_up_axis(motion, expected)
-    if not judged.is_clear:
-        progress(1.0, Remark(describe_guessed_axis(judged.axis)))
+    estimated = estimate_up_axis(motion, expected)
+    if not estimated.is_clear:
+        progress(1.0, Remark(describe_guessed_axis(estimated.axis)))
     noted = replace(
         motion.conventions or FileConventions(),
-        up=judged.axis,
-        forward=FORWARD[judged.axis],
-        rest_up=judged.rest_axis,
-        confidence=judged.confidence,
+        up=estimated.axis,
+        forward=FORWARD[estimated.axis],
+        rest_up=estimated.rest_axis,
+        confidence=estimated.confidence,
     )
-    turned = rotate_to_z_up(motion, judged.axis, judged.rest_axis)
-    return replace(turned, conventions=noted)
+    rotated = rotate_to_z_up(motion, estimated.axis, estimated.rest_axis)
+    return replace(rotated, conventions=noted)
 
 
 def describe_guessed_axis(axis: UpAxisName) -> str:
@@ -213,7 +215,7 @@ def rotate_to_z_up(motion: Motion, axis: UpAxisName, rest_axis: UpAxisName) -> M
     return rotate_motion(motion, rotation_to_z_up(axis), rotation_to_z_up(rest_axis))
 
 
-def _judge_by_extent(skeleton: Skeleton, positions: Array) -> UpAxis:
+def _estimate_by_extent(skeleton: Skeleton, positions: Array) -> UpAxis:
     """Return Z where something is flat with Y up, in the rest pose and in most frames."""
     flat = skeleton.rest_positions[None] if not len(positions) else positions
     extents = [

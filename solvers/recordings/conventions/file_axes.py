@@ -1,4 +1,4 @@
-"""Turn a recording whose file has other axes than was judged."""
+"""Turn a recording whose file has other axes than was estimated."""
 
 from dataclasses import replace
 from typing import TypeVar, cast
@@ -35,7 +35,7 @@ def file_conventions(
 def with_axes(
     conventions: FileConventions, up: AxisName | None, forward: AxisName | None
 ) -> FileConventions:
-    """Return conventions with the axes that the user chose; None keeps what was judged.
+    """Return conventions with the axes that the user chose; None keeps what was estimated.
 
     Where only another up axis is given, the usual forward axis belongs to it.
 
@@ -84,9 +84,9 @@ def rotated_conventions(before: FileConventions, rotation: Array) -> FileConvent
 def reinterpreted(
     recording: Recording, up: AxisName | None, forward: AxisName | None
 ) -> Recording:
-    """Return a recording as it is if its file has these axes; None keeps what was judged.
+    """Return a recording as it is if its file has these axes; None keeps what was estimated.
 
-    The rest pose turns along, unless another axis of its own was judged to be up in it.
+    The rest pose turns along, unless another axis of its own was estimated to be up in it.
     """
     before = conventions_of(recording)
     after = with_axes(before, up, forward)

@@ -7,8 +7,8 @@ from ...motion import JointRecording, Motion, Tracks, world_poses
 from .axes import MIN_BODY_JOINTS
 from .body_unit import stature
 
-N_JUDGED_FRAMES = 100
-"""Number of frames, evenly spaced, that are judged. It bounds the run time."""
+N_SAMPLED_FRAMES = 100
+"""Number of frames, evenly spaced, that are evaluated. It bounds the run time."""
 MAX_DEPTH_FRACTION = 1e-3
 """Thickness of a take in one plane, relative to the stature. It guards rounding of numbers:
 joints of people who stand in a T-pose differ by 2 % and more."""
@@ -32,7 +32,7 @@ def question_of_depth(recording: Motion | Tracks | JointRecording) -> str:
 
 
 def _points(recording: Motion | Tracks | JointRecording) -> Array:
-    step = max(1, recording.n_frames // N_JUDGED_FRAMES)
+    step = max(1, recording.n_frames // N_SAMPLED_FRAMES)
     if isinstance(recording, Motion):
         return world_poses(
             recording.skeleton, recording.rotations[::step], recording.root_positions[::step]

@@ -22,9 +22,9 @@ METERS = {
 ROLLED_FORWARD: dict[AxisName, AxisName] = {"X": "-Z", "-X": "Z"}
 """Axis that becomes -Y where points are rotated cyclically."""
 GUESSED_CONFIDENCE = 0.9
-"""Confidence, a ratio, in an up axis that is judged from the extent of markers. Chosen by hand:
-right in all files of tests/solvers/recordings/marker_files that state theirs, but they are
-few."""
+"""Confidence, a ratio, in an up axis that is estimated from the extent of markers. Chosen by
+hand: right in all files of tests/solvers/recordings/marker_files that state theirs, but they
+are few."""
 BODY_EXTENT_M = 1.5
 """Typical extent of the markers of a body, meters, to which the unit brings them nearest.
 Chosen by hand: x2 fails `test_the_unit_is_the_header_s_or_gives_a_person_s_size`."""
@@ -65,7 +65,7 @@ def guess_unit_of_points(points: NDArray[np.float64]) -> float:
     return min((0.001, 0.01, 1.0), key=lambda unit: abs(np.log(extent * unit / BODY_EXTENT_M)))
 
 
-def judge_axes_of_points(
+def estimate_axes_of_points(
     points: NDArray[np.float64],
     up: str,
     unit: float,
@@ -93,7 +93,7 @@ def stand_markers(
     unit: float,
     default_up: str,
 ) -> Tracks:
-    """Return markers of a file that does not state its axes, with what was judged.
+    """Return markers of a file that does not state its axes, with what was estimated.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def stand_markers(
     unit : meters per unit of the file
     default_up : axis of the program, where there are too few points for a body
     """
-    axes = judge_axes_of_points(points, "", unit, default_up, labels)
+    axes = estimate_axes_of_points(points, "", unit, default_up, labels)
     return Tracks(
         point_names(labels), points_z_up(points, axes.up), frame_rate, conventions=axes
     )

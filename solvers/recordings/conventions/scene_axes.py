@@ -83,8 +83,8 @@ def stand_scene_upright(takes: Sequence[Motion]) -> list[Motion]:
 
 def _rotate_take(take: Motion, rotation: Array) -> Motion:
     stated = conventions_of(take)
-    judged = replace(rotated_conventions(stated, rotation), stated_up=stated.up)
-    return replace(rotate_motion(take, rotation, rotation), conventions=judged)
+    corrected = replace(rotated_conventions(stated, rotation), stated_up=stated.up)
+    return replace(rotate_motion(take, rotation, rotation), conventions=corrected)
 
 
 def _verdict(take: Motion) -> _Verdict | None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...motion import FileConventions, Motion, find_humanoid_map
 from .axes import ADULT_REACH_M, MIN_BODY_JOINTS, longest_bone_path, rotation_to_z_up
-from .body_axes import describe_guessed_axis, judge_up_axis
+from .body_axes import describe_guessed_axis, estimate_up_axis
 from .body_unit import describe_guessed_unit
 from .file_axes import conventions_of, rotated_conventions
 
@@ -41,11 +41,11 @@ def describe_lying(takes: Sequence[Motion]) -> list[str]:
     The axis is kept: nothing in a file distinguishes a take recorded lying from one exported
     with a wrong axis.
     """
-    judged = [judge_up_axis(take) for take in takes if _has_body(take)]
-    if not judged or any(each.axis == "Y" for each in judged):
+    estimated = [estimate_up_axis(take) for take in takes if _has_body(take)]
+    if not estimated or any(each.axis == "Y" for each in estimated):
         return []
     stated = conventions_of(takes[0])
-    other = rotated_conventions(stated, rotation_to_z_up(judged[0].axis)).up
+    other = rotated_conventions(stated, rotation_to_z_up(estimated[0].axis)).up
     return [
         f"The actor lies or is upside down: the file has {stated.up} up; set Up to {other} if"
         " that is wrong"

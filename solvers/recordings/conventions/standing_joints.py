@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...motion import AxisName, Motion, world_poses
 
 N_SAMPLED_FRAMES = 60
-"""Number of frames, evenly spaced, that are judged. It bounds the run time."""
+"""Number of frames, evenly spaced, that are evaluated. It bounds the run time."""
 
 AXES: dict[AxisName, Array] = {
     "Y": np.array([0.0, 0.0, 1.0]), "-Y": np.array([0.0, 0.0, -1.0]),

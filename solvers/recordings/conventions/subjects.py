@@ -172,9 +172,9 @@ def _is_rigid(points: NDArray[np.float64]) -> bool:
     moved = np.nanmax(observed, axis=0) - np.nanmin(observed, axis=0)
     one, other = np.triu_indices(observed.shape[1], 1)
     distances = np.linalg.norm(observed[:, one] - observed[:, other], axis=-1)
-    seen = np.isfinite(distances).any(axis=0)
-    if not seen.any():
+    is_observed = np.isfinite(distances).any(axis=0)
+    if not is_observed.any():
         return False
-    low, high = np.nanquantile(distances[:, seen], [0.05, 0.95], axis=0)
+    low, high = np.nanquantile(distances[:, is_observed], [0.05, 0.95], axis=0)
     is_still = float(moved.max()) < MAX_RIGID_CHANGE_M
     return not is_still and float(np.quantile(high - low, 0.9)) < MAX_RIGID_CHANGE_M

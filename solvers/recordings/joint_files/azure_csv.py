@@ -122,7 +122,7 @@ def _read_joint_lines(
 ) -> tuple[tuple[Body, ...], Callable[[int], NDArray[np.float64]]]:
     """Return the bodies, and x y z state of one, shape (n_frames, n_joints, 4)."""
     bodies: dict[bytes, _BodyTable] = {}
-    frame, seen = 0, set[bytes]()
+    frame, bodies_in_frame = 0, set[bytes]()
     for block in reader.rest():
         for count, line in enumerate(block.lines, start=block.first):
             words = line.split(b",")
@@ -132,10 +132,10 @@ def _read_joint_lines(
             joint, values = _joint(words, f"{path}, line {count}")
             body = bodies.setdefault(key, _BodyTable())
             if body.begins_frame(joint):
-                if key in seen:
+                if key in bodies_in_frame:
                     frame += 1
-                    seen.clear()
-                seen.add(key)
+                    bodies_in_frame.clear()
+                bodies_in_frame.add(key)
             body.add_joint(joint, values, frame)
         progress(block.stop, "Reading")
     if not bodies:

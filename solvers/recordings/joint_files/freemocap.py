@@ -17,7 +17,7 @@ from ..conventions import (
     axes_of_points,
     check_scale,
     describe_guessed_unit,
-    judge_axes_of_points,
+    estimate_axes_of_points,
     points_z_up,
     up_along,
 )
@@ -97,7 +97,7 @@ def read_freemocap_points(
     if is_body:
         axes = axes_of_points(up_along(points, NOSE, ANKLES), unit)
     else:
-        axes = judge_axes_of_points(points * unit, "", unit, "Z")
+        axes = estimate_axes_of_points(points * unit, "", unit, "Z")
     points = points_z_up(points, axes.up)
     if is_body:
         names, points = with_centers(names, points)

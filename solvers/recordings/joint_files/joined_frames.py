@@ -74,7 +74,7 @@ def joined_frames(by_key: Mapping[str, list[NumberedFrame]], path: Path | str) -
     }
     bodies = {key: rows for key, rows in found.items() if not _has_word(key, PART.fullmatch)}
     found = bodies or found
-    longest = max(found, key=lambda key: _n_seen(found[key]), default="")
+    longest = max(found, key=lambda key: _n_observed(found[key]), default="")
     if len(found.get(longest, ())) > 1:
         people = {
             key: rows for key, rows in found.items() if len(rows) > 1 and not _is_data(key)
@@ -100,13 +100,13 @@ def _one_of_people(
     rows: list[NumberedFrame], identities: dict[str, str]
 ) -> list[NumberedFrame]:
     """Return rows below a key for people as one frame, if each is a person without a time."""
-    seen = [row for row in rows if row.frame.bodies]
-    if len(seen) > MAX_PEOPLE or not all(
+    observed = [row for row in rows if row.frame.bodies]
+    if len(observed) > MAX_PEOPLE or not all(
         len(row.frame.bodies) == 1 and isnan(row.number) and isnan(row.frame.time)
-        for row in seen
+        for row in observed
     ):
         return rows
-    return [seen[0]._replace(frame=_one_frame([row.frame for row in seen], identities))]
+    return [observed[0]._replace(frame=_one_frame([row.frame for row in observed], identities))]
 
 
 def _of_one(
@@ -169,7 +169,7 @@ def _step(numbers: Sequence[float]) -> float:
     return step if all(error < MAX_ROUNDING for error in errors) else 0.0
 
 
-def _n_seen(rows: Iterable[NumberedFrame]) -> int:
+def _n_observed(rows: Iterable[NumberedFrame]) -> int:
     return sum(bool(row.frame.bodies) for row in rows)
 
 

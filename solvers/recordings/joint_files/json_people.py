@@ -29,7 +29,7 @@ IDENTITY_KEYS = either_case("id", "track_id", "person_id", "body_id", "personID"
 NAME_KEYS = either_case("name", "joint", "joint_name", "jointName", "bone", "bone_name", "type",
                         "jointType", "id")  # fmt: skip
 """Members with the name of a joint, where joints are objects in a list."""
-PLACE_KEYS = either_case("position", "pos", "translation", "location", "transform", "matrix")
+POSITION_KEYS = either_case("position", "pos", "translation", "location", "transform", "matrix")
 """Members with the place of a joint, or with the matrix of its pose."""
 NUMBER_KEYS = either_case("frame", "frame_id", "frame_number", "frame_index", "frame_idx",
                           "frameId", "frameNumber", "frameIndex")  # fmt: skip
@@ -98,7 +98,7 @@ def _person(body: Mapping[str, Any], count: int) -> Iterator[JsonPerson]:
         names, joints = tuple(map(str, joints)), list(joints.values())
     elif isinstance(joints, list) and joints and all(isinstance(k, Mapping) for k in joints):
         names = _names_of(joints)
-    values = [place_of(joint) for joint in joints] if names else joints
+    values = [position_of(joint) for joint in joints] if names else joints
     points = _points(values) if isinstance(values, list) else None
     if points is not None:
         yield JsonPerson(identity, names, points)
@@ -113,9 +113,13 @@ def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson
         if any(map(joints.get, POINT_KEYS)):
             yield from (each._replace(identity=name) for each in _person(joints, 0))
             continue
-        places = {str(key): place_of(value) for key, value in joints.items() if value}
+        positions = {str(key): position_of(value) for key, value in joints.items() if value}
         for width in (3, 4):
-            found = {key: place for key, place in places.items() if _width(place) == width}
+            found = {
+                key: position
+                for key, position in positions.items()
+                if _width(position) == width
+            }
             points = _points([*found.values()]) if len(found) >= MIN_JOINTS else None
             if points is not None:
                 yield JsonPerson(name, tuple(found), points)
@@ -159,21 +163,21 @@ def have_identities(frames: list[Any]) -> bool:
     return len({*stated}) == len(frames) and None not in stated
 
 
-def is_place(value: Any) -> bool:
+def is_position(value: Any) -> bool:
     """Return whether a value is x, y and z, perhaps with a fourth number, or null.
 
     An object with joints or people is a frame, which may have the place of its camera, too.
     """
     if isinstance(value, Mapping) and not value.keys().isdisjoint((*POINT_KEYS, *PEOPLE_KEYS)):
         return False
-    return value is None or _width(place_of(value)) in {3, 4}
+    return value is None or _width(position_of(value)) in {3, 4}
 
 
-def _width(place: Any) -> int:
+def _width(position: Any) -> int:
     """Return how many numbers a list has, nulls included; 0 for other values."""
-    is_row = isinstance(place, list) and any(map(_is_number, place))
-    is_complete = is_row and all(each is None or _is_number(each) for each in place)
-    return len(place) if is_complete else 0
+    is_row = isinstance(position, list) and any(map(_is_number, position))
+    is_complete = is_row and all(each is None or _is_number(each) for each in position)
+    return len(position) if is_complete else 0
 
 
 def _is_number(value: Any) -> bool:
@@ -189,12 +193,12 @@ def _names_of(joints: list[Mapping[str, Any]]) -> tuple[str, ...]:
     return ()
 
 
-def place_of(joint: Any) -> Any:
+def position_of(joint: Any) -> Any:
     """Return x, y, z of an object or a matrix of 4 x 4; other values as they are."""
     if joint is None:
         return [None] * 3
     if isinstance(joint, Mapping):
-        inner = next(_members(joint, PLACE_KEYS), joint)
+        inner = next(_members(joint, POSITION_KEYS), joint)
         if isinstance(inner, Mapping):
             lower = {str(key).lower(): value for key, value in inner.items()}
             return [lower.get(axis, lower.get(f"camera{axis}")) for axis in "xyz"]

@@ -23,7 +23,7 @@ from .json_people import (
     as_frame,
     have_identities,
     is_number,
-    is_place,
+    is_position,
     listed_numbers,
     people_of_frame,
 )
@@ -58,15 +58,15 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
         Joints have different numbers of frames, people have different frame rates, or frames
         are left out for very long.
     """
-    places: dict[str, list[Any]] = {}
+    positions: dict[str, list[Any]] = {}
     numbered: dict[str, Any] = {}
     groups: list[tuple[str, dict[str, Take]]] = []
     yielded = set()
     for key, group in groupby(members, lambda member: member.key):
         first, rest = _with_nulls(group)
         value = first[-1].value
-        if key and value is not None and is_place(value):
-            yield from _without_places(chain(first, rest), places)
+        if key and value is not None and is_position(value):
+            yield from _without_positions(chain(first, rest), positions)
             continue
         if FRAME_KEY.fullmatch(key) and (isinstance(value, Mapping) or _has_people(value)):
             more = [member.value for member in rest]
@@ -83,7 +83,7 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
             yield second
         yield from rest
     groups.append(("", _people_of(numbered, path) or {"": _numbered(numbered)}))
-    yield from _by_number("", _keyed(places, path), 0.0, path)
+    yield from _by_number("", _keyed(positions, path), 0.0, path)
     takes = _with_own_names(groups, yielded)
     yield from _rate_of(takes.values(), path)
     start = min((number for take in takes.values() for number in take), default=0.0)
@@ -119,13 +119,13 @@ def _rate_of(takes: Collection[Take], path: Path | str) -> Iterator[JsonMember]:
     yield from (JsonMember(RATE_KEYS[0], rate, 1.0) for rate in rates)
 
 
-def _without_places(
-    members: Iterable[JsonMember], places: dict[str, list[Any]]
+def _without_positions(
+    members: Iterable[JsonMember], positions: dict[str, list[Any]]
 ) -> Iterator[JsonMember]:
     """Add the places of joints to those by their key, and yield all else."""
     for member in members:
-        if is_place(member.value):
-            places.setdefault(member.key, []).append(member.value)
+        if is_position(member.value):
+            positions.setdefault(member.key, []).append(member.value)
         else:
             yield member
 
@@ -245,8 +245,8 @@ def _path(value: Any) -> list[Any] | None:
     """Return the places of a joint in all frames; None for other values."""
     if isinstance(value, Mapping) and all(isinstance(value.get(axis), list) for axis in "xyz"):
         axes = [value[axis] for axis in "xyz"]
-        return [list(place) for place in zip(*axes, strict=False)]
-    if not isinstance(value, list) or is_place(value) or not all(map(is_place, value)):
+        return [list(position) for position in zip(*axes, strict=False)]
+    if not isinstance(value, list) or is_position(value) or not all(map(is_position, value)):
         return None
     return value if any(value) else None
 
@@ -271,7 +271,8 @@ def _by_joint(values: Mapping[str, Any], path: Path | str) -> Take:
         )
     is_numbered = len(values) > 1 and all(map(FRAME_KEY.fullmatch, values))
     frames = [
-        {name: places[frame] for name, places in paths.items()} for frame in range(longest)
+        {name: positions[frame] for name, positions in paths.items()}
+        for frame in range(longest)
     ]
     return Take((float(k), [*f.values()] if is_numbered else f) for k, f in enumerate(frames))
 

@@ -99,7 +99,7 @@ def open_long_table(
     Frames are in a column called `frame` or the like; without it, each time is one. `joint`,
     `landmark`, `marker` or the like is a name or a number; `person` or the like, that of one of
     several people, as is `id` where lines repeat a joint of a frame. Lines may be missing:
-    those points are not observed. Axes and unit are judged as in `open_point_table`.
+    those points are not observed. Axes and unit are estimated as in `open_point_table`.
 
     Parameters
     ----------

@@ -179,10 +179,10 @@ def _read_joints(joints: Any, location: str) -> BodyJoints:
         if not isinstance(joint, Mapping):
             continue
         index = _index(_first(joint, ("type", "Type", "name")), key)
-        place = _first(joint, POSITIONS)
-        if index < 0 or place is None:
+        position = _first(joint, POSITIONS)
+        if index < 0 or position is None:
             continue
-        positions[index] = point(place, location)
+        positions[index] = point(position, location)
         known = _first(joint, ("confidence", "Confidence"))
         confidence[index] = number(known, f"{location}, confidence")
         if confidence[index] == 0.0:

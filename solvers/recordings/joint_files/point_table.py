@@ -88,9 +88,9 @@ def open_point_table(
     Columns are called `LeftHand_x`, `Hip_position_x`, `nose.X`, `Head X (mm)` or `x0`; others
     are left out. Names may also stand above the axes, in a line of their own (`table_titles`).
     Points that form a body, by their names or, if these are numbers, by their bones
-    (`name_joints`), are its joints. Their axes, and their unit if it is not stated, are judged
-    from the body. Without a column of times, 30 Hz are assumed. Points of several people are
-    called `Anna:Head_x`.
+    (`name_joints`), are its joints. Their axes, and their unit if it is not stated, are
+    estimated from the body. Without a column of times, 30 Hz are assumed. Points of several
+    people are called `Anna:Head_x`.
 
     Parameters
     ----------

@@ -117,8 +117,9 @@ def open_frames_json(
     list of points, a list of numbers, or an object with a point for each name. It may list
     people in `instances`, `people` or the like, or be a list of points itself. A file may also
     be keyed by frame or by joint (`json_by_frame`). Named joints may be missing in some frames.
-    Joints without names are recognized by their bones (`name_joints`). Axes and unit are judged
-    from the body. A file of one frame stands for all files of its take (`frame_files`).
+    Joints without names are recognized by their bones (`name_joints`). Axes and unit are
+    estimated from the body. A file of one frame stands for all files of its take
+    (`frame_files`).
 
     Parameters
     ----------

@@ -119,16 +119,16 @@ def _spread(row: list[str], axes: list[re.Match[str] | None]) -> list[str]:
         for column in group:
             spread[column] = name or before
 
-    seen: set[str] = set()
+    group_axes: set[str] = set()
     for column, match in enumerate(axes):
         if match is None:
             continue
         cell, axis = row[column], match["axis"].lower()
-        if axis in seen or (name and cell and cell != name):
+        if axis in group_axes or (name and cell and cell != name):
             close()
-            group, seen, before, name = [], set(), name or before, ""
+            group, group_axes, before, name = [], set(), name or before, ""
         group.append(column)
-        seen.add(axis)
+        group_axes.add(axis)
         name = name or cell
     close()
     return spread

@@ -13,9 +13,9 @@ from ..conventions import (
     Bodies,
     bodies_of_markers,
     check_scale,
+    estimate_axes_of_points,
     guess_unit_of_points,
     is_upside_down,
-    judge_axes_of_points,
     meters_from_unit_name,
     other_standing_axis,
     point_names,
@@ -103,7 +103,7 @@ def open_c3d(
     unit = _unit(file, points) if scale is None else scale
     points *= unit
     up = _up(file, points, used, progress)
-    axes = judge_axes_of_points(points, up, unit, labels=used)
+    axes = estimate_axes_of_points(points, up, unit, labels=used)
     positions = points_z_up(points, axes.up)
     tracks = Tracks(point_names(used), positions, file.frame_rate, conventions=axes)
     progress(1.0, "Reading")

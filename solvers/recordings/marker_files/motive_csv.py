@@ -204,9 +204,11 @@ def _to_world(
                 continue
             if parent:
                 above = names.index(parent)
-                turn = world_rotations[:, above]
-                world_rotations[:, joint] = multiply(turn, rotations[:, joint])
-                world_points[:, joint] = world_points[:, above] + rotate(turn, points[:, joint])
+                world_rotation = world_rotations[:, above]
+                world_rotations[:, joint] = multiply(world_rotation, rotations[:, joint])
+                world_points[:, joint] = world_points[:, above] + rotate(
+                    world_rotation, points[:, joint]
+                )
             done.add(name)
     return world_points, world_rotations
 

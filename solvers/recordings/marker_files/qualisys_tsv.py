@@ -59,7 +59,7 @@ def open_qualisys_tsv(
     A skeleton in global coordinates becomes a motion (`recording_from_segments`); markers, and
     the origins of rigid bodies, become points. A point is missing if a cell is blank or not a
     number, or if it is exactly at the origin. QTM has Z up; eight or more points of a file
-    with Y up are recognized by the body (`judge_axes_of_points`).
+    with Y up are recognized by the body (`estimate_axes_of_points`).
 
     Parameters
     ----------

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...motion import Tracks
 from ...progress import Progress, unwatched, within
+from ...rotations import FULL_TURN_RAD
 from ..containers import ROWS_AT_ONCE, LineReader, decode_text, read_number, shown
 from ..conventions import (
     Bodies,
     bodies_of_markers,
     check_scale,
+    estimate_axes_of_points,
     guess_unit_of_points,
-    judge_axes_of_points,
     meters_from_unit_name,
     point_names,
     points_z_up,
@@ -29,7 +30,6 @@ TITLE_OF_TIMES = r'(?i)[\s"]*frame\s*#?"?\s*"?(time\w*)?[ "]*\t?'
 COMMA_TITLE = r'(?i)"?frame\s*#?"?,'
 TITLE = rb'[\s",]*[A-Za-z]'
 """Start of the line of axis titles, X1, Y1, Z1 and so on."""
-FULL_TURN = 2.0 * np.pi
 MAX_BLANK_RATIO = 10
 MAX_UNCHECKED_CELLS = 1_000_000
 
@@ -109,7 +109,7 @@ def open_trc(
     points *= unit
     points, rate = at_constant_rate(points, frames, times, header.rate, path)
     labels = header.labels + [""] * (points.shape[1] - len(header.labels))
-    axes = judge_axes_of_points(points, header.up, unit, "+Y", labels)
+    axes = estimate_axes_of_points(points, header.up, unit, "+Y", labels)
     positions = points_z_up(points, axes.up)
     tracks = Tracks(point_names(labels), positions, rate, conventions=axes)
     progress(1.0, "Reading")
@@ -269,7 +269,7 @@ def _unit(header: _TrcHeader, points: NDArray[np.float64], path: Path | str) -> 
     unit = meters_from_unit_name(header.unit)
     if unit is None:
         return guess_unit_of_points(points)
-    if unit < 1.0 and points.shape[1] > 1 and np.nanmax(np.abs(points)) <= FULL_TURN:
+    if unit < 1.0 and points.shape[1] > 1 and np.nanmax(np.abs(points)) <= FULL_TURN_RAD:
         raise InvalidFileError(
             f"{path} holds angles, or its unit is not {header.unit} as stated: no number in it"
             " is above 6.3. Export positions of markers, or give the scale."

@@ -64,7 +64,8 @@ def open_vicon_csv(
 
     A marker is missing if one of its cells is blank or not a number, or if it is exactly at
     the origin. Skipped frame numbers are gaps. Nexus has Z up; eight or more markers of a file
-    with Y up are recognized by the body (`judge_axes_of_points`). Other sections are not read.
+    with Y up are recognized by the body (`estimate_axes_of_points`). Other sections are not
+    read.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ def recording_from_landmarks(
     """Return the recording of world landmarks, or of landmarks that cameras triangulated.
 
     World landmarks have the hips at the origin, x right, y down, z away from the camera. Axes
-    and unit of triangulated landmarks are judged from the body.
+    and unit of triangulated landmarks are estimated from the body.
 
     Parameters
     ----------

@@ -16,10 +16,10 @@ from ..conventions import (
     DEFAULT_FRAME_RATE,
     conventions_of,
     describe_guessed_axis,
+    estimate_up_of_joints,
     file_conventions,
     is_mirrored,
     joint_recording,
-    judge_up_of_joints,
     reinterpreted,
     stature,
     with_conventions,
@@ -130,7 +130,7 @@ def read_body(
     times: Array | None = None,
     rate: float | None = None,
 ) -> JointRecording:
-    """Return a recognized body in meters, Z up, with what was judged.
+    """Return a recognized body in meters, Z up, with what was estimated.
 
     Without times, in seconds, and rate, in hertz, the rate of the format is assumed.
     """
@@ -183,13 +183,13 @@ def stand_body(
     confidence : shape (n_frames, n_joints), 0 to 1, or None
     scale : float, meters per unit of the file, or None
     progress : Progress
-        Receives what was judged.
+        Receives what was estimated.
     """
     positions = z_up_from_y_up(positions)
     roles = {role: names.index(name) for role, name in roles_by_name(names).items()}
-    judged = judge_up_of_joints(positions, roles, up)
-    if not judged.is_clear:
-        progress(0.8, Remark(describe_guessed_axis(judged.axis)))
+    estimated = estimate_up_of_joints(positions, roles, up)
+    if not estimated.is_clear:
+        progress(0.8, Remark(describe_guessed_axis(estimated.axis)))
     recording = joint_recording(
         path,
         names,
@@ -203,8 +203,8 @@ def stand_body(
         conventions=file_conventions("Y"),
         progress=progress,
     )
-    standing = reinterpreted(recording, judged.axis, None)
-    noted = replace(conventions_of(standing), confidence=judged.confidence)
+    standing = reinterpreted(recording, estimated.axis, None)
+    noted = replace(conventions_of(standing), confidence=estimated.confidence)
     standing = with_conventions(_unmirrored(standing, progress), noted)
     return standing if scale is not None else _sized(standing, noted, progress)
 

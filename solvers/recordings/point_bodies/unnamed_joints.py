@@ -16,7 +16,7 @@ from ...motion.humanoid import (
 )
 from ...motion.skeletons import COMPUTED_JOINTS, LAYOUTS
 
-N_JUDGED_FRAMES = 200
+N_SAMPLED_FRAMES = 200
 """Number of frames, evenly spaced, whose bones are measured. It bounds the run time."""
 MAX_MISFIT = 0.65
 """Misfit, a ratio (`bone_misfit`), from which points are no body in that order. Chosen by hand
@@ -66,7 +66,7 @@ def name_joints(points: Array) -> NamedJoints | None:
     points : shape (n_frames, n_points, 3)
         In any unit and axes; NaN where missing.
     """
-    step = max(1, len(points) // N_JUDGED_FRAMES)
+    step = max(1, len(points) // N_SAMPLED_FRAMES)
     misfits = {
         layout: bone_misfit(*_in_order(points[::step], order))
         for layout, order in LAYOUTS.items()

@@ -71,8 +71,8 @@ def read_bvh(
         None: estimated from the length of the bones (`axes.guess_unit`): centimeters for most
         files, 0.0254 / 0.45 for those made from CMU's library.
     up : "X", "Y", "Z", "-X", "-Y", "-Z" or None
-        None judges it by the body (`judge_up_axis`): Y, as the format has it, unless the actor
-        would not stand. The rest pose may have another axis, which is then judged by itself.
+        None estimates it from the body (`estimate_up_axis`): Y, as the format has it, unless
+        the actor would not stand. The axis of the rest pose is estimated by itself.
     progress : Progress
 
     Returns
@@ -156,7 +156,7 @@ def _read_bodies(
     return [
         first
         if body == main
-        else _turn_like(
+        else _rotated_like(
             first, motion_from_poses(joints, poses[body], frame_rate, unit, progress)
         )
         for body, joints in enumerate(bodies)
@@ -185,12 +185,12 @@ def _check_header(
         )
 
 
-def _turn_like(first: Motion, motion: Motion) -> Motion:
+def _rotated_like(first: Motion, motion: Motion) -> Motion:
     """Turn another body of a file, read with Y up, as the first one was turned."""
     axes = conventions_of(first)
-    turned = rotate_to_z_up(motion, axes.up, axes.rest_up or axes.up)
+    rotated = rotate_to_z_up(motion, axes.up, axes.rest_up or axes.up)
     added = conventions_of(motion).offset_added
-    return replace(turned, conventions=replace(axes, offset_added=added))
+    return replace(rotated, conventions=replace(axes, offset_added=added))
 
 
 def _hierarchy(reader: LineReader, path: Path | str) -> bytes:

@@ -144,8 +144,8 @@ def _motion(path: Path | str, subject: MvnxSubject, scale: float) -> Motion:
         motion = motion_from_world_poses(
             ordered,
             parents,
-            _turned(positions[:, kept]),
-            _turned(rotations[:, kept]),
+            _facing_front(positions[:, kept]),
+            _facing_front(rotations[:, kept]),
             subject.rate,
         )
     except InvalidFileError as error:
@@ -160,7 +160,7 @@ def _parent(names: list[str], name: str) -> int:
     return names.index(name) if name else -1
 
 
-def _turned(values: Array) -> Array:
+def _facing_front(values: Array) -> Array:
     """Turn positions x y z, or quaternions w x y z, by a quarter from +X to -Y."""
     front, left = values[..., -3], values[..., -2]
     return np.asarray(

@@ -80,10 +80,10 @@ def recording_from_segments(
     if len(tree) >= MIN_BODY_JOINTS:
         kept = [list(names).index(name) for name in tree]
         above = [list(tree).index(parent) if parent else -1 for parent in tree.values()]
-        turned = rotations_z_up_from_y_up(rotations[:, kept])
-        origins = _at_joints(z_up_from_y_up(positions[:, kept]), turned, above)
+        upright = rotations_z_up_from_y_up(rotations[:, kept])
+        origins = _at_joints(z_up_from_y_up(positions[:, kept]), upright, above)
         try:
-            motion = motion_from_world_poses(list(tree), above, origins, turned, frame_rate)
+            motion = motion_from_world_poses(list(tree), above, origins, upright, frame_rate)
         except InvalidFileError:
             progress(1.0, Remark(f"Positions and rotations disagree. {POINTS_ONLY}"))
         else:
@@ -144,12 +144,14 @@ def face_forward(motion: Motion) -> Motion:
     angle = np.arctan2(across[1], across[0])
     if not np.isfinite(angle) or abs(angle) < np.radians(1.0) or np.hypot(*across[:2]) == 0.0:
         return motion
-    turn = quaternion_from_rotation_vector(np.array([0.0, 0.0, -angle]))
+    rotation = quaternion_from_rotation_vector(np.array([0.0, 0.0, -angle]))
     skeleton = Skeleton(
-        motion.skeleton.names, motion.skeleton.parents, rotate(turn, motion.skeleton.offsets)
+        motion.skeleton.names,
+        motion.skeleton.parents,
+        rotate(rotation, motion.skeleton.offsets),
     )
-    rotations = multiply(multiply(turn, motion.rotations), inverse(turn))
-    rotations[:, 0] = multiply(motion.rotations[:, 0], inverse(turn))
+    rotations = multiply(multiply(rotation, motion.rotations), inverse(rotation))
+    rotations[:, 0] = multiply(motion.rotations[:, 0], inverse(rotation))
     return Motion(skeleton, rotations, motion.root_positions, motion.frame_rate)
 
 

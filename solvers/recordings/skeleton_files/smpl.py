@@ -67,7 +67,7 @@ N_BODY_POSE = {63, 69}
 SIZES = dict.fromkeys(ROTATIONS, N_NUMBERS) | dict.fromkeys(BODY_POSE, N_BODY_POSE)
 MAX_HEIGHT_M = 10.0
 AMASS_UP: dict[UpAxisName, float] = {"Z": 0.8, "Y": 0.0}
-"""Weight of the evidence of AMASS for each axis (`judge_up_axis`), by definition Z."""
+"""Weight of the evidence of AMASS for each axis (`estimate_up_axis`), by definition Z."""
 VIDEO_UP: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05, "-Y": 0.0}
 """The same weight of video models: mostly Y and, in the camera's axes, -Y. Chosen by hand below
 `FLOOR_WEIGHT`, 0.3."""
@@ -98,8 +98,8 @@ def open_smpl(
     `body_pose`, `transl`, `pose_world`, `pred_rotmat`), as rotation vectors or matrices.
     Rotations are exact. Bone lengths depend on a licensed model that is neither read nor
     needed: they are those of an adult, scaled to `height`. The height above the floor depends
-    on them too, so the feet are put on the floor. Which way is up is judged by the body
-    (`judge_up_axis`): AMASS has Z up, most video models Y. Poses with an axis too many are
+    on them too, so the feet are put on the floor. Which way is up is estimated from the body
+    (`estimate_up_axis`): AMASS has Z up, most video models Y. Poses with an axis too many are
     those of several people (`split_people`).
 
     Parameters

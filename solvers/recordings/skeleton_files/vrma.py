@@ -91,12 +91,14 @@ def read_vrma(
     rest = np.array([_world_rest(nodes, node)[1] for node in order])
     rotations = np.zeros((len(times), len(order), 4))
     for joint, node in enumerate(order):
-        turn, _ = _world_rest(nodes, nodes[node].parent)
+        world_rotation, _ = _world_rest(nodes, nodes[node].parent)
         change = multiply(_sampled_rotation(nodes[node], times), inverse(nodes[node].rotation))
-        rotations[:, joint] = multiply(multiply(turn, change), inverse(turn))
+        rotations[:, joint] = multiply(
+            multiply(world_rotation, change), inverse(world_rotation)
+        )
     offsets = rest - np.where(np.array(parents)[:, None] >= 0, rest[parents], 0.0)
-    turn, origin = _world_rest(nodes, nodes[order[0]].parent)
-    path_of_hips = origin + rotate(turn, _sampled_position(nodes[order[0]], times))
+    world_rotation, origin = _world_rest(nodes, nodes[order[0]].parent)
+    path_of_hips = origin + rotate(world_rotation, _sampled_position(nodes[order[0]], times))
     progress(1.0, "Reading")
     skeleton = Skeleton(tuple(names), tuple(parents), z_up_from_y_up(unit * offsets))
     return Motion(
@@ -221,11 +223,11 @@ def _world_rest(nodes: list[_Node], index: int) -> tuple[Array, Array]:
     while at >= 0:
         chain.append(at)
         at = nodes[at].parent
-    turn, place = np.array(IDENTITY), np.zeros(3)
+    rotation, position = np.array(IDENTITY), np.zeros(3)
     for node in reversed(chain):
-        place = place + rotate(turn, nodes[node].position)
-        turn = multiply(turn, nodes[node].rotation)
-    return turn, place
+        position = position + rotate(rotation, nodes[node].position)
+        rotation = multiply(rotation, nodes[node].rotation)
+    return rotation, position
 
 
 def _sample_times(file: GlbFile, nodes: list[_Node], bones: list[int]) -> tuple[Array, float]:

@@ -25,7 +25,7 @@ BUFFER_BYTES = 1 << 20
 SENDER_TIMEOUT_S = 1.0
 """Seconds of silence after which a sender is gone, and another one is followed. By definition
 that of a body (`BODY_TIMEOUT_S`)."""
-MAX_SEEN = 32
+MAX_SENDERS = 32
 """Number of datagrams whose senders are remembered. It bounds memory."""
 
 Address = tuple[str, int]
@@ -94,7 +94,7 @@ class Receiver:
         self._other_at = float("-inf")
         self._released: Address | None = None
         self._n_received = 0
-        self._seen = deque[Address](maxlen=MAX_SEEN)
+        self._senders = deque[Address](maxlen=MAX_SENDERS)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             self._socket.setblocking(False)
@@ -141,7 +141,7 @@ class Receiver:
         """
         if sender != self.sender and self._continues(sender):
             self._follow(sender)
-        self._seen.append(sender)
+        self._senders.append(sender)
         if sender != self.sender:
             self._other, self._other_at = sender, self._now()
             return False
@@ -150,7 +150,7 @@ class Receiver:
         return True
 
     def _continues(self, sender: Address) -> bool:
-        is_new = sender not in self._seen
+        is_new = sender not in self._senders
         is_same = self.sender is not None and sender[0] == self.sender[0]
         return is_new and is_same and self._n_received <= 1
 

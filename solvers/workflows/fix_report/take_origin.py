@@ -58,6 +58,10 @@ def find_origin(take: Take) -> TakeOrigin:
             return TakeOrigin.VIDEO if is_video else TakeOrigin.SKELETON
         case Tracks():
             observed = take.visible.any(axis=0)
-            names = [name for name, seen in zip(take.names, observed, strict=True) if seen]
+            names = [
+                name
+                for name, is_observed in zip(take.names, observed, strict=True)
+                if is_observed
+            ]
             missing = find_marker_set(names).missing_landmarks()
             return TakeOrigin.POINTS if missing else TakeOrigin.MARKERS

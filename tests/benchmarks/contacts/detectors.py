@@ -100,9 +100,11 @@ def low_passed(positions: Array, frame_rate: float) -> Array:
     observed = np.isfinite(positions)
     frames = np.arange(len(positions))
     columns = positions.reshape(len(positions), -1).copy()
-    for column, seen in zip(columns.T, observed.reshape(len(positions), -1).T, strict=True):
-        if seen.any():
-            column[:] = np.interp(frames, frames[seen], column[seen])
+    for column, is_observed in zip(
+        columns.T, observed.reshape(len(positions), -1).T, strict=True
+    ):
+        if is_observed.any():
+            column[:] = np.interp(frames, frames[is_observed], column[is_observed])
     smooth = butterworth(np.nan_to_num(columns), frame_rate, LOW_PASS_HZ)
     return np.where(observed, smooth.reshape(positions.shape), np.nan)
 

@@ -126,13 +126,15 @@ def acceleration_ratio(given: Motion, planted: Motion, joints: Sequence[int]) ->
     if not joints:
         return 1.0
     before, after = (
-        np.linalg.norm(np.diff(_turns(motion.rotations[:, joints]), axis=0), axis=-1).max()
+        np.linalg.norm(
+            np.diff(_rotation_vectors(motion.rotations[:, joints]), axis=0), axis=-1
+        ).max()
         for motion in (given, planted)
     )
     return float(after / max(before, 1e-9))
 
 
-def _turns(rotations: Array) -> Array:
+def _rotation_vectors(rotations: Array) -> Array:
     """Return the rotation vectors from each frame to the next, (n_frames - 1, n_joints, 3)."""
     steps = multiply(rotations[1:], inverse(rotations[:-1]))
     return rotation_vector_from_quaternion(steps)
@@ -154,9 +156,9 @@ def _jittering(motion: Motion) -> Motion:
 
 
 def _skating(motion: Motion) -> Motion:
-    place = motion.root_positions.copy()
-    place[:, :2] += 0.15 * (place[:, :2] - place[0, :2])
-    return motion.with_poses(root_positions=place)
+    path = motion.root_positions.copy()
+    path[:, :2] += 0.15 * (path[:, :2] - path[0, :2])
+    return motion.with_poses(root_positions=path)
 
 
 INPUTS: dict[str, Callable[[Motion], Motion]] = {

@@ -153,9 +153,9 @@ def _swaying(name: str, motion: Motion) -> Motion:
 
 
 def _skating(name: str, motion: Motion) -> Motion:
-    place = motion.root_positions.copy()
-    place[:, :2] += (TRAVEL_RATIO - 1.0) * (place[:, :2] - place[0, :2])
-    return motion.with_poses(root_positions=place)
+    path = motion.root_positions.copy()
+    path[:, :2] += (TRAVEL_RATIO - 1.0) * (path[:, :2] - path[0, :2])
+    return motion.with_poses(root_positions=path)
 
 
 INPUTS: tuple[tuple[str, Callable[[str, Motion], Motion], int, bool], ...] = (

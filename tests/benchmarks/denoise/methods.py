@@ -54,7 +54,7 @@ def data_driven_kalman(case: Case, first: Smoother = smoothers.unchanged) -> Arr
     return nearest(case, estimates)
 
 
-PLACE_OF_DEFAULT = {
+INDEX_OF_DEFAULT = {
     "gaussian": WIDTHS.index(DEFAULTS["gaussian"]),
     "butterworth": CUTOFFS.index(DEFAULTS["butterworth"]),
 }
@@ -124,7 +124,7 @@ class Blender:
         return found
 
     def _default(self, name: str, case: Case) -> Array:
-        return self._outputs[id(case)][name][PLACE_OF_DEFAULT[name]]
+        return self._outputs[id(case)][name][INDEX_OF_DEFAULT[name]]
 
     def _tuned(self, name: str, case: Case) -> Array:
         return nearest(case, self._outputs[id(case)][name])

@@ -92,18 +92,18 @@ def _slerp(case: Case, gapped: Array) -> Array:
     rotations = filled.rotations.copy()
     for joint in np.flatnonzero(case.channels.joints):
         columns = case.channels.of_joints([joint])
-        seen = np.flatnonzero(np.isfinite(gapped[:, columns]).all(axis=1))
-        if 1 < len(seen) < len(gapped):
-            rotations[:, joint] = _between(unroll(rotations[:, joint]), seen)
-        elif not len(seen):
+        observed = np.flatnonzero(np.isfinite(gapped[:, columns]).all(axis=1))
+        if 1 < len(observed) < len(gapped):
+            rotations[:, joint] = _between(unroll(rotations[:, joint]), observed)
+        elif not len(observed):
             return np.full_like(gapped, np.nan)
     return case.values(filled.with_poses(rotations))
 
 
-def _between(rotations: Array, seen: NDArray[np.intp]) -> Array:
-    frames = np.clip(np.arange(len(rotations)), seen[0], seen[-1])
-    place = np.clip(np.searchsorted(seen, frames, side="right") - 1, 0, len(seen) - 2)
-    start, stop = seen[place], seen[place + 1]
+def _between(rotations: Array, observed: NDArray[np.intp]) -> Array:
+    frames = np.clip(np.arange(len(rotations)), observed[0], observed[-1])
+    before = np.clip(np.searchsorted(observed, frames, side="right") - 1, 0, len(observed) - 2)
+    start, stop = observed[before], observed[before + 1]
     return slerp(rotations[start], rotations[stop], (frames - start) / (stop - start))
 
 

@@ -27,7 +27,7 @@ WALK = "walk"
 GOING = (WALK, "jogLeftCircle4StepsRstart", "sneak2StepsLStart", "hopBothLegs1hops")
 STAYING = ("lieDownFloor", "rotateArmsBothBackward1Reps", "throwBasketball", "squat1Reps")
 LEVELS = (Level(3.0), Level(3.0, 0.10))
-LOST = Gap("left leg", ("LeftUpLeg",), 1.0), Gap("left leg", ("lfemur",), 1.0)
+GAPS = Gap("left leg", ("LeftUpLeg",), 1.0), Gap("left leg", ("lfemur",), 1.0)
 """The same limb, as CMU's BVH and HDM05 name it."""
 PICKED, MIXED, ALL = "picked by hand", "mixed library", "all of it, unsearched"
 IRRELEVANT, NONE = "irrelevant library", "no examples"
@@ -146,10 +146,10 @@ def compare_libraries(n_clips: int, dev: bool, unsearched: bool) -> list[Scores]
                 error = angle_error(clean(case.noisy_motion), truth, channels.joints).mean()
                 scores.add(name, column, take.name, float(error), follows=False)
             case = Case(take.name, Level(0.0), truth, training, channels)
-            gap = LOST[take.kind != WALK]
+            gap = GAPS[take.kind != WALK]
             if truth.n_frames > 1.5 * gap.seconds * truth.frame_rate:
-                lost = cut(case, gap, 0)
-                error = score(case, _filler(clean, *lost), *lost)
+                missing = cut(case, gap, 0)
+                error = score(case, _filler(clean, *missing), *missing)
                 gone.add(name, column, take.name, error, follows=False)
         print(f"  {take.name} from libraries", flush=True)
     for scores in (*found, gone):

@@ -34,14 +34,14 @@ def compare_windows(names: Sequence[str]) -> list[Scores]:
         Scores("Window sizes, CMU walks, left leg gone for 1 s", "geodesic angle, degrees"),
     ]
     for case in leave_one_out(clips.walks(), names, [LEVELS[0]]):
-        lost = cut(case, GAP, 0)
+        missing = cut(case, GAP, 0)
         for window in WINDOWS:
             for name, method in (("ours", None), ("[LC10] as published", True)):
                 kind = {"method": DenoiseMethod.PUBLISHED} if method else {}
                 ours = Ours(window=window, **kind)
                 column = f"{window:.2g} s"
                 found[0].add(name, column, case.name, case.error(ours(case)))
-                figure = score(case, filled_by(ours), *lost)
+                figure = score(case, filled_by(ours), *missing)
                 found[1].add(name, column, case.name, figure)
         print(f"  {case.name} with windows", flush=True)
     return found

@@ -66,7 +66,7 @@ WITHOUT = {
     "no closest surface": {"closest_weight": 0.0},
     "no free space (off actor, too near)": {"off_actor_weight": 0.0, "too_near_weight": 0.0},
     "no prediction": {"prediction": 0.0},
-    "no smoothness": {"turn_weight": 0.0, "shift_weight": 0.0},
+    "no smoothness": {"rotation_weight": 0.0, "shift_weight": 0.0},
     "no natural stance": {"natural_weight": 0.0},
     "no joint limits": {"limit_weight": 0.0},
     "no occlusion handling": {"limit": 1.0},

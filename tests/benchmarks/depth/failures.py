@@ -33,7 +33,7 @@ TRACKERS: dict[str, tuple[TrackerSettings, int]] = {
 """Settings, and the step between evaluated frames: some of them fail often."""
 
 
-class Judged(NamedTuple):
+class FailureCases(NamedTuple):
     """Poses of several trackers."""
 
     features: Array
@@ -44,7 +44,7 @@ class Judged(NamedTuple):
     """Whether each has failed by the thresholds of [WZC12]."""
 
 
-def judged(sequences: Iterable[Sequence]) -> Judged:
+def failure_cases(sequences: Iterable[Sequence]) -> FailureCases:
     """Track with all `TRACKERS`, with scaled default bodies."""
     features, errors = [], []
     for one in sequences:
@@ -54,7 +54,7 @@ def judged(sequences: Iterable[Sequence]) -> Judged:
                 errors.append(error)
     table = np.array(features)
     far = table[:, 0] > PUBLISHED_MAX_RESIDUAL_M / RESIDUAL_UNIT
-    return Judged(table, np.array(errors), far | (table[:, 1] < PUBLISHED_MIN_OVERLAP))
+    return FailureCases(table, np.array(errors), far | (table[:, 1] < PUBLISHED_MIN_OVERLAP))
 
 
 RESIDUAL_UNIT = 0.1

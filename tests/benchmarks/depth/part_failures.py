@@ -14,12 +14,12 @@ from solvers.depth_tracking.tracking.failure_test import (
 
 from ..shared.tables import number, table
 from .depth_sequences import SCORED, sequence
-from .failures import MIN_FAILURE_ERROR_M, RESIDUAL_UNIT, area_under_roc, judged
+from .failures import MIN_FAILURE_ERROR_M, RESIDUAL_UNIT, area_under_roc, failure_cases
 
 
 def failures() -> list[str]:
     """Compare tests on depth/truth, with trackers of which some lose the actor."""
-    found = judged(sequence(name) for name in SCORED)
+    found = failure_cases(sequence(name) for name in SCORED)
     failed = found.errors > MIN_FAILURE_ERROR_M
     columns = dict(zip(FEATURES, found.features.T, strict=True))
     chance = found.features @ LEARNED_WEIGHTS + LEARNED_BIAS

@@ -57,10 +57,10 @@ def measure(case: Case, motion: Motion) -> Figures:
     truth, estimate = positions_of_ends(case.truth), positions_of_ends(motion)
     position = float(np.linalg.norm(estimate - truth, axis=-1)[frames].mean())
     rate = case.truth.frame_rate
-    lost, worst = _excursion_loss(case.truth, motion)
+    loss, worst = _excursion_loss(case.truth, motion)
     speeds = _peak_speed(estimate[scored], rate) / _peak_speed(truth[scored], rate)
     speed = float(np.mean(speeds))
-    return Figures(angle, CENTIMETERS * position, speed, lost, worst)
+    return Figures(angle, CENTIMETERS * position, speed, loss, worst)
 
 
 def positions_of_ends(motion: Motion) -> Array:
@@ -85,9 +85,9 @@ def _excursion_loss(truth: Motion, motion: Motion) -> tuple[float, TurningPoint 
         window = slice(max(point.frame - near, 0), point.frame + near + 1)
         direction = np.array(point.direction)
         reach = (true_path[window, point.end] @ direction).max()
-        lost = CENTIMETERS * float(reach - (path[window, point.end] @ direction).max())
-        if lost > worst:
-            worst, where = lost, point
+        loss = CENTIMETERS * float(reach - (path[window, point.end] @ direction).max())
+        if loss > worst:
+            worst, where = loss, point
     return worst, where
 
 
@@ -104,10 +104,10 @@ def turning_points(truth: Motion) -> tuple[TurningPoint, ...]:
         x = path[:, end]
         out, back = x[span:-span] - x[: -2 * span], x[span:-span] - x[2 * span :]
         sizes = np.minimum(np.linalg.norm(out, axis=1), np.linalg.norm(back, axis=1))
-        turns = (out * back).sum(axis=1) > 0.5 * np.linalg.norm(out, axis=1) * np.linalg.norm(
-            back, axis=1
-        )
-        sizes = np.where(turns, sizes, 0.0)
+        reverses = (out * back).sum(axis=1) > 0.5 * np.linalg.norm(
+            out, axis=1
+        ) * np.linalg.norm(back, axis=1)
+        sizes = np.where(reverses, sizes, 0.0)
         while sizes.size and sizes.max() > MIN_STROKE_M:
             index = int(sizes.argmax())
             direction = out[index] + back[index]

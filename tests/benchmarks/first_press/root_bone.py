@@ -18,11 +18,13 @@ def spin(motion: Motion, degrees: float) -> Motion:
     """Turn the body about the vertical through its mean position, in the middle of the take."""
     seconds = (np.arange(motion.n_frames) - (motion.n_frames - 1) / 2) / motion.frame_rate
     angles = np.radians(degrees) * smoothstep(seconds, -SPIN_S / 2, SPIN_S / 2)
-    turn = quaternion_from_rotation_vector(angles[:, None] * (0.0, 0.0, 1.0))
+    rotation = quaternion_from_rotation_vector(angles[:, None] * (0.0, 0.0, 1.0))
     center = motion.root_positions.mean(axis=0) * (1.0, 1.0, 0.0)
     rotations = motion.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
-    return motion.with_poses(rotations, center + rotate(turn, motion.root_positions - center))
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
+    return motion.with_poses(
+        rotations, center + rotate(rotation, motion.root_positions - center)
+    )
 
 
 def below_bone(motion: Motion) -> Motion:

@@ -69,8 +69,8 @@ def _take() -> Motion:
     skeleton = Skeleton(names, parents, np.tile([0.05, 0.02, 0.25], (N_JOINTS, 1)))
     time = np.arange(N_FRAMES)[:, None, None] / 120.0
     phases = np.random.default_rng(1).uniform(0, 6.28, size=(N_JOINTS, 3))
-    turns = quaternion_from_rotation_vector(0.4 * np.sin(time * (1 + phases) + phases))
-    return Motion(skeleton, turns, np.tile([0.0, 0.0, 1.0], (N_FRAMES, 1)), 120.0)
+    rotations = quaternion_from_rotation_vector(0.4 * np.sin(time * (1 + phases) + phases))
+    return Motion(skeleton, rotations, np.tile([0.0, 0.0, 1.0], (N_FRAMES, 1)), 120.0)
 
 
 def _plain(path: Path) -> list[list[float]]:

@@ -94,12 +94,16 @@ def write_takes(folder: Path, seconds: float) -> list[Path]:
     write_bvh(walk, folder / "walk.bvh")
     slow = resample(walk, 30.0)
     names = SENSOR_JOINTS[Sensor.KINECT_V2]
-    seen = forward_kinematics(slow).positions
-    joints = Tracks(names, seen[:, np.resize(np.arange(seen.shape[1]), len(names))], 30.0)
+    joint_positions = forward_kinematics(slow).positions
+    joints = Tracks(
+        names,
+        joint_positions[:, np.resize(np.arange(joint_positions.shape[1]), len(names))],
+        30.0,
+    )
     write_joints(JointRecording(joints, None, Sensor.KINECT_V2), folder / "joints.csv")
-    places = forward_kinematics(walk).positions
-    several = np.resize(np.arange(places.shape[1]), N_MARKERS)
-    markers = places[:, several] + np.linspace(0.0, 0.05, N_MARKERS)[:, None]
+    positions = forward_kinematics(walk).positions
+    several = np.resize(np.arange(positions.shape[1]), N_MARKERS)
+    markers = positions[:, several] + np.linspace(0.0, 0.05, N_MARKERS)[:, None]
     names = tuple(f"marker_{number}" for number in range(N_MARKERS))
     write_trc(Tracks(names, markers, 120.0), folder / "markers.trc")
     return [folder / name for name in ("walk.bvh", "joints.csv", "markers.trc")]
@@ -177,12 +181,12 @@ def furthest(file: Path, made: bpy.types.Object) -> float:
         found = dict(zip(tracks.names, np.moveaxis(tracks.positions, 1, 0), strict=True))
     recorded = read_motion_or_tracks(file)
     if isinstance(recorded, Motion):
-        names, places = recorded.skeleton.names, forward_kinematics(recorded).positions
+        names, positions = recorded.skeleton.names, forward_kinematics(recorded).positions
     else:
-        names, places = recorded.names, recorded.positions
+        names, positions = recorded.names, recorded.positions
     shared = [index for index, name in enumerate(names) if name in found]
     errors = [
-        np.linalg.norm(found[names[index]] - places[:, index], axis=1) for index in shared
+        np.linalg.norm(found[names[index]] - positions[:, index], axis=1) for index in shared
     ]
     return float(np.max(errors))
 

@@ -202,8 +202,8 @@ class _Rig:
         empty.rotation_mode = "QUATERNION"
         curves = _new_curves(bpy, empty)
         _key(curves, "location", self._take["targets"][:, number])
-        turned = multiply(self._take["feet"][:, number], self._rest[ankle])
-        _key(curves, "rotation_quaternion", unroll(turned[:, None])[:, 0])
+        rotated = multiply(self._take["feet"][:, number], self._rest[ankle])
+        _key(curves, "rotation_quaternion", unroll(rotated[:, None])[:, 0])
         bones = self._armature.pose.bones
         constraint = bones[_name(knee)].constraints.new("IK")
         constraint.target, constraint.chain_count = empty, 2

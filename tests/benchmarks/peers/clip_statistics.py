@@ -34,11 +34,11 @@ class Covariances:
         return DescribedLibrary(complete, rows, self, "euclidean")
 
     def descriptor(self, frames: Array) -> Array:
-        moments = resampled(frames[:, 3:], max(len(frames), 8))
-        upper = np.triu_indices(moments.shape[1])
+        samples = resampled(frames[:, 3:], max(len(frames), 8))
+        upper = np.triu_indices(samples.shape[1])
         parts = []
         for first, last in WINDOWS:
-            cut = moments[int(first * len(moments)) : round(last * len(moments))]
+            cut = samples[int(first * len(samples)) : round(last * len(samples))]
             matrix = np.cov(cut.T)
             if self.ridge is not None:
                 values, axes = np.linalg.eigh(matrix + self.ridge * np.eye(len(matrix)))

@@ -60,8 +60,8 @@ def learn_complete_postures(
 
 def resampled(frames: Array, n_frames: int) -> Array:
     """Return a clip at evenly spaced moments from its first frame to its last."""
-    moments = np.linspace(0.0, len(frames) - 1.0, n_frames)
-    before = np.minimum(moments.astype(int), max(len(frames) - 2, 0))
+    times = np.linspace(0.0, len(frames) - 1.0, n_frames)
+    before = np.minimum(times.astype(int), max(len(frames) - 2, 0))
     after = np.minimum(before + 1, len(frames) - 1)
-    part = (moments - before)[:, None]
+    part = (times - before)[:, None]
     return np.asarray((1.0 - part) * frames[before] + part * frames[after])

@@ -50,8 +50,8 @@ class VolumeLibrary:
 
 def volume(frames: Array, n_samples: int) -> Array:
     """Return the self-similarity of each joint, shape (n_moments, n_moments, 20)."""
-    moments = resampled(frames, n_samples).reshape(n_samples, -1, 3)
-    return np.asarray(np.linalg.norm(moments[:, None] - moments[None], axis=-1))
+    samples = resampled(frames, n_samples).reshape(n_samples, -1, 3)
+    return np.asarray(np.linalg.norm(samples[:, None] - samples[None], axis=-1))
 
 
 def core(volume: Array, times: Array, joints: Array) -> Array:

@@ -49,7 +49,7 @@ ACCURACY = (
     "joints, cm", "skeleton, cm", "in Blender, cm", "in Blender, offset-free, cm",
     "in Blender, jerk, m/s³", *SUBJECTS,
 )  # fmt: skip
-LOST = (
+MISSING = (
     "at rest, cm", "moving, cm", "all, cm", "at rest: worse than lines by 1 cm",
 )  # fmt: skip
 
@@ -186,7 +186,7 @@ def rest(n_repetitions: int) -> list[str]:
         f"**Missing joints, at rest and moving** ({rested.sum()} and {(~rested).sum()} losses"
         " of .5 to 2 s; offset-free; a joint rests if it stays within 5 cm)\n\n"
     )
-    return [head + table(["method", *LOST], rows) + "\n"]
+    return [head + table(["method", *MISSING], rows) + "\n"]
 
 
 def _compare(
@@ -198,14 +198,14 @@ def _compare(
     lengths: list[int],
 ) -> None:
     """Add the error of each method on one lost joint, meters."""
-    lost, truth = damaged.where[:, joint], truth_of(damaged.pair)[:, joint]
-    if not np.isfinite(truth[lost]).all():
+    missing, truth = damaged.where[:, joint], truth_of(damaged.pair)[:, joint]
+    if not np.isfinite(truth[missing]).all():
         return
-    rests.append(bool(np.linalg.norm(np.ptp(truth[lost], axis=0)) < REST_M))
-    lengths.append(int(lost.sum()))
+    rests.append(bool(np.linalg.norm(np.ptp(truth[missing], axis=0)) < REST_M))
+    lengths.append(int(missing.sum()))
     for name, positions in made.items():
         off = positions[:, joint] - truth
-        off = off[lost] - np.nanmean(off[~lost], axis=0)
+        off = off[missing] - np.nanmean(off[~missing], axis=0)
         found[name].append(float(np.linalg.norm(off, axis=-1).mean()))
 
 

@@ -135,9 +135,9 @@ def varied(number: int) -> ClipPostures:
     original = originals()[number % len(originals())]
     speed = np.exp(rng.uniform(np.log(SLOWEST), np.log(FASTEST)))
     last = original.n_frames - 1.0
-    moments = np.arange(0.0, last + 1e-9, speed)
+    times = np.arange(0.0, last + 1e-9, speed)
     positions, root_velocity = (
-        interp1d(np.arange(last + 1.0), values, axis=0)(moments)
+        interp1d(np.arange(last + 1.0), values, axis=0)(times)
         for values in (original.positions, original.root_velocity)
     )
     posed = rotate_bones(positions, ROTATION_NOISE * rng.normal(size=(N_JOINTS, 3)))

@@ -58,7 +58,6 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "recordings/conventions/body_unit.UNITS",
         "recordings/depth_files/layouts.TUM_UNIT",
         "recordings/joint_files/body_json.MAX_CONFIDENCE",
-        "recordings/marker_files/trc.FULL_TURN",
     ),
     "index, state, flag or error code": (
         "depth_tracking/body/ray_capsules.NO_SEGMENT",

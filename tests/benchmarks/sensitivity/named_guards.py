@@ -49,7 +49,7 @@ NAMED_GUARDS = (
     "physics/follow_target.*_DISTANCE_*",
     "physics/foot_support.FULL_LOAD",
     "physics/plant_target.CREEP_M_S",
-    "physics/simulate.MAX_LOST_FRACTION",
+    "physics/simulate.MAX_MISSED_FRACTION",
     "physics/simulate_segment.MAX_JUMP_M",
     "physics/simulate_segment.MAX_SPEED_M_S",
     "physics/soles_and_ground.FOOT_LENGTH_M",

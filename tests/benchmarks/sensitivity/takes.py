@@ -84,9 +84,9 @@ def thrown_off(motion: Motion, joints: Sequence[str], rng: np.random.Generator) 
         for start in rng.integers(0, motion.n_frames, size=3):
             frames = slice(start, start + int(rng.integers(2, 9)))
             axis = rng.normal(size=3)
-            turn = np.radians(rng.uniform(20, 60)) * axis / np.linalg.norm(axis)
+            rotation = np.radians(rng.uniform(20, 60)) * axis / np.linalg.norm(axis)
             rotations[frames, column] = multiply(
-                rotations[frames, column], quaternion_from_rotation_vector(turn)
+                rotations[frames, column], quaternion_from_rotation_vector(rotation)
             )
     return motion.with_poses(rotations)
 

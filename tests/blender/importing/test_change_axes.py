@@ -56,10 +56,10 @@ def test_back_and_forth_leaves_it_as_it_was(walk, bring, shown, blank):
     before = shown(armature)
 
     change(blank, up="Z", global_scale=2.0)
-    turned = shown(armature)
+    rotated = shown(armature)
     change(blank, up="Y", global_scale=1.0)
 
-    assert np.abs(turned - before).max() > 0.5
+    assert np.abs(rotated - before).max() > 0.5
     assert_allclose(shown(armature), before, atol=TOLERANCE_M)
 
 
@@ -74,7 +74,7 @@ def test_scale_and_unit_change_the_size(walk, bring, shown, blank):
     assert np.ptp(shown(armature)[..., 2]) > 10.0 * np.ptp(before[..., 2])
 
 
-def test_panel_and_message_report_the_judged_axes(walk, bring, load, capfd):
+def test_panel_and_message_report_the_estimated_axes(walk, bring, load, capfd):
     armature = bring(walk)
 
     origin = load("mocap_assist.scene.origin")

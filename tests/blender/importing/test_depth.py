@@ -48,13 +48,13 @@ def test_it_plays_in_seconds_at_the_rate_of_the_scene(archive, bring, blank):
     blank.context.scene.render.fps = 60
     made = bring(archive, frame_rate="SCALE", update_scene_duration=True)
 
-    places = []
+    distances = []
     for frame in (1, 3, 4, 5, 15, 400):
         blank.context.scene.frame_set(frame)
-        places.append(round(float(points_of(made)[-1, 1]), 3))
+        distances.append(round(float(points_of(made)[-1, 1]), 3))
 
     # Two frames of the scene to a picture; beyond the last it stays.
-    assert places == [3.0, 2.9, 2.8, 2.8, 2.3, 2.3]
+    assert distances == [3.0, 2.9, 2.8, 2.8, 2.3, 2.3]
 
 
 def test_it_survives_save_and_load(archive, depth, bring, blank, tmp_path):

@@ -4,20 +4,20 @@ import pytest
 
 
 @pytest.mark.parametrize(
-    ("axes", "is_text", "is_lost"),
+    ("axes", "is_text", "is_missing"),
     [("Z", False, True), ("XYZ", False, False), ("Z", True, True), ("XYZ", True, False)],
 )
 def test_lost_curves_are_read_by_the_other_importer_or_reported(
-    load, tmp_path, monkeypatch, axes, is_text, is_lost
+    load, tmp_path, monkeypatch, axes, is_text, is_missing
 ):
     module = load("mocap_assist.blender.fbx_curves")
     monkeypatch.setattr(module, "FIRST_COMPLETE", (99, 0, 0))
     path = tmp_path / "take.fbx"
     path.write_bytes(b"Connections" + b"".join(link(axis, is_text) for axis in axes))
 
-    assert module.loses_curves(str(path)) is (is_lost and not is_text)
-    assert ("this FBX file is text" in module.describe_lost_curves(str(path))) is (
-        is_lost and is_text
+    assert module.loses_curves(str(path)) is (is_missing and not is_text)
+    assert ("this FBX file is text" in module.describe_missing_curves(str(path))) is (
+        is_missing and is_text
     )
 
 

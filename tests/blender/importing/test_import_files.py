@@ -52,7 +52,7 @@ def test_bones_are_where_blenders_own_importer_puts_them(recordings, bring, pose
 def test_markers_become_empties_with_gaps(file, recordings, bring, load, blank):
     path = recordings / "formats" / file
     recorded = load("solvers.recordings").read_recording(path)
-    seen = [
+    visible = [
         name for name, ever in zip(recorded.names, recorded.visible.any(0), strict=True) if ever
     ]
     assert not recorded.visible.all()
@@ -61,23 +61,23 @@ def test_markers_become_empties_with_gaps(file, recordings, bring, load, blank):
 
     below = [each for each in holder.children_recursive if "mocap_assist_point" in each]
     markers = {each["mocap_assist_point"]: each for each in below}
-    assert set(markers) == set(seen)
+    assert set(markers) == set(visible)
     assert len({each.animation_data.action for each in holder.children if each in below}) == 1
     for layer in blank.context.view_layer.layer_collection.children:  # of computed points
         layer.hide_viewport = False
     for frame in range(0, recorded.n_frames, 11):
         blank.context.scene.frame_set(frame + 1)
-        for place, name in enumerate(recorded.names):
-            if recorded.visible[frame, place]:
+        for point, name in enumerate(recorded.names):
+            if recorded.visible[frame, point]:
                 shown = markers[name].matrix_world.translation
-                assert_allclose(shown, recorded.positions[frame, place], atol=TOLERANCE_M)
-    for name in seen:
-        place = recorded.names.index(name)
+                assert_allclose(shown, recorded.positions[frame, point], atol=TOLERANCE_M)
+    for name in visible:
+        point = recorded.names.index(name)
         bag = channelbag(markers[name])
         counts = [
             len(curve.keyframe_points) for curve in bag.fcurves if "loc" in curve.data_path
         ]
-        assert counts == 3 * [int(recorded.visible[:, place].sum())]
+        assert counts == 3 * [int(recorded.visible[:, point].sum())]
 
 
 def test_a_walk_is_cleaned_after_it_was_imported(recordings, bring, blank):
@@ -107,11 +107,11 @@ def test_odd_names_and_bones_without_length_are_no_obstacle(bring, load, blank, 
         [0, 0, -0.5], [0, 0, 0], [0, 0.1, 0],
     ])  # fmt: skip
     skeleton = motion.Skeleton(names, parents, offsets)
-    turns = load("solvers.rotations.representations").quaternion_from_rotation_vector(
+    rotations = load("solvers.rotations.representations").quaternion_from_rotation_vector(
         0.3 * np.sin(np.arange(20 * 8 * 3.0)).reshape(20, 8, 3)
     )
-    turns[:, 6:] = (1.0, 0.0, 0.0, 0.0)
-    dance = motion.Motion(skeleton, turns, np.ones((20, 3)) * np.arange(20)[:, None], 24.0)
+    rotations[:, 6:] = (1.0, 0.0, 0.0, 0.0)
+    dance = motion.Motion(skeleton, rotations, np.ones((20, 3)) * np.arange(20)[:, None], 24.0)
     make = load("mocap_assist.importing.recording_objects").make_objects
     choices = load("mocap_assist.importing.button_settings").ImportChoices()
 
@@ -121,8 +121,8 @@ def test_odd_names_and_bones_without_length_are_no_obstacle(bring, load, blank, 
     read = motion.forward_kinematics(take.parts[0].motion).positions
     expected = motion.forward_kinematics(dance).positions
     assert read.shape == expected.shape
-    for place in np.moveaxis(expected, 1, 0):
-        nearest = np.abs(read - place[:, None]).max(axis=(0, 2)).min()
+    for point in np.moveaxis(expected, 1, 0):
+        nearest = np.abs(read - point[:, None]).max(axis=(0, 2)).min()
         assert nearest < 10 * TOLERANCE_M
 
 

@@ -108,10 +108,10 @@ def kinect(load, rng):
     """A short recording of all joints of a Kinect v2 that wander about."""
     motion = load("solvers.motion")
     names = motion.SENSOR_JOINTS[motion.Sensor.KINECT_V2]
-    places = rng.normal(size=(1, 25, 3)) + np.cumsum(
+    positions = rng.normal(size=(1, 25, 3)) + np.cumsum(
         rng.normal(scale=0.01, size=(40, 25, 3)), 0
     )
-    tracks = motion.Tracks(names, places, 30.0, rng.uniform(size=(40, 25)))
+    tracks = motion.Tracks(names, positions, 30.0, rng.uniform(size=(40, 25)))
     state = rng.integers(0, 3, size=(40, 25))
     return motion.JointRecording(tracks, state, motion.Sensor.KINECT_V2)
 
@@ -199,10 +199,10 @@ def test_joints_of_every_sensor_are_cleaned_with_the_button(file, recordings, br
 def test_never_observed_joints_are_reported_and_others_stay(lossy, load, tmp_path, blank):
     recordings = load("solvers.recordings")
     recording = recordings.read_recording(lossy)
-    places = recording.tracks.positions.copy()
-    places[:, recording.names.index("SpineMid")] = np.nan
+    positions = recording.tracks.positions.copy()
+    positions[:, recording.names.index("SpineMid")] = np.nan
     recordings.write_joints(
-        recording.with_tracks(recording.tracks.with_positions(places)), tmp_path / "lost.csv"
+        recording.with_tracks(recording.tracks.with_positions(positions)), tmp_path / "lost.csv"
     )
     files = load("mocap_assist.importing.importing")
     choices = load("mocap_assist.importing.button_settings").ImportChoices()

@@ -55,9 +55,9 @@ def test_a_c3d_becomes_a_cleaned_armature(blank, holder, tracks, load, recording
         index = skeleton.skeleton.index(joint)
         expected = joints.positions[frames * STEP, index]
         found = head_positions(blank, armature, bone, frames + 1)
-        turned = expected[:, [0, 1, 2]] - expected.mean(axis=0)
+        rotated = expected[:, [0, 1, 2]] - expected.mean(axis=0)
         moved = np.linalg.norm(found - found.mean(axis=0), axis=1)
-        assert np.abs(moved - np.linalg.norm(turned, axis=1)).mean() < 0.05, bone
+        assert np.abs(moved - np.linalg.norm(rotated, axis=1)).mean() < 0.05, bone
     raw = armature.animation_data.action
     assert not blank.ops.mocap_assist.revert_to_raw.poll()  # it is raw itself
     assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 TOLERANCE_M = 1e-5  # meters; keys are 32-bit numbers
 N_MARKERS = 12
-LOST = slice(60, 90)
+GAP = slice(60, 90)
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def bad_tracks(true_tracks, rng):
     positions = true_tracks.positions + rng.normal(
         scale=0.003, size=true_tracks.positions.shape
     )
-    positions[LOST, 1] = np.nan
+    positions[GAP, 1] = np.nan
     positions[:10, 2] = positions[11:, 2] = np.nan  # seen once
     return true_tracks.with_positions(positions)
 
@@ -96,7 +96,7 @@ def test_clean_fills_and_smooths_markers_and_revert_restores_raw(
     noise = np.linalg.norm(bad_tracks.positions - true_tracks.positions, axis=-1)
     assert np.isfinite(found).all()
     assert np.delete(misses, 2, axis=1).mean() < 0.75 * np.nanmean(noise)
-    assert misses[LOST, 1].mean() < 0.05
+    assert misses[GAP, 1].mean() < 0.05
     assert keys_of(raw) == recorded
 
     assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}

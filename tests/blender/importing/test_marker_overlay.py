@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 TOLERANCE_M = 2e-6
 N_MARKERS = 8
-LOST = slice(40, 70)
+GAP = slice(40, 70)
 FRAMES = (1, 20, 90)
 
 
@@ -26,7 +26,7 @@ def holder(recordings, load, rng, tmp_path, bring, blank):
         take.names[:N_MARKERS], take.positions[:200:2, :N_MARKERS].copy(), 60.0
     )
     tracks.positions[...] += rng.normal(scale=0.003, size=tracks.positions.shape)
-    tracks.positions[LOST, 1] = np.nan
+    tracks.positions[GAP, 1] = np.nan
     path = tmp_path / "take.trc"
     module.write_trc(tracks, path)
     blank.context.scene.render.fps = 60
@@ -52,9 +52,9 @@ def test_crosses_stand_where_the_empties_do(blank, overlay, holder):
     assert not clean.markers
     assert len(overlay.lines_at(clean, blank.context.scene)) == 0
     for frame in FRAMES:
-        places = world_positions(blank, raw.markers, frame)
+        positions = world_positions(blank, raw.markers, frame)
         lines = overlay.lines_at(raw, blank.context.scene)
-        assert_allclose(crosses(lines), places, atol=10 * TOLERANCE_M)
+        assert_allclose(crosses(lines), positions, atol=10 * TOLERANCE_M)
 
 
 def test_trails_go_through_the_positions_at_adjacent_frames(blank, overlay, holder):

@@ -191,8 +191,8 @@ def test_resampled_bones_rotate_as_the_recorded_ones(walk, bring, poses, blank):
         products = np.einsum("fij,fkj->fik", rotations, rotations)
         assert_allclose(products, np.broadcast_to(np.eye(3), products.shape), atol=1e-4)
         cosines = (np.einsum("fij,fij->f", rotations, matrices[:, :3, :3]) - 1.0) / 2.0
-        turned = np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
-        assert np.median(turned) < ANGLE_DEG, name
+        rotated = np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
+        assert np.median(rotated) < ANGLE_DEG, name
 
 
 def test_sensor_values_lie_on_integer_frames(recordings, bring, blank, load):

@@ -188,10 +188,10 @@ def test_rigs_of_a_file_are_bodies(blank, two_rigs, suffix, load):
     path = two_rigs(suffix)
 
     assert bring(blank, path) == ["duo Anna", "duo Ben"]  # nothing is left out unasked
-    places = [
+    paths = [
         _travel(blank.data.objects[name], blank.context.scene) for name in armatures(blank)
     ]
-    assert not np.allclose(*places, atol=0.01)  # each plays its own slot
+    assert not np.allclose(*paths, atol=0.01)  # each plays its own slot
 
     listed = load("mocap_assist.importing.body_choice").bodies_to_choose([path])
     assert [body.name for body in listed] == ["Anna", "Ben"]

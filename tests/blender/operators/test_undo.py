@@ -115,13 +115,13 @@ def state_of(bpy):
     }
 
 
-def differences(before, after, place=""):
+def differences(before, after, path=""):
     """Return where two states differ."""
     if isinstance(before, dict) and isinstance(after, dict):
         for name in before.keys() | after.keys():
-            yield from differences(before.get(name), after.get(name), f"{place}/{name}")
+            yield from differences(before.get(name), after.get(name), f"{path}/{name}")
     elif before != after:
-        yield f"{place}: {str(before)[:60]} -> {str(after)[:60]}"
+        yield f"{path}: {str(before)[:60]} -> {str(after)[:60]}"
 
 
 def offered(bpy, draw):

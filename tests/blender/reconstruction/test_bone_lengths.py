@@ -61,9 +61,9 @@ def test_lengths_are_those_of_the_motion_that_is_read_again(
 
     body = read.parts[0].motion
     positions = load("solvers.motion").forward_kinematics(body).positions[STANDING - 1]
-    seen = heads(armature, STANDING)
+    before = heads(armature, STANDING)
     for name, position in zip(body.skeleton.names, positions, strict=True):
-        np.testing.assert_allclose(position, seen[name], atol=1e-4)
+        np.testing.assert_allclose(position, before[name], atol=1e-4)
 
 
 def test_bones_keep_their_lengths_without_the_offset(take, bring, reconstruct):

@@ -118,18 +118,18 @@ def test_release_leaves_the_claims_of_others(tmp_path):
 
 def test_claim_never_stands_without_its_holder(tmp_path, monkeypatch):
     """A process killed at any moment leaves no claim without a holder."""
-    claim, link, seen = tmp_path / "take.1.claim", os.link, []
+    claim, link, states = tmp_path / "take.1.claim", os.link, []
 
     def look(source, target):
-        seen.append(claim.exists())
+        states.append(claim.exists())
         link(source, target)
-        seen.append(json.loads(claim.read_text())["pid"])
+        states.append(json.loads(claim.read_text())["pid"])
 
     monkeypatch.setattr(os, "link", look)
     with claimed(tmp_path / "take") as first:
         assert first.holder == ""
 
-    assert seen == [False, os.getpid()]
+    assert states == [False, os.getpid()]
     assert not list(tmp_path.iterdir())
 
 

@@ -95,8 +95,10 @@ def test_recorded_takes_begin_anywhere(recordings, take, step):
 def test_take_that_begins_as_a_quick_turn_ends_has_no_edge_pose(walk):
     """Its only step of 45 degrees has no step before it that would predict it."""
     rotations = walk.rotations.copy()
-    elbow, turn = walk.skeleton.index("LeftForeArm"), np.array([0.0, 0.0, np.radians(45.0)])
-    rotations[0, elbow] = multiply(rotations[1, elbow], quaternion_from_rotation_vector(turn))
+    elbow, rotation = walk.skeleton.index("LeftForeArm"), np.array([0.0, 0.0, np.radians(45.0)])
+    rotations[0, elbow] = multiply(
+        rotations[1, elbow], quaternion_from_rotation_vector(rotation)
+    )
 
     assert not find_edge_poses(walk.with_poses(rotations), ())
 

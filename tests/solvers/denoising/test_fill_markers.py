@@ -242,10 +242,10 @@ def test_only_short_jumps_are_transient_outliers(body):
     assert filled[:, 4].sum() <= 4
 
 
-@pytest.mark.parametrize("n_seen", [1, 5])
-def test_rarely_observed_marker_is_not_filled_with_high_confidence(body, n_seen):
+@pytest.mark.parametrize("n_observed", [1, 5])
+def test_rarely_observed_marker_is_not_filled_with_high_confidence(body, n_observed):
     noisy = body + np.random.default_rng(9).normal(scale=0.003, size=body.shape)
-    take = gapped(noisy, 7, np.r_[0:100, 100 + n_seen : 240])
+    take = gapped(noisy, 7, np.r_[0:100, 100 + n_observed : 240])
 
     filled = fill_markers(tracks_of(take))
 

@@ -203,21 +203,21 @@ def test_many_gaps_need_no_more_trials(rng):
 def test_result_turns_with_the_axes_of_the_rig(rng):
     """A rig whose rest axes are a quarter turn about Z: X is its Y, Y its -X."""
     channels = encode(_without_arm(_swings(rng), GAP))
-    turn = quaternion_from_rotation_vector([0.0, 0.0, np.pi / 2])
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, np.pi / 2])
     references = {key: value.copy() for key, value in channels.references.items()}
     for key in set(references) - {BODY_POSITION}:
-        references[key][8:12] = multiply(turn, references[key][8:12])
+        references[key][8:12] = multiply(rotation, references[key][8:12])
     values = channels.values.copy()
-    values[:, :-1] = rotate(turn, values[:, :-1])
-    turned = replace(channels, values=values, references=references)
+    values[:, :-1] = rotate(rotation, values[:, :-1])
+    rotated = replace(channels, values=values, references=references)
 
     results = [
         predict_limbs(each, _interpolated(each), RATE, load_body_relation())[0]
-        for each in (channels, turned)
+        for each in (channels, rotated)
     ]
 
     predicted, also = (each.values.reshape(channels.values.shape)[GAP] for each in results)
-    assert_allclose(also[:, :-1], rotate(turn, predicted[:, :-1]), atol=1e-9)
+    assert_allclose(also[:, :-1], rotate(rotation, predicted[:, :-1]), atol=1e-9)
     deviation, same = (each.deviation.reshape(channels.values.shape)[GAP] for each in results)
     assert_allclose(same[:, :-1], deviation[:, :-1, [1, 0, 2]], atol=1e-9)
     assert np.ptp(deviation[:, :-1], axis=2).max() > 0.5

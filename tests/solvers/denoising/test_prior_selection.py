@@ -125,10 +125,10 @@ def test_selects_examples_of_the_movement_but_not_of_stillness(rng):
 
 def test_own_covariance_of_a_long_take_does_not_outweigh_its_smoothness(rng):
     """Twenty minutes at 30 Hz."""
-    rough, is_seen = rng.normal(size=(36000, 3)), np.ones(3, dtype=bool)
+    rough, is_observed = rng.normal(size=(36000, 3)), np.ones(3, dtype=bool)
     windows = Windows(len(rough), LENGTH, 1.0)
 
-    prior = build_take_prior(rough, np.ones(3), is_seen, windows, LENGTH, RATE)
+    prior = build_take_prior(rough, np.ones(3), is_observed, windows, LENGTH, RATE)
 
     assert 0.2 < prior.own_weight < 0.5
 

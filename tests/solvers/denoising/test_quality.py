@@ -144,9 +144,9 @@ def test_foot_that_turns_on_the_tips_of_its_toes_does_not_slide():
     standing = np.zeros((walk.n_frames, 2), dtype=bool)
     standing[:, 0] = True
     angle = np.linspace(0.0, 1.0, walk.n_frames)
-    turn = np.stack([np.cos(angle), 0 * angle, 0 * angle, np.sin(angle)], axis=-1)
+    rotation = np.stack([np.cos(angle), 0 * angle, 0 * angle, np.sin(angle)], axis=-1)
     rotations = np.repeat(walk.rotations[:1], walk.n_frames, axis=0)
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
     turning = walk.with_poses(rotations, np.zeros((walk.n_frames, 3)))
     tips = forward_kinematics(turning).positions[:, tip]
     turning = turning.with_poses(rotations, turning.root_positions - tips)

@@ -27,10 +27,10 @@ RATE = 30.0
 def spin() -> Motion:
     """A walk whose body makes two full turns within a second."""
     walk = walking_gait(GaitSettings(duration=3.0, frame_rate=RATE))
-    turn = about((0.0, 0.0, 1.0), 720.0 * smoothstep(np.arange(walk.n_frames), 30, 60))
+    rotation = about((0.0, 0.0, 1.0), 720.0 * smoothstep(np.arange(walk.n_frames), 30, 60))
     rotations = walk.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
-    return walk.with_poses(rotations, rotate(turn, walk.root_positions))
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
+    return walk.with_poses(rotations, rotate(rotation, walk.root_positions))
 
 
 def about(axis: tuple[float, float, float], degrees: Array) -> Array:
@@ -94,8 +94,8 @@ def test_clean_spin_comes_back(spin, bone):
 def test_joint_that_turns_on_and_on_comes_back_through_its_channels(spin, degrees):
     rotations = spin.rotations.copy()
     arm = spin.skeleton.index("LeftArm")
-    turn = about((0.6, 0.0, 0.8), degrees * smoothstep(np.arange(spin.n_frames), 10, 80))
-    rotations[:, arm] = multiply(rotations[:, arm], turn)
+    rotation = about((0.6, 0.0, 0.8), degrees * smoothstep(np.arange(spin.n_frames), 10, 80))
+    rotations[:, arm] = multiply(rotations[:, arm], rotation)
     rotations[20:26, arm] = np.nan
     motion = spin.with_poses(rotations)
 
@@ -111,8 +111,8 @@ def test_joint_that_turns_on_and_on_comes_back_through_its_channels(spin, degree
 
 def test_somersault_is_continuous(spin):
     rotations = spin.rotations.copy()
-    turn = about((1.0, 0.0, 0.0), 360.0 * smoothstep(np.arange(spin.n_frames), 60, 85))
-    rotations[:, 0] = multiply(rotations[:, 0], turn)
+    rotation = about((1.0, 0.0, 0.0), 360.0 * smoothstep(np.arange(spin.n_frames), 60, 85))
+    rotations[:, 0] = multiply(rotations[:, 0], rotation)
 
     channels = encode(spin.with_poses(rotations))
 

@@ -101,10 +101,12 @@ def test_hips_on_a_chair_do_not_count():
 def test_surface_is_that_of_the_pelvis_whatever_way_the_rest_pose_faces():
     skeleton = walker_skeleton()
     offsets = {}
-    for name, turn in (("as it is", np.eye(3)), ("turned", np.diag([-1.0, -1.0, 1.0]))):
-        turned = skeleton.__class__(skeleton.names, skeleton.parents, skeleton.offsets @ turn)
-        hips = find_supports(turned, find_humanoid_map(turned))[-1]
-        offsets[name] = np.array([point.offset for point in hips.points]) @ turn
+    for name, rotation in (("as it is", np.eye(3)), ("turned", np.diag([-1.0, -1.0, 1.0]))):
+        rotated = skeleton.__class__(
+            skeleton.names, skeleton.parents, skeleton.offsets @ rotation
+        )
+        hips = find_supports(rotated, find_humanoid_map(rotated))[-1]
+        offsets[name] = np.array([point.offset for point in hips.points]) @ rotation
 
     assert hips.name == "hips" and hips.chain == ()
     assert offsets["turned"] == pytest.approx(offsets["as it is"])

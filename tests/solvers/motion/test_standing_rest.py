@@ -29,18 +29,18 @@ def with_bones_along_axes(motion: Motion) -> Motion:
     })  # fmt: skip
 
 
-def with_turned_rest(motion: Motion, rest_turns: dict[str, tuple[float, ...]]) -> Motion:
+def with_turned_rest(motion: Motion, rest_rotations: dict[str, tuple[float, ...]]) -> Motion:
     """Return the same motion; in the rest pose limbs are turned by rotation vectors."""
     skeleton = motion.skeleton
     turns = np.tile(IDENTITY, (skeleton.n_joints, 1))
-    for role, vector in rest_turns.items():
-        turn = quaternion_from_rotation_vector(np.array(vector))
+    for role, vector in rest_rotations.items():
+        rotation = quaternion_from_rotation_vector(np.array(vector))
         below = skeleton.subtree(INDICES[role])
-        turns[below] = multiply(turn, turns[below])
+        turns[below] = multiply(rotation, turns[below])
     parents = list(skeleton.parents)
-    parent_turns = np.concatenate([IDENTITY[None], turns[parents[1:]]])
-    rotations = multiply(multiply(parent_turns, motion.rotations), inverse(turns))
-    offsets = rotate(parent_turns, skeleton.offsets)
+    parent_rotations = np.concatenate([IDENTITY[None], turns[parents[1:]]])
+    rotations = multiply(multiply(parent_rotations, motion.rotations), inverse(turns))
+    offsets = rotate(parent_rotations, skeleton.offsets)
     odd = Skeleton(skeleton.names, skeleton.parents, offsets)
     return Motion(odd, rotations, motion.root_positions, motion.frame_rate)
 
@@ -81,9 +81,9 @@ def test_a_body_that_rests_standing_is_left_as_it_is():
 
 def test_a_trunk_that_rests_turned_away_from_the_legs_is_no_person():
     """Bones along axes may leave the shoulders across the hips, with the legs straight down."""
-    turned = with_turned_rest(WALK, {"spine": (0.0, 0.0, np.pi / 2)})
+    rotated = with_turned_rest(WALK, {"spine": (0.0, 0.0, np.pi / 2)})
 
-    stood = with_standing_rest(turned, HUMANOID)
+    stood = with_standing_rest(rotated, HUMANOID)
 
     rest = stood.skeleton.rest_positions
     shoulders = rest[INDICES["leftUpperArm"]] - rest[INDICES["rightUpperArm"]]

@@ -122,9 +122,9 @@ def test_a_hinge_turns_about_its_axis_only(start, rng):
     moved = start.moved(step)
 
     before, after = start.motion.rotations[:, knee], moved.motion.rotations[:, knee]
-    turns = rotation_vector_from_quaternion(multiply(after, inverse(before)))
-    assert_allclose(turns, step[:, start.columns(knee)] * axis, atol=1e-9)
-    assert_allclose(moved.deviations()[:, start.columns(knee)] * axis, turns, atol=1e-9)
+    rotations = rotation_vector_from_quaternion(multiply(after, inverse(before)))
+    assert_allclose(rotations, step[:, start.columns(knee)] * axis, atol=1e-9)
+    assert_allclose(moved.deviations()[:, start.columns(knee)] * axis, rotations, atol=1e-9)
 
 
 def test_a_motion_without_goals_but_its_source_comes_back(start, shaken):
@@ -190,9 +190,9 @@ def test_only_straight_limbs_are_bent_before_a_fit(start, flexion):
     """A knee that is bent, the wrong way too, starts as it is."""
     _, knee, ankle = start.joints
     axis = hinge_axis(start, knee, ankle)
-    turn = flexion - hinge_flexion(start, knee, ankle, axis)
+    rotation = flexion - hinge_flexion(start, knee, ankle, axis)
     step = np.zeros((N_FRAMES, start.n_variables))
-    step[:, start.columns(knee)] = turn[:, None] * axis
+    step[:, start.columns(knee)] = rotation[:, None] * axis
     bent = start.moved(step)
 
     after = with_bent_hinge(bent, hinge_limit(bent, knee, ankle, axis, 0.1))

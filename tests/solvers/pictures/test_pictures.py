@@ -138,15 +138,15 @@ def test_figures_are_drawn_across_a_gap_of_the_root(swinging_leg):
 def test_view_turns_with_hips_below_a_still_bone():
     """Of a walk to the east, as of one to the south, the side is drawn."""
     south = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
-    turn = quaternion_from_rotation_vector([0.0, 0.0, np.pi / 2])
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, np.pi / 2])
     skeleton = south.skeleton
     parents = (-1, *(parent + 1 for parent in skeleton.parents))
     offsets = np.vstack([np.zeros(3), skeleton.offsets])
     offsets[1] = 0.0
     rig = Skeleton(("root", *skeleton.names), parents, offsets)
     rotations = np.insert(south.rotations, 0, IDENTITY, axis=1)
-    rotations[:, 1] = multiply(turn, south.rotations[:, 0])
-    east = Motion(rig, rotations, rotate(turn, south.root_positions), south.frame_rate)
+    rotations[:, 1] = multiply(rotation, south.rotations[:, 0])
+    east = Motion(rig, rotations, rotate(rotation, south.root_positions), south.frame_rate)
 
     expected, actual = (draw_stick_figures({"walk": each}).pixels for each in (south, east))
 

@@ -83,11 +83,11 @@ def test_every_body_keeps_the_time_line_of_the_file(tmp_path, crowd):
     path = crowd(tmp_path / "take")
     anna, ben = (read_recording(path, body=body).tracks for body in ("1", "2"))
 
-    seen = [np.flatnonzero(each.visible.any(axis=1)) for each in (anna, ben)]
+    observed = [np.flatnonzero(each.visible.any(axis=1)) for each in (anna, ben)]
 
-    assert [each[0] for each in seen] == [0, 30]
-    assert_allclose([each[-1] for each in seen], [79, 99], atol=1)  # stamps are rounded
-    assert_allclose([len(each) for each in seen], [80, 70], atol=1)
+    assert [each[0] for each in observed] == [0, 30]
+    assert_allclose([each[-1] for each in observed], [79, 99], atol=1)  # stamps are rounded
+    assert_allclose([len(each) for each in observed], [80, 70], atol=1)
     truth = moving(N, len(ben.names), 1000)
     extents = [np.sort(each[..., :3].ravel()) for each in (truth[40], ben.positions[40])]
     ratio = np.ptp(extents[1]) / np.ptp(extents[0])  # millimeters, or signs of axes, differ

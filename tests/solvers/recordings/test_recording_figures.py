@@ -46,12 +46,12 @@ def test_joints_of_a_camera_name_it(tracks):
 
 def test_the_end_sites_of_a_skeleton_do_not_count():
     skeleton = Skeleton(("hips", "leg", "leg_end"), (-1, 0, 1), np.ones((3, 3)))
-    turns = np.tile([1.0, 0.0, 0.0, 0.0], (N_FRAMES, 3, 1))
-    turns[3:5, 1] = np.nan
+    rotations = np.tile([1.0, 0.0, 0.0, 0.0], (N_FRAMES, 3, 1))
+    rotations[3:5, 1] = np.nan
     indices = np.zeros((N_FRAMES, 3))
     indices[0] = np.nan
 
-    figures = recording_figures(Motion(skeleton, turns, indices, RATE))
+    figures = recording_figures(Motion(skeleton, rotations, indices, RATE))
 
     assert (figures["joints"], figures["gaps"], figures["longest_gap_s"]) == (2, 2, 2 / RATE)
     assert figures["missing_share"] == pytest.approx(3 / 20)

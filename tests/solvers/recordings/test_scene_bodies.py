@@ -81,8 +81,8 @@ def test_the_factor_of_the_reader_is_undone():
 def test_an_actor_who_never_stands_is_reported_with_the_axis_to_choose(
     conventions, degrees, up
 ):
-    turn = about("X", degrees)
-    lying = rotate_motion(walk(conventions), turn, turn)
+    rotation = about("X", degrees)
+    lying = rotate_motion(walk(conventions), rotation, rotation)
 
     (message,) = describe_lying([lying])
 
@@ -91,36 +91,36 @@ def test_an_actor_who_never_stands_is_reported_with_the_axis_to_choose(
 
 
 def test_a_take_that_stands_confirms_the_axis_of_the_file():
-    turn = about("X", 90)
+    rotation = about("X", 90)
 
     assert not describe_lying([walk()])
-    assert not describe_lying([rotate_motion(walk(), turn, turn), walk()])
+    assert not describe_lying([rotate_motion(walk(), rotation, rotation), walk()])
 
 
 @pytest.mark.parametrize(
     ("conventions", "degrees", "up"), [(Y_UP, 90, "Z"), (Z_UP, -90, "Y"), (Y_UP, 180, "-Y")]
 )
 def test_a_walk_up_the_wall_is_turned_and_reported(conventions, degrees, up):
-    turn = about("X", degrees)
+    rotation = about("X", degrees)
 
-    (turned,) = stand_scene_upright([rotate_motion(walk(conventions), turn, turn)])
+    (rotated,) = stand_scene_upright([rotate_motion(walk(conventions), rotation, rotation)])
 
-    assert trunk_of(turned)[2] > 0.9
-    assert np.ptp(turned.root_positions[:, 2]) == pytest.approx(0.0, abs=1e-9)
-    assert turned.conventions.up == up
-    (message,) = describe_guesses(turned)
+    assert trunk_of(rotated)[2] > 0.9
+    assert np.ptp(rotated.root_positions[:, 2]) == pytest.approx(0.0, abs=1e-9)
+    assert rotated.conventions.up == up
+    (message,) = describe_guesses(rotated)
     assert f"states that {conventions.up} is up, but the actor stands along {up}" in message
-    back = reinterpreted(turned, conventions.up, None)
+    back = reinterpreted(rotated, conventions.up, None)
     assert np.abs(trunk_of(back)[2]) < 0.1 or degrees == 180
     assert not describe_guesses(back)
 
 
 def lying(rest: str) -> Motion:
     """Return a body that lies on the floor, with its feet at the origin along its length."""
-    turn = about("X", 90)
-    still = rotate_motion(in_place(walk()), turn, turn)
+    rotation = about("X", 90)
+    still = rotate_motion(in_place(walk()), rotation, rotation)
     if rest == "stands":
-        return rotate_motion(in_place(walk()), turn, STILL)
+        return rotate_motion(in_place(walk()), rotation, STILL)
     if rest == "is a frame":
         offsets = still.skeleton.offsets.copy()
         offsets[NAMES.index("left_elbow")] += [0.0, 0.1, 0.2]
@@ -143,24 +143,24 @@ def test_an_actor_who_really_lies_is_left_lying(rest):
 
 
 def test_a_body_in_place_is_turned_by_its_rest_pose_and_the_floor():
-    turn = about("X", 90)
+    rotation = about("X", 90)
 
-    (turned,) = stand_scene_upright([rotate_motion(in_place(walk()), turn, turn)])
+    (rotated,) = stand_scene_upright([rotate_motion(in_place(walk()), rotation, rotation)])
 
-    assert trunk_of(turned)[2] > 0.9
+    assert trunk_of(rotated)[2] > 0.9
 
 
 def test_one_take_that_stands_confirms_the_axis_for_all():
-    turn = about("X", 90)
-    takes = [rotate_motion(walk(), turn, turn), walk()]
+    rotation = about("X", 90)
+    takes = [rotate_motion(walk(), rotation, rotation), walk()]
 
     assert stand_scene_upright(takes) == takes
 
 
 def test_an_actor_who_crawls_head_first_is_left_lying():
     """Its feet are at the origin of the file's other axis in most frames."""
-    turn = about("X", 90)
-    still = rotate_motion(in_place(walk()), turn, turn)
+    rotation = about("X", 90)
+    still = rotate_motion(in_place(walk()), rotation, rotation)
     ahead = np.maximum(np.linspace(-2.0, 1.0, 60), 0.0)[::-1, None] * [0.0, -3.0, 0.0]
 
     take = replace(still, root_positions=still.root_positions + ahead)

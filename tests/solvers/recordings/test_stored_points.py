@@ -104,7 +104,7 @@ def person() -> np.ndarray:
     return points
 
 
-TURNS = {
+ROTATIONS = {
     "z up": np.eye(3),
     "y up": np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0.0]]),  # x, -z, y
     "y down, as a camera sees it": np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0.0]]),
@@ -114,10 +114,10 @@ TURNS = {
 
 
 @pytest.mark.parametrize("unit", [1.0, 0.001])
-@pytest.mark.parametrize("axes", TURNS)
+@pytest.mark.parametrize("axes", ROTATIONS)
 def test_freemocap_comes_out_upright_in_meters(write, person, unit, axes):
     """In all axes and units that versions of freemocap had; never mirrored."""
-    into_file = np.linalg.inv(TURNS[axes])
+    into_file = np.linalg.inv(ROTATIONS[axes])
 
     recording = read_recording(write(npy(person @ into_file.T / unit)))
 

@@ -55,9 +55,9 @@ def test_no_observed_frame_is_dropped_next_to_a_gap(rng):
     times = np.cumsum(steps) * FRAME
 
     clock = ConstantRate("take", times)
-    seen = np.flatnonzero(np.isfinite(clock.positions(np.zeros((300, 1, 3)))[:, 0, 0]))
+    observed = np.flatnonzero(np.isfinite(clock.positions(np.zeros((300, 1, 3)))[:, 0, 0]))
 
-    away = np.abs((times - times[0])[:, None] - seen / clock.frame_rate).min(axis=1)
+    away = np.abs((times - times[0])[:, None] - observed / clock.frame_rate).min(axis=1)
     assert away.max() <= 0.5 * FRAME + 1e-9
 
 

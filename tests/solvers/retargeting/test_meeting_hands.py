@@ -54,8 +54,8 @@ def test_hands_that_only_come_near_each_other_keep_their_paths():
     """At a third of an arm from each other, with a tenth of the weight of hands that meet."""
     free, wanted = np.array([[0.20, 0.0, 0.0]]), np.array([[0.10, 0.0, 0.0]])
     paths = [
-        HandPath(side, (0, 1, 2), 0.5, place, None)
-        for side, place in (("left", free), ("right", 0.0 * free))
+        HandPath(side, (0, 1, 2), 0.5, path, None)
+        for side, path in (("left", free), ("right", 0.0 * free))
     ]
 
     found = Meeting(wanted, np.array([0.1])).wanted(*paths)

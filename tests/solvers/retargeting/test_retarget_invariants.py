@@ -206,5 +206,5 @@ def test_straight_legs_of_shorter_steps_do_not_bend_sideways(scale):
 
     knees = find_humanoid_map(rig).indices(rig)
     for side in ("left", "right"):
-        turned = rotation_vector_from_quaternion(result.rotations[:, knees[f"{side}LowerLeg"]])
-        assert np.degrees(np.abs(turned[:, 1:]).max()) < 1.0
+        rotated = rotation_vector_from_quaternion(result.rotations[:, knees[f"{side}LowerLeg"]])
+        assert np.degrees(np.abs(rotated[:, 1:]).max()) < 1.0

@@ -115,8 +115,8 @@ def test_clips_are_reranked_by_their_nearest_neighbors():
 
 def test_reciprocal_neighbor_counts_more_than_another_one():
     """The first clip is among the two nearest of the second, but not of the third one."""
-    places = np.array([0.0, 1.0, -1.1, -1.6, -1.7, 5.0], dtype=np.float32)
-    between = np.abs(places[:, None] - places)
+    values = np.array([0.0, 1.0, -1.1, -1.6, -1.7, 5.0], dtype=np.float32)
+    between = np.abs(values[:, None] - values)
     first = [
         reranking.rerank_by_neighbors(np.array(distances, dtype=np.float32), between, 2)[0]
         for distances in ((1.0, 0.9, 1.1, 1.0, 1.0, 1.0), (1.0, 1.1, 0.9, 1.0, 1.0, 1.0))

@@ -1,4 +1,4 @@
-"""Recognize the people of a stream by their places, whatever their sender calls them."""
+"""Recognize the people of a stream by their positions, whatever their sender calls them."""
 
 import math
 from dataclasses import dataclass
@@ -15,20 +15,20 @@ BODY_TIMEOUT_S = 1.0
 NEW_STREAM_S = 2.0
 """Minimum backward jump in time that starts a new stream, seconds. It guards packets that
 arrive in another order, which are a fraction of a second late."""
-MIN_EXCHANGE_M = 0.25
+MIN_SWITCH_M = 0.25
 """Meters: a person who jumps as far to where another one was has the other's identity. It
-guards people whose places differ by less than sensors err."""
-EXCHANGE_RATIO = 0.5
-"""Distance to the other's place over that to the own one, below which identities were
-exchanged. It guards people who pass each other."""
+guards people whose positions differ by less than sensors err."""
+SWITCH_RATIO = 0.5
+"""Distance to the other's position over that to the own one, below which identities were
+switched. It guards people who pass each other."""
 MAX_RETURN_M = 0.5
-"""Meters from the last place within which a new identity is that of someone who was just lost.
-It guards people who come in where another one went."""
+"""Meters from the last position within which a new identity is that of someone who was just
+missing. It guards people who come in where another one went."""
 MIN_ABSENCE_S = 0.1
-"""Seconds after which someone counts as lost. It guards against frames that come in another
+"""Seconds after which someone counts as missing. It guards against frames that come in another
 order; three frames at 30 Hz."""
 
-Place = tuple[float, float, float]
+Position = tuple[float, float, float]
 
 
 @dataclass
@@ -47,16 +47,16 @@ class Person:
 
     number: int
     body: int
-    place: Place
+    position: Position
     time: float
 
 
 class StreamPeople:
-    """Follows people by their places, so that exchanged and new identities change nothing.
+    """Follows people by their positions, so that switched and new identities change nothing.
 
     A tracker that confuses two people continues the path of each under the identity of the
-    other: both jump at once. A person who is lost and found again has a new identity at the
-    same place.
+    other: both jump at once. A person who is missing for a while has a new identity at the
+    same position.
     """
 
     def __init__(self) -> None:
@@ -79,14 +79,14 @@ class StreamPeople:
         """Return who a frame shows; None beyond the maximum number of people."""
         self._forget_absent(frame.time)
         person = self._by_identity.get(frame.body)
-        place = _place_of(frame)
+        position = _position_of(frame)
         if person is None:
-            person = self._returned(frame, place) or self._new(frame, place)
-        elif place is not None:
-            person = self._unexchanged(frame.body, person, place)
+            person = self._returned(frame, position) or self._new(frame, position)
+        elif position is not None:
+            person = self._reidentified(frame.body, person, position)
         if person is not None and frame.time >= person.time:
             person.time = frame.time
-            person.place = place or person.place
+            person.position = position or person.position
         return person
 
     def _forget_absent(self, time: float) -> None:
@@ -94,42 +94,47 @@ class StreamPeople:
             if not -NEW_STREAM_S < time - person.time <= BODY_TIMEOUT_S:
                 del self._by_identity[identity]
 
-    def _unexchanged(self, identity: int, person: Person, place: Place) -> Person:
-        """Return whose path a place continues, and exchange both identities if needed."""
-        jump = math.dist(place, person.place)
-        if jump < MIN_EXCHANGE_M:
+    def _reidentified(self, identity: int, person: Person, position: Position) -> Person:
+        """Return whose path a position continues, and undo an identity switch."""
+        jump = math.dist(position, person.position)
+        if jump < MIN_SWITCH_M:
             return person
         for other_identity, other in self._by_identity.items():
-            if other is not person and math.dist(place, other.place) < EXCHANGE_RATIO * jump:
+            if (
+                other is not person
+                and math.dist(position, other.position) < SWITCH_RATIO * jump
+            ):
                 self._by_identity[identity] = other
                 self._by_identity[other_identity] = person
                 return other
         return person
 
-    def _returned(self, frame: LiveFrame | PoseFrame, place: Place | None) -> Person | None:
-        """Return who was lost at this place and has a new identity, if anyone."""
-        if place is None:
+    def _returned(
+        self, frame: LiveFrame | PoseFrame, position: Position | None
+    ) -> Person | None:
+        """Return who was missing at this position and has a new identity, if anyone."""
+        if position is None:
             return None
         for identity, person in self._by_identity.items():
-            is_lost = frame.time - person.time > MIN_ABSENCE_S
-            if is_lost and math.dist(place, person.place) < MAX_RETURN_M:
+            is_missing = frame.time - person.time > MIN_ABSENCE_S
+            if is_missing and math.dist(position, person.position) < MAX_RETURN_M:
                 del self._by_identity[identity]
                 self._by_identity[frame.body] = person
                 return person
         return None
 
-    def _new(self, frame: LiveFrame | PoseFrame, place: Place | None) -> Person | None:
+    def _new(self, frame: LiveFrame | PoseFrame, position: Position | None) -> Person | None:
         """Give someone new the lowest free number."""
-        if place is None or self.n_present >= MAX_PEOPLE:
+        if position is None or self.n_present >= MAX_PEOPLE:
             return None
         taken = {person.number for person in self._by_identity.values()}
         number = min(set(range(1, MAX_PEOPLE + 1)) - taken)
-        person = Person(number, frame.body, place, frame.time)
+        person = Person(number, frame.body, position, frame.time)
         self._by_identity[frame.body] = person
         return person
 
 
-def _place_of(frame: LiveFrame | PoseFrame) -> Place | None:
+def _position_of(frame: LiveFrame | PoseFrame) -> Position | None:
     """Return where a body is; None if no joint is observed."""
     if isinstance(frame, PoseFrame):
         x, y, z = frame.root_position.tolist()

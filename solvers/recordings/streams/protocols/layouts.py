@@ -100,10 +100,10 @@ def motion_in_layout(
     layout = layout if isinstance(layout, StreamLayout) else layout(tuple(joints))
     alignment = t_pose_alignment(motion.skeleton, roles)
     poses = forward_kinematics(motion)
-    turned = multiply(poses.rotations, alignment)
+    rotated = multiply(poses.rotations, alignment)
     world = np.empty((motion.n_frames, len(layout.names), 4))
     for bone, (role, parent) in enumerate(zip(layout.roles, layout.parents, strict=True)):
-        world[:, bone] = turned[:, joints[role]] if role in joints else world[:, parent]
+        world[:, bone] = rotated[:, joints[role]] if role in joints else world[:, parent]
     local = multiply(inverse(world[:, np.maximum(layout.parents, 0)]), world)
     local[:, 0] = world[:, 0]
     skeleton = _t_pose(motion.skeleton, joints, alignment, layout)

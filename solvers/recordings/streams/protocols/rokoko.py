@@ -148,7 +148,7 @@ class RokokoDecoder:
         if roles[:1] != ["hips"]:
             raise InvalidMotionError("An actor of Rokoko has no hip.")
         positions = _vectors(bones, roles, "position", "xyz")
-        turned = checked_rotations(_vectors(bones, roles, "rotation", "wxyz"))
+        rotated = checked_rotations(_vectors(bones, roles, "rotation", "wxyz"))
         rest = np.array([T_POSE[role] for role in roles])
         return poses.frame(
             time,
@@ -156,14 +156,14 @@ class RokokoDecoder:
             roles,
             parent_indices(roles),
             points_from_unity(checked_positions(positions)),
-            rotations_from_unity(multiply(turned, inverse(rest))),
+            rotations_from_unity(multiply(rotated, inverse(rest))),
         )
 
 
 def encode_rokoko(frame: PoseFrame, positions: Array, rotations: Array) -> bytes:
     """Return version 3 of the JSON, from world positions and rotations of humanoid roles."""
     rest = np.array([T_POSE[role] for role in frame.names])
-    turned = multiply(rotations_to_unity(rotations), rest).round(6)
+    rotated = multiply(rotations_to_unity(rotations), rest).round(6)
     points = points_to_unity(positions).round(5)
     body = {
         BONES[role]: {
@@ -171,7 +171,7 @@ def encode_rokoko(frame: PoseFrame, positions: Array, rotations: Array) -> bytes
             "rotation": dict(zip("wxyz", rotation, strict=True)),
         }
         for role, point, rotation in zip(
-            frame.names, points.tolist(), turned.tolist(), strict=True
+            frame.names, points.tolist(), rotated.tolist(), strict=True
         )
     }
     actor = {"name": f"actor {frame.body}", "body": body}

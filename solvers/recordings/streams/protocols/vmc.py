@@ -93,7 +93,7 @@ class VmcDecoder:
     def __init__(self) -> None:
         self._root: tuple[float, ...] = ROOT_AT_ORIGIN
         self._bones: dict[str, tuple[float, ...]] = {}
-        self._seen: dict[str, int] = {}
+        self._last_frames: dict[str, int] = {}
         self._fresh: set[str] = set()
         self._n_frames = 0
         self._clock: _Clock | None = None
@@ -132,7 +132,7 @@ class VmcDecoder:
             self._bones |= packet.bones
             self._fresh |= packet.bones.keys()
             self._frame_root = self._root
-        expected = {role for role in self._seen if not self._is_gone(role)}
+        expected = {role for role in self._last_frames if not self._is_gone(role)}
         if expected and self._fresh >= expected:
             self._frame_root = self._root
             yield self._frame()
@@ -146,15 +146,15 @@ class VmcDecoder:
             self._stands_still = True
 
     def _is_gone(self, role: str) -> bool:
-        return self._n_frames - self._seen[role] > MAX_MISSED_FRAMES
+        return self._n_frames - self._last_frames[role] > MAX_MISSED_FRAMES
 
     def _frame(self) -> PoseFrame:
         """Return the frame of the bones that came last."""
         self._n_frames += 1
-        self._seen |= dict.fromkeys(self._fresh, self._n_frames)
+        self._last_frames |= dict.fromkeys(self._fresh, self._n_frames)
         self._fresh.clear()
-        for role in [role for role in self._seen if self._is_gone(role)]:
-            del self._seen[role], self._bones[role]
+        for role in [role for role in self._last_frames if self._is_gone(role)]:
+            del self._last_frames[role], self._bones[role]
         if "hips" not in self._bones:
             raise InvalidMotionError("A frame has no hips.")
         roles = sorted_roles(self._bones)

@@ -139,7 +139,7 @@ class XsensDecoder:
             NAMES,
             PARENTS,
             _forward(self._unit * raw),
-            _turned(rotations),
+            _z_up(rotations),
         )
 
 
@@ -180,7 +180,7 @@ def _unforward(points: Array) -> Array:
     return np.stack([-y, x, z], axis=-1)
 
 
-def _turned(rotations: Array) -> Array:
+def _z_up(rotations: Array) -> Array:
     return np.concatenate([rotations[..., :1], _forward(rotations[..., 1:])], axis=-1)
 
 

@@ -27,8 +27,8 @@ def prepare() -> dict[str, object]:
     """Make feet slide: a swaying root, travel too long, noise, and none of these."""
     plain = walk("07_11", 1)
     swaying, skating = walk("10_04", 2), walk("32_01", 2)
-    place = skating.root_positions.copy()
-    place[:, :2] += EXTRA_TRAVEL_FRACTION * (place[:, :2] - place[0, :2])
+    path = skating.root_positions.copy()
+    path[:, :2] += EXTRA_TRAVEL_FRACTION * (path[:, :2] - path[0, :2])
     noisy, kick = walk("07_03"), hdm05("kickLFront1Reps", 2)
     punch = variety("02_05").slice(600, 900)
     dance = variety("salsa_01").slice(300, 500)
@@ -36,7 +36,7 @@ def prepare() -> dict[str, object]:
     pairs = {
         "walk 120 Hz": (plain, plain),
         "sway 60 Hz": (swaying, corrupt(swaying, sway)),
-        "skating 60 Hz": (skating, skating.with_poses(root_positions=place)),
+        "skating 60 Hz": (skating, skating.with_poses(root_positions=path)),
         "noise 30 Hz": (noisy, corrupt(noisy, CorruptionSettings(jitter=1, root_jitter=0.003))),
         "kick 30 Hz": (kick, corrupt(kick, sway)),
         "punch 120 Hz": (punch, corrupt(punch, sway)),
@@ -112,8 +112,8 @@ def _supported(name: str, made: MadeTake, given: Motion) -> dict[str, float]:
             (after.positions - before.positions)[:, arms["Hand"]], axis=-1).mean()),
     }  # fmt: skip
     for part, joints in arms.items():
-        turn = angle_between(planted.rotations[:, joints], given.rotations[:, joints])
-        figures[f"{name}: {part} deg"] = float(np.degrees(turn).mean())
+        angles = angle_between(planted.rotations[:, joints], given.rotations[:, joints])
+        figures[f"{name}: {part} deg"] = float(np.degrees(angles).mean())
     return figures
 
 

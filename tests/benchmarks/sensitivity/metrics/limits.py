@@ -26,8 +26,8 @@ def prepare() -> dict[str, object]:
     rotations = given.rotations.copy()
     for joint, axis in (("LeftLeg", (-1.0, 0.0, 0.0)), ("RightForeArm", (0.0, 1.0, 0.0))):
         column = truth.skeleton.names.index(joint)
-        turn = quaternion_from_rotation_vector(np.radians(70.0) * np.array(axis))
-        rotations[WRONG_FRAMES, column] = multiply(rotations[WRONG_FRAMES, column], turn)
+        rotation = quaternion_from_rotation_vector(np.radians(70.0) * np.array(axis))
+        rotations[WRONG_FRAMES, column] = multiply(rotations[WRONG_FRAMES, column], rotation)
     return {
         "truth": truth,
         "given": given.with_poses(rotations),

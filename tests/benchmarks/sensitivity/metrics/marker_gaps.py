@@ -23,9 +23,9 @@ def prepare() -> dict[str, object]:
         tracks = read_recording(clips.DATA / file)
         assert isinstance(tracks, Tracks)
         tracks = tracks.slice(start, min(start + N_FRAMES, tracks.n_frames))
-        seen = np.flatnonzero(tracks.visible[:, :n_markers].all(axis=0))
-        names = tuple(tracks.names[point] for point in seen)
-        truth = Tracks(names, tracks.positions[:, seen], tracks.frame_rate)
+        observed = np.flatnonzero(tracks.visible[:, :n_markers].all(axis=0))
+        names = tuple(tracks.names[point] for point in observed)
+        truth = Tracks(names, tracks.positions[:, observed], tracks.frame_rate)
         for number, seconds in GAPS:
             rng = np.random.default_rng(number)
             positions = truth.positions.copy()

@@ -42,9 +42,9 @@ def measure(
 
 def _clean() -> Tracks:
     tracks = read_c3d(clips.DATA / "mocap" / "05_13.c3d").slice(200, 440)
-    seen = np.flatnonzero(tracks.visible[:, :MARKERS].all(axis=0))
-    names = tuple(tracks.names[point] for point in seen)
-    return Tracks(names, tracks.positions[:, seen], tracks.frame_rate)
+    observed = np.flatnonzero(tracks.visible[:, :MARKERS].all(axis=0))
+    names = tuple(tracks.names[point] for point in observed)
+    return Tracks(names, tracks.positions[:, observed], tracks.frame_rate)
 
 
 def _swaps(clean: Tracks) -> dict[str, tuple[Tracks, Tracks]]:

@@ -43,8 +43,8 @@ def measure(
     figures["cuts missed or false"] = 1.0 + len(found_cuts ^ set(cuts))
     tracks, parents = points
     rebuilt = motion_from_points(tracks, parents)
-    turn = angle_between(rebuilt.rotations[1:], rebuilt.rotations[:-1])
-    figures["points to motion: turning deg"] = float(np.degrees(turn).mean())
+    angles = angle_between(rebuilt.rotations[1:], rebuilt.rotations[:-1])
+    figures["points to motion: turning deg"] = float(np.degrees(angles).mean())
     there = resample(resample(to_resample, 30.0), to_resample.frame_rate)
     n = min(there.n_frames, to_resample.n_frames)
     figures["resampled: deg"] = angle_error(there.slice(0, n), to_resample.slice(0, n))
@@ -66,6 +66,6 @@ def _known_contacts() -> dict[str, tuple[Motion, Flags]]:
 
 def _joined(parts: list[Motion]) -> tuple[Motion, tuple[int, ...]]:
     rotations = np.concatenate([part.rotations for part in parts])
-    places = np.concatenate([part.root_positions for part in parts])
+    root_positions = np.concatenate([part.root_positions for part in parts])
     cuts = tuple(int(each) for each in np.cumsum([part.n_frames for part in parts])[:-1])
-    return Motion(parts[0].skeleton, rotations, places, parts[0].frame_rate), cuts
+    return Motion(parts[0].skeleton, rotations, root_positions, parts[0].frame_rate), cuts

@@ -69,13 +69,15 @@ def _faulty(clean: Motion, seed: int, shaking: str) -> tuple[Motion, list[Fault]
     faults = [(name, 10, stop) for name in gone]
     for joint, degrees in zip(joints, np.geomspace(4.0, 60.0, 12), strict=True):
         column, frame = names.index(joint), int(rng.integers(5, clean.n_frames - 5))
-        turned = multiply(rotations[frame, column], _random_turn(rng, degrees))
-        rotations[frame, column] = turned
+        rotated = multiply(rotations[frame, column], _random_rotation(rng, degrees))
+        rotations[frame, column] = rotated
         faults.append((joint, frame, frame + 1))
     column, start = names.index(shaking), clean.n_frames // 2
     shaken = range(start, start + clean.n_frames // 5)
     for frame in shaken:
-        rotations[frame, column] = multiply(rotations[frame, column], _random_turn(rng, 3.0))
+        rotations[frame, column] = multiply(
+            rotations[frame, column], _random_rotation(rng, 3.0)
+        )
     faults.append((shaking, shaken.start, shaken.stop))
     return given.with_poses(rotations), faults
 
@@ -101,6 +103,6 @@ def _mask(motion: Motion, faults: list[Fault]) -> np.ndarray:
     return mask
 
 
-def _random_turn(rng: np.random.Generator, degrees: float) -> Array:
+def _random_rotation(rng: np.random.Generator, degrees: float) -> Array:
     axis = rng.normal(size=3)
     return quaternion_from_rotation_vector(np.radians(degrees) * axis / np.linalg.norm(axis))

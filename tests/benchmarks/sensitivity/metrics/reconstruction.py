@@ -70,8 +70,8 @@ def measure(
         figures[f"{name}: jerk m/s3"] = float(np.linalg.norm(jerk, axis=-1).mean())
         fitted = forward_kinematics(result.motion).positions
         moving = result.motion.rotations
-        turn = angle_between(moving[1:], moving[:-1])
-        figures[f"{name}: turning deg"] = float(np.degrees(turn).mean())
+        angles = angle_between(moving[1:], moving[:-1])
+        figures[f"{name}: turning deg"] = float(np.degrees(angles).mean())
         figures[f"{name}: skeleton mm"] = _distance(
             result.motion, fitted, truth, [recording.names[joint] for joint in joints]
         )

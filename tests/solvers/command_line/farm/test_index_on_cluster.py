@@ -78,10 +78,10 @@ def test_killed_worker_changes_no_byte_and_a_run_that_lost_its_scheduler_continu
 
 def test_recordings_that_workers_do_not_see_are_one_sentence(call, takes, monkeypatch):
     """Otherwise each file would be refused, and its earlier clip removed."""
-    seen = []
+    indexed = []
 
     def connect(address, paths):
-        seen.extend(paths)
+        indexed.extend(paths)
         raise MocapAssistError("A worker does not see them.")
 
     monkeypatch.setattr("solvers.command_line.library_verbs.cluster_workers", connect)
@@ -89,5 +89,5 @@ def test_recordings_that_workers_do_not_see_are_one_sentence(call, takes, monkey
 
     words = ("index", library, takes / "take00.bvh", takes, "--cluster", "tcp://farm:1")
     assert call(*words)[::2] == (2, f"{library}: A worker does not see them.\n")
-    assert seen == [takes.resolve()]
+    assert indexed == [takes.resolve()]
     assert not library.exists()

@@ -110,9 +110,9 @@ def test_animals_are_not_people(animal):
 
 
 @pytest.mark.parametrize("family", ["Mixamo", "Unreal"])
-@pytest.mark.parametrize("turn", [(-1, -1, 1), (1, 1, 1)])
+@pytest.mark.parametrize("rotation", [(-1, -1, 1), (1, 1, 1)])
 @pytest.mark.parametrize("has_toes", [True, False])
-def test_sides_are_those_of_the_names_wherever_the_body_faces(family, turn, has_toes):
+def test_sides_are_those_of_the_names_wherever_the_body_faces(family, rotation, has_toes):
     """Names of no table, but for a side: an avatar that faces +Y is not mirrored."""
     rig = RIGS[family](1.0)
     kept = [j for j, name in enumerate(rig.names) if has_toes or not is_toe(name)]
@@ -121,7 +121,7 @@ def test_sides_are_those_of_the_names_wherever_the_body_faces(family, turn, has_
         f"bone{j}{side[int(np.sign(np.round(rig.rest_positions[j, 0], 3)))]}" for j in kept
     ]
     parents = [kept.index(rig.parents[j]) if rig.parents[j] >= 0 else -1 for j in kept]
-    other = Skeleton(tuple(names), tuple(parents), rig.offsets[kept] * turn)
+    other = Skeleton(tuple(names), tuple(parents), rig.offsets[kept] * rotation)
 
     found = find_humanoid_map(other)
 
@@ -182,12 +182,12 @@ def test_any_rest_axes_and_a_neck_in_the_chest_keep_the_roles_of_the_names(rng):
     offsets[trunk] *= 0.28 * lengths[leg].sum() / lengths[trunk].sum()
     for _ in range(10):
         axes = normalize(rng.normal(size=(rig.n_joints, 4)))
-        turned = offsets.copy()
+        rotated = offsets.copy()
         for joint, parent in enumerate(rig.parents):
             if parent >= 0:
-                turned[joint] = rotate(inverse(axes[parent]), offsets[joint])
+                rotated[joint] = rotate(inverse(axes[parent]), offsets[joint])
 
-        found = find_humanoid_map(Skeleton(rig.names, rig.parents, turned))
+        found = find_humanoid_map(Skeleton(rig.names, rig.parents, rotated))
 
         assert found.joints == roles
 

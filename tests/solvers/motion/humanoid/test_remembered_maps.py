@@ -7,7 +7,7 @@ from rigs import mixamo
 from solvers.motion import find_humanoid_map
 
 
-def test_other_lengths_or_names_are_judged_again():
+def test_other_lengths_or_names_are_evaluated_again():
     rig = mixamo()
     found = find_humanoid_map(rig)
 

@@ -19,7 +19,7 @@ MAX_WRONG = 0.02
 MAX_FALSE_MARKS_HELD_OUT = 0.05
 
 
-def judged(joints):
+def estimated(joints):
     """Return the numbers of roles, of wrong ones, and of wrong ones without a mark."""
     skeleton = skeleton_from(joints)
     humanoid = find_humanoid_map(skeleton)
@@ -39,7 +39,7 @@ def judged(joints):
 def test_lengths_decide_where_names_are_shifted(number, shift):
     total = Counter()
     for family in list(FAMILIES)[number % EVERY_NTH :: EVERY_NTH]:
-        total += judged(SHIFTS[shift](joints_of(family)))
+        total += estimated(SHIFTS[shift](joints_of(family)))
 
     assert total["wrong"] <= MAX_WRONG * total["roles"]
     assert total["silent"] <= MAX_SILENT * total["roles"]
@@ -51,13 +51,13 @@ def test_names_of_held_out_rigs_never_mislead_in_silence(family, seed):
     total = Counter()
     for shift in SHIFTS.values():
         joints = joints_of(family)
-        total += judged(shift(joints if seed is None else reproportioned(joints, seed)))
+        total += estimated(shift(joints if seed is None else reproportioned(joints, seed)))
 
     assert total["silent"] <= MAX_SILENT * total["roles"]
 
 
 def test_right_names_of_held_out_rigs_are_believed():
-    total = sum((judged(joints_of(family)) for family in HELD_OUT), Counter())
+    total = sum((estimated(joints_of(family)) for family in HELD_OUT), Counter())
 
     assert total["silent"] == 0
     assert total["false_marks"] <= MAX_FALSE_MARKS_HELD_OUT * total["roles"]

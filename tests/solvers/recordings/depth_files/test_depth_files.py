@@ -254,12 +254,14 @@ def test_reading_joints_from_depth_reports_what_to_do(write):
 def test_a_camera_that_was_held_otherwise_sees_the_same_points(write, held, mirrored):
     """Turned about the axis of the camera, and their left and right swapped."""
     path = write(depth_npz(pictures(), cx=2.0, cy=3.0))
-    seen, turned = (
+    seen, rotated = (
         read_depth(path),
         read_depth(path, DepthSettings(held=held, mirrored=mirrored)),
     )
 
-    points = [each.camera.back_project(each.frame(3)).reshape(-1, 3) for each in (seen, turned)]
+    points = [
+        each.camera.back_project(each.frame(3)).reshape(-1, 3) for each in (seen, rotated)
+    ]
 
     x, y, z = (points[0] * (-1.0 if mirrored else 1.0, 1.0, 1.0)).T
     expected = {

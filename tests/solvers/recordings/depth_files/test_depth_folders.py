@@ -101,7 +101,7 @@ def test_stray_scanner_states_its_camera_and_time(tmp_path, depth):
     assert_allclose(all_frames(all_of_them), depth * 0.001, rtol=1e-6)
 
 
-TURNED = {  # Quarter turns of the telephone about its axis of sight, as the app writes them.
+ROTATED = {  # Quarter turns of the telephone about its axis of sight, as the app writes them.
     0: (1.0, 0.0, 0.0, 0.0),
     1: (0.5**0.5, 0.5**0.5, 0.0, 0.0),
     3: (0.5**0.5, -(0.5**0.5), 0.0, 0.0),
@@ -109,18 +109,18 @@ TURNED = {  # Quarter turns of the telephone about its axis of sight, as the app
 }
 
 
-@pytest.mark.parametrize("quarters", TURNED)
+@pytest.mark.parametrize("quarters", ROTATED)
 def test_a_telephone_that_was_held_upright_on_its_side_or_on_its_head(
     tmp_path, depth, quarters
 ):
     """Whatever the pose says is up must be the top of the picture."""
-    turn = TURNED[quarters]
-    x, y, z, w = turn
+    rotation = ROTATED[quarters]
+    x, y, z, w = rotation
     up = np.array([
         2 * (x * y + z * w),
         1 - 2 * (x * x + z * z),
     ])  # in the camera: x right, y down
-    folder = stray_scanner(tmp_path, depth, (0.0, 1.0, 0.0, *turn))
+    folder = stray_scanner(tmp_path, depth, (0.0, 1.0, 0.0, *rotation))
     all_of_them = DepthSettings(min_confidence=0)
 
     frame = read_depth(folder, all_of_them).frame(4)

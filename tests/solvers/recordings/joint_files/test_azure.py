@@ -52,9 +52,9 @@ def test_json_selects_the_longest_observed_body_and_keeps_gaps(write, values):
 
     recording = read_recording(write(azure_json(frames, [0, 33333, 66667, 266667])))
 
-    seen = recording.tracks.visible[:, 0]
-    assert seen.tolist() == [True] * 2 + [False] * 6 + [True]
-    assert_allclose(recording.tracks.positions[seen], upright(values[[0, 1, 3]]), atol=1e-4)
+    observed = recording.tracks.visible[:, 0]
+    assert observed.tolist() == [True] * 2 + [False] * 6 + [True]
+    assert_allclose(recording.tracks.positions[observed], upright(values[[0, 1, 3]]), atol=1e-4)
 
 
 def test_json_spelt_as_the_manual_spells_it(write, values):

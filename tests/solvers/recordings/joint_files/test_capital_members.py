@@ -24,13 +24,13 @@ def two():
 
     def joints(who, frame):
         aside = np.array((DISTANCE_M * who, 0.0, 0.0))
-        places = {
+        points = {
             f"{side.title()}{part}": positions[frame, roles[side + role]]
             for part, role in PARTS.items() for side in ("left", "right")
         }  # fmt: skip
         return {
-            name: dict(zip("XYZ", (place + aside).tolist(), strict=True))
-            for name, place in places.items()
+            name: dict(zip("XYZ", (position + aside).tolist(), strict=True))
+            for name, position in points.items()
         }
 
     return joints
@@ -77,10 +77,10 @@ def test_people_by_name_are_found(tmp_path, two):
     assert [body.name for body in list_bodies(write(tmp_path, frames))] == ["anna", "ben"]
 
 
-def test_frames_with_the_place_of_the_camera_are_no_places(tmp_path, two):
+def test_frames_with_the_position_of_the_camera_are_no_joints(tmp_path, two):
     """Before, the frames were taken for places of a joint, and the folder was read instead."""
-    place = {"X": 0.0, "Y": 0.0, "Z": 0.0}
-    frames = [{"Joints": two(0, k), "Position": place} for k in range(F)]
+    position = {"X": 0.0, "Y": 0.0, "Z": 0.0}
+    frames = [{"Joints": two(0, k), "Position": position} for k in range(F)]
     write(tmp_path, {"Frames": frames}, "take_2.json")
     path = write(tmp_path, {"Frames": frames}, "take_1.json")
 

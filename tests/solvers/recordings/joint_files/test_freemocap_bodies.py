@@ -52,8 +52,8 @@ def test_motion_follows_the_tracked_joints(walk, tmp_path):
 
     found = forward_kinematics(motion).positions
     for name in ("left_wrist", "right_elbow", "left_ankle", "right_knee", "neck_center"):
-        seen = recording.tracks.positions[:, recording.names.index(name)]
-        away = np.linalg.norm(found[:, motion.skeleton.names.index(name)] - seen, axis=1)
+        measured = recording.tracks.positions[:, recording.names.index(name)]
+        away = np.linalg.norm(found[:, motion.skeleton.names.index(name)] - measured, axis=1)
         assert away.mean() < 0.03, name
 
 

@@ -20,8 +20,8 @@ def test_words_that_contain_a_joint_are_no_joints(tmp_path, content):
     "spine_01", "lhip", "RKnee", "SpineBase", "headtop", "LOWER_LEG", "Bip01 L Foot", "PELVIS",
 ])  # fmt: skip
 def test_names_of_joints_are_found(tmp_path, name):
-    for place in ([0.1, 1, -2e-3], [None, [1, 2, 3]], {"X": 1}, {"pos": {"x": 1.0}}):
-        found = detect_format(write(tmp_path / "take.json", {name: place}))
+    for value in ([0.1, 1, -2e-3], [None, [1, 2, 3]], {"X": 1}, {"pos": {"x": 1.0}}):
+        found = detect_format(write(tmp_path / "take.json", {name: value}))
         assert found is not None and found.name == "JSON of joints"
 
 

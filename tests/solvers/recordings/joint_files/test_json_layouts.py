@@ -52,8 +52,8 @@ def paths(names, frames):
     return {name: [frame[name].tolist() for frame in frames] for name in names}
 
 
-def by_name(frame, place=coordinates):
-    return {name: place(point) for name, point in frame.items()}
+def by_name(frame, form=coordinates):
+    return {name: form(point) for name, point in frame.items()}
 
 
 LAYOUTS = {
@@ -206,9 +206,9 @@ def test_joints_with_different_numbers_of_frames_are_refused(tmp_path, walk):
 
 
 def test_quaternions_by_joint_are_no_positions(tmp_path, rng):
-    turns = rng.normal(size=(F, len(LANDMARKS), 4))
-    turns /= np.linalg.norm(turns, axis=2, keepdims=True)
-    content = dict(zip(LANDMARKS, np.swapaxes(turns, 0, 1).tolist(), strict=True))
+    rotations = rng.normal(size=(F, len(LANDMARKS), 4))
+    rotations /= np.linalg.norm(rotations, axis=2, keepdims=True)
+    content = dict(zip(LANDMARKS, np.swapaxes(rotations, 0, 1).tolist(), strict=True))
 
     with pytest.raises(InvalidFileError, match="no body"):
         read_recording(write(tmp_path / "take.json", content))

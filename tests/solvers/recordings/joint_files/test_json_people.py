@@ -26,8 +26,8 @@ def two():
     roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
 
     def joints(who, frame):
-        place = (DISTANCE_M * who, 0.0, 0.0)
-        return {name: (positions[frame, roles[role]] + place).tolist()
+        offset = (DISTANCE_M * who, 0.0, 0.0)
+        return {name: (positions[frame, roles[role]] + offset).tolist()
                 for name, role in ROLES.items()}  # fmt: skip
 
     return joints

@@ -23,15 +23,15 @@ def joints():
     positions = forward_kinematics(motion).positions[..., [0, 2, 1]] * (1.0, 1.0, -1.0)
     roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
 
-    def found(frame, place=0.0):
-        points = positions[frame % len(positions)] + (place, 0.0, 0.0)
+    def found(frame, x_m=0.0):
+        points = positions[frame % len(positions)] + (x_m, 0.0, 0.0)
         return {name: points[roles[role]].tolist() for name, role in ROLES.items()}
 
     return found
 
 
-def points(joints, frame, place=0.0):
-    found = joints(frame, place)
+def points(joints, frame, x_m=0.0):
+    found = joints(frame, x_m)
     return [found["left_shoulder"]] * 5 + [*found.values()]
 
 
@@ -148,8 +148,8 @@ def test_other_data_of_a_person_are_no_people(tmp_path, joints, content):
 
 
 def test_a_pose_of_reference_hides_no_person(tmp_path, joints):
-    content = {who: [joints(k, place) for k in range(F)]
-               for who, place in (("Chandra", 0.0), ("Forrest", 2.0))}  # fmt: skip
+    content = {who: [joints(k, x_m) for k in range(F)]
+               for who, x_m in (("Chandra", 0.0), ("Forrest", 2.0))}  # fmt: skip
 
     found = people_in(write(tmp_path, content | {"tpose": [joints(0)] * 20}))
 
@@ -159,8 +159,8 @@ def test_a_pose_of_reference_hides_no_person(tmp_path, joints):
 def of_openpose(joints, frame):
     """Return a frame of two people, whose keypoints have a score."""
     people = [
-        [number for point in points(joints, frame, place) for number in (*point, 1.0)]
-        for place in (0.0, 2.0)
+        [number for point in points(joints, frame, x_m) for number in (*point, 1.0)]
+        for x_m in (0.0, 2.0)
     ]
     listed = [{"person_id": [-1], "pose_keypoints_3d": each} for each in people]
     return {"version": 1.3, "people": listed}

@@ -57,8 +57,8 @@ def test_ntu_selects_the_longest_observed_body_in_any_order(write):
 
     recording = read_recording(write(ntu(frames)))
 
-    seen = [0, 1, 4]
-    assert_allclose(recording.tracks.positions[seen], upright(mine[seen]))
+    observed = [0, 1, 4]
+    assert_allclose(recording.tracks.positions[observed], upright(mine[observed]))
     assert np.isnan(recording.tracks.positions[[2, 3]]).all()
     assert (recording.tracking_state[[2, 3]] == 0).all()
     assert recording.n_frames == 6

@@ -185,8 +185,8 @@ def test_empty_slots_for_people_are_no_bodies(tmp_path, coco, axis, padding, n_p
 
 @pytest.mark.parametrize("width", [3, 4])
 def test_rotations_are_no_points(tmp_path, rng, width):
-    turns = np.linalg.qr(rng.normal(size=(F, 22, width, width)))[0]
-    np.save(tmp_path / "pose.npy", turns[..., 0] if width == 4 else turns[:, 0])
+    rotations = np.linalg.qr(rng.normal(size=(F, 22, width, width)))[0]
+    np.save(tmp_path / "pose.npy", rotations[..., 0] if width == 4 else rotations[:, 0])
 
     with pytest.raises(InvalidFileError, match="holds rotations without a skeleton"):
         read(tmp_path / "pose.npy")

@@ -38,19 +38,19 @@ def repeated(label, names, n=3):
     return [*label, *(cell for name in names for cell in [name] * n)]
 
 
-def at(place, label, names, n=3):
+def at(index, label, names, n=3):
     """Return a line with a name above one of its columns, as merged cells are exported."""
-    return [*label, *(name if k == place else "" for name in names for k in range(n))]
+    return [*label, *(name if k == index else "" for name in names for k in range(n))]
 
 
-def table(walk, titles, n_label, separator=",", unit=100.0, turned=False):
+def table(walk, titles, n_label, separator=",", unit=100.0, rotated=False):
     """Return a table of the walker, Y up in centimeters, with rotations before positions."""
     lines = [separator.join(cells) for cells in titles]
     for frame in range(F):
         cells = [f"{frame}", f"{frame / 60:.6f}"][:n_label]
         for role in NAMES.values():
             x, y, z = unit * walk[role][frame]
-            cells += ["90", "0", "0"] * turned + [f"{x:.5f}", f"{z:.5f}", f"{-y:.5f}"]
+            cells += ["90", "0", "0"] * rotated + [f"{x:.5f}", f"{z:.5f}", f"{-y:.5f}"]
         lines.append(separator.join(cells))
     return "\n".join(lines) + "\n"
 
@@ -83,7 +83,7 @@ LAYOUTS = {
             ["", "", *(["Rotation"] * 3 + ["Position"] * 3) * len(NAMES)],
             ["Frame", "Time (Seconds)", *["X", "Y", "Z"] * 2 * len(NAMES)],
         ],
-        2, turned=True,
+        2, rotated=True,
     ),
     "numbered axes": lambda walk: table(
         walk,

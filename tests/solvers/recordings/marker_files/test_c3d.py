@@ -92,7 +92,7 @@ def test_real_files_agree_with_the_libraries(recordings):
     for path in sorted((recordings / "formats" / "c3d").iterdir()):
         if path.stat().st_size > LARGE:
             continue  # py-c3d takes seconds.
-        points, seen = C3dFile(path).read_points()
+        points, observed = C3dFile(path).read_points()
         for library, read in READ_BY.items():
             if library == "ezc3d" and path.name in MISREAD_BY_EZC3D:
                 continue
@@ -100,8 +100,8 @@ def test_real_files_agree_with_the_libraries(recordings):
                 theirs = read(path)
             except (ValueError, RuntimeError, OSError, AssertionError, KeyError, struct.error):
                 continue
-            known = seen & theirs.seen
-            assert (seen == theirs.seen).mean() > 0.6, path
+            known = observed & theirs.seen
+            assert (observed == theirs.seen).mean() > 0.6, path
             assert_allclose(points[known], theirs.points[known], rtol=1e-5, atol=1e-4)
             n_compared += 1
     assert n_compared > 35
@@ -231,13 +231,13 @@ def _with_ezc3d(path):
 
     file = ezc3d.c3d(str(path))
     points = file["data"]["points"][:3].transpose(2, 1, 0)
-    seen = np.isfinite(points).all(axis=-1) & (
+    observed = np.isfinite(points).all(axis=-1) & (
         file["data"]["meta_points"]["residuals"][0].T >= 0
     )
     described = file["parameters"]["POINT"]
     return SimpleNamespace(
         points=points,
-        seen=seen,
+        seen=observed,
         labels=described["LABELS"].get("value", []),
         frame_rate=described["RATE"]["value"][0],
     )

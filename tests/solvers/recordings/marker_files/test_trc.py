@@ -25,7 +25,9 @@ FILE = (
 )
 """Two markers, so Y is up; the second frame has HEAD at (0.011, -0.021, 1.501)."""
 FRAMES = np.arange(4.0)[:, None, None]
-PLACES = (np.array([[10.0, -20.0, 1500.0], [300.0, -40.0, 900.0]]) + (1, -1, 1) * FRAMES) / 1000
+POSITIONS = (
+    np.array([[10.0, -20.0, 1500.0], [300.0, -40.0, 900.0]]) + (1, -1, 1) * FRAMES
+) / 1000
 
 Z_UP = {"Anto.trc", "SprintMotion.trc", "UpperLimbStatic.trc"}
 RATES = {
@@ -73,8 +75,8 @@ def test_every_file_at_hand_is_read_or_refused_with_the_reason(recordings):
 
     assert list(refused) == ["futureOrientationInverseKinematics.trc"]
     assert "holds angles" in refused["futureOrientationInverseKinematics.trc"]
-    turned = recordings / "formats" / "trc" / "futureOrientationInverseKinematics.trc"
-    assert read_trc(turned, scale=1.0).names == ("humerus", "ulna")
+    rotated = recordings / "formats" / "trc" / "futureOrientationInverseKinematics.trc"
+    assert read_trc(rotated, scale=1.0).names == ("humerus", "ulna")
 
 
 def test_a_file_made_by_hand(read):
@@ -82,7 +84,7 @@ def test_a_file_made_by_hand(read):
 
     assert tracks.names == ("HEAD", "HAND")
     assert tracks.frame_rate == 100.0
-    assert_allclose(tracks.positions, PLACES)
+    assert_allclose(tracks.positions, POSITIONS)
 
 
 @pytest.mark.parametrize(
@@ -124,7 +126,7 @@ def test_what_differs_between_makers_changes_nothing(read, old, new):
 
     assert tracks.names == ("HEAD", "HAND")
     assert tracks.frame_rate == 100.0
-    assert_allclose(tracks.positions, PLACES)
+    assert_allclose(tracks.positions, POSITIONS)
 
 
 @pytest.mark.parametrize(
@@ -135,7 +137,7 @@ def test_what_differs_between_makers_changes_nothing(read, old, new):
 def test_missing_marker_is_a_gap_only_there(read, gap):
     tracks = read(FILE.replace("11\t1501\t21", gap))
 
-    expected = PLACES.copy()
+    expected = POSITIONS.copy()
     expected[1, 0] = np.nan
     assert_array_equal(np.isnan(tracks.positions), np.isnan(expected))
     assert_allclose(tracks.positions, expected)
@@ -166,7 +168,7 @@ def test_frame_numbers_serve_where_the_times_do_not(read):
     tracks = read(re.sub(r"\t0\.0\d\t", "\t0.00\t", FILE).replace("\n3\t", "\n4\t"))
 
     assert tracks.frame_rate == 100.0
-    assert_allclose(tracks.positions, PLACES)  # 1 2 4 4: neither of them increases.
+    assert_allclose(tracks.positions, POSITIONS)  # 1 2 4 4: neither of them increases.
     tracks = read(re.sub(r"\t0\.0\d\t", "\t0.00\t", FILE).replace("\n4\t", "\n5\t"))
     assert_array_equal(tracks.visible[:, 0], [True, True, True, False, True])
 
@@ -193,8 +195,8 @@ def test_names_are_unique_and_complete(read, names, expected):
 def test_the_unit_is_the_header_s_or_gives_a_person_s_size(read, unit, meters):
     tracks = read(FILE.replace("\tmm\t", f"\t{unit}\t"))
 
-    assert_allclose(tracks.positions, 1000 * meters * PLACES)
-    assert_allclose(read(FILE, scale=2.0).positions, 2000 * PLACES)
+    assert_allclose(tracks.positions, 1000 * meters * POSITIONS)
+    assert_allclose(read(FILE, scale=2.0).positions, 2000 * POSITIONS)
 
 
 @pytest.mark.parametrize(("names", "up"), [("Y up", 2), ("Z up", 1), ("-z up", -1), ("", 2)])

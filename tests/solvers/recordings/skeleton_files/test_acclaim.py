@@ -111,8 +111,8 @@ def test_joints_agree_with_the_model_recorded_with_the_markers(recordings):
 
     positions = forward_kinematics(motion).positions
     for label, joint in CENTERS.items():
-        seen = positions[:, motion.skeleton.index(joint)]
-        assert_allclose(seen, centers[f"Dance:{label}0"], atol=0.0005, err_msg=joint)
+        found = positions[:, motion.skeleton.index(joint)]
+        assert_allclose(found, centers[f"Dance:{label}0"], atol=0.0005, err_msg=joint)
 
 
 CENTERS = {

@@ -89,6 +89,6 @@ def test_dancer_exceeds_the_limits_of_his_file_by_known_angles(recordings):
     assert {"ltibia", "lwrist", "rwrist"} <= {name for name, _, _ in hinges}
     for name, low, high in hinges:
         angles = np.array(re.findall(rf"(?m)^{name} (\S+)$", path.read_text()), dtype=float)
-        turns = angles + np.array([[-360.0], [0.0], [360.0]])  # The same rotation.
-        expected = np.maximum(np.maximum(float(low) - turns, turns - float(high)), 0.0)
+        rotations = angles + np.array([[-360.0], [0.0], [360.0]])  # The same rotation.
+        expected = np.maximum(np.maximum(float(low) - rotations, rotations - float(high)), 0.0)
         assert_allclose(beyond[name], expected.min(axis=0), atol=1e-6)

@@ -94,8 +94,8 @@ def test_any_skeleton_survives_writing_and_reading(rng, tmp_path):
     parents = (-1, 0, 0, 1, 2, 1, 0, 4)
     names = tuple("abcdefgh")
     skeleton = Skeleton(names, parents, rng.normal(size=(8, 3)))
-    turns = normalize(rng.normal(size=(20, 8, 4)))
-    motion = Motion(skeleton, turns, rng.normal(scale=3, size=(20, 3)), 48.0)
+    rotations = normalize(rng.normal(size=(20, 8, 4)))
+    motion = Motion(skeleton, rotations, rng.normal(scale=3, size=(20, 3)), 48.0)
     write_bvh(motion, tmp_path / "take.bvh", scale=0.05)
 
     back = read_bvh(tmp_path / "take.bvh", scale=0.05, up="Y")

@@ -20,13 +20,17 @@ def walk(recordings) -> Motion:
 
 def turned(motion: Motion, axis: str, *, rest_too: bool) -> Motion:
     """Return the motion as it would be read from a file with another axis up."""
-    turn = inverse(rotation_to_z_up(axis))
-    rest_rotation = turn if rest_too else np.array([1.0, 0.0, 0.0, 0.0])
+    rotation = inverse(rotation_to_z_up(axis))
+    rest_rotation = rotation if rest_too else np.array([1.0, 0.0, 0.0, 0.0])
     rotations = multiply(multiply(rest_rotation, motion.rotations), inverse(rest_rotation))
-    rotations[:, 0] = multiply(multiply(turn, motion.rotations[:, 0]), inverse(rest_rotation))
+    rotations[:, 0] = multiply(
+        multiply(rotation, motion.rotations[:, 0]), inverse(rest_rotation)
+    )
     offsets = rotate(rest_rotation, motion.skeleton.offsets)
     skeleton = Skeleton(motion.skeleton.names, motion.skeleton.parents, offsets)
-    return Motion(skeleton, rotations, rotate(turn, motion.root_positions), motion.frame_rate)
+    return Motion(
+        skeleton, rotations, rotate(rotation, motion.root_positions), motion.frame_rate
+    )
 
 
 @pytest.mark.parametrize("rest_too", [True, False])
@@ -54,19 +58,21 @@ def test_an_axis_that_is_given_is_taken(walk, tmp_path, axis):
 
 def test_a_lying_actor_is_left_lying_and_reported(walk, tmp_path):
     """Asleep next to the origin, 10 cm above the floor, with a rest pose that stands."""
-    turn = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
+    rotation = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
     rotations = walk.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:1, 0])
+    rotations[:, 0] = multiply(rotation, rotations[:1, 0])
     rotations[:, 1:] = rotations[:1, 1:]
-    places = np.broadcast_to((1.0, 3.0, 0.1), walk.root_positions.shape)
-    write_bvh(Motion(walk.skeleton, rotations, places, walk.frame_rate), tmp_path / "lie.bvh")
+    root_positions = np.broadcast_to((1.0, 3.0, 0.1), walk.root_positions.shape)
+    write_bvh(
+        Motion(walk.skeleton, rotations, root_positions, walk.frame_rate), tmp_path / "lie.bvh"
+    )
     messages = []
 
     read = read_bvh(
         tmp_path / "lie.bvh", progress=lambda _, message="": messages.append(message)
     )
 
-    assert np.allclose(read.root_positions, places, atol=1e-3)
+    assert np.allclose(read.root_positions, root_positions, atol=1e-3)
     assert any("Y is interpreted as up" in message for message in messages)
 
 

@@ -76,12 +76,12 @@ def test_a_body_among_others_moves_as_alone(duet, number, body):
 def test_all_bodies_turn_as_the_first_whose_rest_pose_is_different(recordings, tmp_path):
     """Z is up in the motion and Y in the rest pose, as some programs write it."""
     half = np.sqrt(0.5)
-    turn = np.array([half, half, 0.0, 0.0])
+    rotation = np.array([half, half, 0.0, 0.0])
     for name in ("05_01", "07_01"):
         walk = read_bvh(recordings / f"mocap/cmu_walk/{name}.bvh").slice(1, N_FRAMES + 1)
         rotations = walk.rotations.copy()
-        rotations[:, 0] = multiply(turn, rotations[:, 0])
-        lying = rotate(turn, walk.root_positions)
+        rotations[:, 0] = multiply(rotation, rotations[:, 0])
+        lying = rotate(rotation, walk.root_positions)
         write_bvh(
             Motion(walk.skeleton, rotations, lying, walk.frame_rate), tmp_path / f"{name}.bvh"
         )

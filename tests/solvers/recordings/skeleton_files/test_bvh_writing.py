@@ -12,16 +12,19 @@ from solvers.rotations.representations import quaternion_from_rotation_vector
 
 def test_end_sites_are_written_only_if_they_survive_reading(leg, tmp_path):
     """An end that turns, or has a name of its own, is a joint."""
-    turns = np.tile([1.0, 0, 0, 0], (2, 4, 1))
-    turned = turns.copy()
-    turned[1, 3] = quaternion_from_rotation_vector([0.1, 0.2, 0.0])
+    rotations = np.tile([1.0, 0, 0, 0], (2, 4, 1))
+    rotated = rotations.copy()
+    rotated[1, 3] = quaternion_from_rotation_vector([0.1, 0.2, 0.0])
     position = np.tile([0, 0, 0.9], (2, 1))
     renamed = Skeleton(("hip", "knee", "ankle", "toe_end"), leg.parents, leg.offsets)
 
     for motion, n_ends in [
-        (Motion(leg, turns, position, 30.0), 1),
-        (Motion(leg, turned, position, 30.0), 1),  # The end of the end: many programs want one.
-        (Motion(renamed, turns, position, 30.0), 1),
+        (Motion(leg, rotations, position, 30.0), 1),
+        (
+            Motion(leg, rotated, position, 30.0),
+            1,
+        ),  # The end of the end: many programs want one.
+        (Motion(renamed, rotations, position, 30.0), 1),
     ]:
         write_bvh(motion, tmp_path / "leg.bvh")
         back = read_bvh(tmp_path / "leg.bvh")
@@ -36,8 +39,8 @@ def test_angles_do_not_jump(leg, tmp_path):
     time = np.linspace(0, 1, 200)
     vectors = np.zeros((200, 4, 3))
     vectors[:, 0, 2] = 6 * np.pi * time
-    turns = quaternion_from_rotation_vector(vectors)
-    motion = Motion(leg, turns, np.tile([0, 0, 0.9], (200, 1)), 100.0)
+    rotations = quaternion_from_rotation_vector(vectors)
+    motion = Motion(leg, rotations, np.tile([0, 0, 0.9], (200, 1)), 100.0)
 
     write_bvh(motion, tmp_path / "turns.bvh")
 

@@ -38,16 +38,16 @@ def joint_positions(motion) -> dict[str, np.ndarray]:
 
 
 def check_standing(motion):
-    places = joint_positions(motion)
-    assert (places["head"] - places["pelvis"])[:, 2].min() > 0.4
+    positions = joint_positions(motion)
+    assert (positions["head"] - positions["pelvis"])[:, 2].min() > 0.4
     assert np.percentile(
-        np.minimum(*(places[f"{s}_foot"][:, 2] for s in ("left", "right"))), 5
+        np.minimum(*(positions[f"{s}_foot"][:, 2] for s in ("left", "right"))), 5
     ) == (pytest.approx(0.02, abs=0.01))
     assert find_humanoid_map(motion.skeleton).score == 1.0
-    raised = places["left_wrist"] - places["left_shoulder"]
+    raised = positions["left_wrist"] - positions["left_shoulder"]
     assert raised[-1, 2] > raised[0, 2] + 0.3  # the left arm rises
-    facing = places["left_foot"] - places["left_ankle"]
-    across = places["left_hip"] - places["right_hip"]
+    facing = positions["left_foot"] - positions["left_ankle"]
+    across = positions["left_hip"] - positions["right_hip"]
     assert np.cross(across, facing)[0, 2] < 0.0  # the left is at the left
 
 
@@ -106,10 +106,10 @@ def test_rotations_are_exact(tmp_path):
     """A wrist's direction follows from the shoulder's rotation alone."""
     path = save(tmp_path / "p.npz", poses=poses().reshape(F, -1), trans=np.zeros((F, 3)))
 
-    places = joint_positions(read_recording(path))
+    positions = joint_positions(read_recording(path))
 
     angle = np.linspace(0.0, 1.2, F)
-    arm = places["left_wrist"] - places["left_shoulder"]
+    arm = positions["left_wrist"] - positions["left_shoulder"]
     assert np.allclose(np.arctan2(arm[:, 2], arm[:, 0]), angle, atol=1e-6)
 
 
@@ -164,8 +164,8 @@ def test_motion_x_is_a_body_with_hands(tmp_path):
 
 def test_joints_of_humanml3d_stand(tmp_path):
     path = save(tmp_path / "p.npz", poses=poses().reshape(F, -1), trans=np.zeros((F, 3)))
-    places = joint_positions(read_recording(path))
-    ours = np.stack([places[name] for name in NAMES], axis=1)
+    positions = joint_positions(read_recording(path))
+    ours = np.stack([positions[name] for name in NAMES], axis=1)
     np.save(tmp_path / "j.npy", np.stack([ours[..., 0], ours[..., 2], -ours[..., 1]], axis=-1))
 
     joints = read_recording(tmp_path / "j.npy")
@@ -188,8 +188,8 @@ def test_kimodo_stands_with_joints_at_the_stored_positions(recordings, name):
 
     theirs = np.load(path)["posed_joints"]
     ours = world_poses(motion.skeleton, motion.rotations, motion.root_positions).positions
-    turned = np.stack([theirs[..., 0], -theirs[..., 2], theirs[..., 1]], axis=-1)
-    assert np.abs(ours - turned).max() < 0.02
+    rotated = np.stack([theirs[..., 0], -theirs[..., 2], theirs[..., 1]], axis=-1)
+    assert np.abs(ours - rotated).max() < 0.02
     assert find_humanoid_map(motion.skeleton).score == 1.0
 
 
@@ -248,8 +248,8 @@ def test_a_lying_actor_of_amass_never_passes_in_silence(tmp_path, root, lies):
 
     motion = read_recording(path, progress=lambda _, message="": messages.append(message))
 
-    places = joint_positions(motion)
-    rises = np.abs((places["head"] - places["pelvis"])[:, 2]).max()
+    positions = joint_positions(motion)
+    rises = np.abs((positions["head"] - positions["pelvis"])[:, 2]).max()
     assert (rises < 0.3) == lies
     assert any("is interpreted as up" in message for message in messages)
 

@@ -55,15 +55,15 @@ def wham(names):
 
 
 def tram(names):
-    camera_turn = Rotation.from_rotvec([0.0, 0.4, 0.0]).as_matrix()
-    place = np.array([1.0, 2.0, 3.0])
+    camera_rotation = Rotation.from_rotvec([0.0, 0.4, 0.0]).as_matrix()
+    offset = np.array([1.0, 2.0, 3.0])
     rotations = MATRICES.copy()
-    rotations[:, 0] = camera_turn.T @ rotations[:, 0]
-    trans = (TRANS - place) @ camera_turn
+    rotations[:, 0] = camera_rotation.T @ rotations[:, 0]
+    trans = (TRANS - offset) @ camera_rotation
     data = {"pred_rotmat": Tensor(rotations), "pred_trans": Tensor(trans[:, None]),
             "frame": Tensor(FRAMES)}  # fmt: skip
-    camera = {"world_cam_R": np.tile(camera_turn, (30, 1, 1)),
-              "world_cam_T": np.tile(place, (30, 1))}  # fmt: skip
+    camera = {"world_cam_R": np.tile(camera_rotation, (30, 1, 1)),
+              "world_cam_T": np.tile(offset, (30, 1))}  # fmt: skip
     return names["tram"](data, camera)
 
 

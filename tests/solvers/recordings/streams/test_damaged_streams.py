@@ -38,8 +38,8 @@ def damaged(datagram, rng):
     if kind == 2:
         content[start:stop] = bytes(stop - start)
     else:
-        for place in rng.integers(0, len(content), 8):
-            content[place] = rng.integers(256)
+        for index in rng.integers(0, len(content), 8):
+            content[index] = rng.integers(256)
     return bytes(content)
 
 

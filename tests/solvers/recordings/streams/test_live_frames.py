@@ -172,14 +172,14 @@ def test_json_of_any_kind_is_a_frame_or_refused(changes):
 def test_frame_survives_encoding_and_decoding(joints, time):
     indices, confidence, states = joints
     positions = np.array([(np.nan,) * 3 if index is None else index for index in indices])
-    seen = np.isfinite(positions).all(axis=-1)
+    observed = np.isfinite(positions).all(axis=-1)
     sent = LiveFrame(
         time,
         7,
         tuple(f"joint {number}" for number in range(len(indices))),
         positions,
-        np.where(seen, confidence, 0.0),
-        None if states is None else np.where(seen, states, 0).astype(np.int8),
+        np.where(observed, confidence, 0.0),
+        None if states is None else np.where(observed, states, 0).astype(np.int8),
     )
 
     came = decode_frame(encode_frame(sent))

@@ -20,8 +20,8 @@ from solvers.recordings.streams.receiver import MAX_DATAGRAMS, Receiver
 from solvers.samples import perform_gestures
 
 
-def frame(time, body=0, place=0.0):
-    return LiveFrame(time, body, ("Head",), np.full((1, 3), place), np.ones(1))
+def frame(time, body=0, position=0.0):
+    return LiveFrame(time, body, ("Head",), np.full((1, 3), position), np.ones(1))
 
 
 def read(reader, *frames):
@@ -106,8 +106,8 @@ def test_a_recording_of_uneven_frames_is_even(rng):
     positions = np.sin(late)[:, None, None] * np.ones((1, 20, 3))
     names = performed.recording().names
     frames = [
-        LiveFrame(float(time), 0, names, place, np.full(20, 0.8), None, Sensor.KINECT_V1)
-        for time, place in zip(late, positions, strict=True)
+        LiveFrame(float(time), 0, names, position, np.full(20, 0.8), None, Sensor.KINECT_V1)
+        for time, position in zip(late, positions, strict=True)
     ]
 
     recording = recording_from_frames(frames)
@@ -121,7 +121,7 @@ def test_a_recording_of_uneven_frames_is_even(rng):
 
 
 def test_missing_frames_are_gaps():
-    frames = [frame(number / 30, place=float(number)) for number in range(60)]
+    frames = [frame(number / 30, position=float(number)) for number in range(60)]
 
     recording = recording_from_frames(frames[:20] + frames[30:])
 
@@ -131,7 +131,7 @@ def test_missing_frames_are_gaps():
 
 
 def test_joints_of_other_names_are_left_out():
-    frames = [frame(number / 30, place=1.0) for number in range(10)]
+    frames = [frame(number / 30, position=1.0) for number in range(10)]
     frames[4] = replace(frames[4], names=("Foot",))
 
     recording = recording_from_frames(frames)

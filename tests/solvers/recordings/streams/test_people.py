@@ -40,7 +40,7 @@ def test_the_chosen_person_is_followed(chosen, identity):
     assert reader.counts.others == 60
 
 
-def test_exchanged_identities_change_nothing():
+def test_switched_identities_change_nothing():
     _, true = followed(walk(), 1)
 
     _, came = followed(walk(identities=lambda frame: (9, 7) if 20 <= frame < 40 else (7, 9)), 1)
@@ -51,7 +51,7 @@ def test_exchanged_identities_change_nothing():
     )
 
 
-def test_a_jump_to_where_no_one_was_is_no_exchange():
+def test_a_jump_to_where_no_one_was_is_no_identity_switch():
     jumped = [
         replace(each, positions=each.positions + np.array((0.0, -1.5, 0.0)))
         if each.body == 7 and each.time > 1.0
@@ -91,8 +91,10 @@ def test_without_the_chosen_person_nothing_comes():
 
 def test_the_others_keep_their_numbers_when_the_chosen_person_leaves():
     frames = [each for each in walk(90) if each.body == 9 or each.time < 1.0]
-    seen = [followed([each for each in frames if each.time < end], 1)[0] for end in (1.0, 3.0)]
-    assert [reader.is_present for reader in seen] == [True, False]
+    readers = [
+        followed([each for each in frames if each.time < end], 1)[0] for end in (1.0, 3.0)
+    ]
+    assert [reader.is_present for reader in readers] == [True, False]
 
     reader, came = followed(frames, 2)
     assert (reader.n_people, reader.is_present, len(came)) == (1, True, 90)

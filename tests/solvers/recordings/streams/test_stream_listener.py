@@ -57,8 +57,8 @@ def vmc():
     return [each.datagrams for each in encode_recording(walk, StreamProtocol.VMC)]
 
 
-def line(time, place=0.0):
-    return encode_frame(LiveFrame(time, 0, ("Head",), np.full((1, 3), place), np.ones(1)))
+def line(time, position=0.0):
+    return encode_frame(LiveFrame(time, 0, ("Head",), np.full((1, 3), position), np.ones(1)))
 
 
 def name_of(sender):
