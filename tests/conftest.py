@@ -19,17 +19,17 @@ settings.register_profile("repeatable", deadline=None, derandomize=True, databas
 settings.load_profile("repeatable")
 
 ON_ONE_PYTHON = {
+    "command_line/batches/test_bad_files.py": (3, 13),
+    "command_line/batches/test_batch.py": (3, 13),
+    "command_line/batches/test_many_machines.py": (3, 11),
+    "command_line/batches/test_report.py": (3, 11),
     "command_line/farm": (3, 11),
-    "command_line/test_bad_files.py": (3, 13),
-    "command_line/test_batch.py": (3, 13),
+    "command_line/sharing/test_claims.py": (3, 11),
     "command_line/test_capture_verb.py": (3, 11),
-    "command_line/test_claims.py": (3, 11),
     "command_line/test_command_line.py": (3, 11),
     "command_line/test_fix_verb.py": (3, 13),
     "command_line/test_library_verbs.py": (3, 11),
-    "command_line/test_many_machines.py": (3, 11),
     "command_line/test_reconstruct_verb.py": (3, 11),
-    "command_line/test_report.py": (3, 11),
     "command_line/test_residuals_verb.py": (3, 11),
     "command_line/test_retarget_verbs.py": (3, 13),
     "command_line/test_simulate_verb.py": (3, 13),

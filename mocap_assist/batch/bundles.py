@@ -3,7 +3,7 @@
 import argparse
 from typing import NamedTuple, TypeVar, get_type_hints
 
-from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.arguments import arguments_from, settings_from_arguments
 
 Bundle = TypeVar("Bundle", bound=NamedTuple)
 

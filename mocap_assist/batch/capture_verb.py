@@ -6,9 +6,12 @@ from typing import get_type_hints
 
 import bpy
 
-from ...solvers.command_line.files import find_recordings
-from ...solvers.command_line.options import arguments_from, settings_from_arguments
-from ...solvers.command_line.screen import Screen
+from ...solvers.command_line.arguments import (
+    arguments_from,
+    find_recordings,
+    settings_from_arguments,
+)
+from ...solvers.command_line.batches import Screen
 from ...solvers.errors import InvalidFileError
 from ...solvers.faults import Failure, attempt
 from ...solvers.settings import Settings

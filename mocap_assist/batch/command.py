@@ -8,8 +8,8 @@ from contextlib import AbstractContextManager, nullcontext
 
 import bpy
 
-from ...solvers.command_line.options import SentenceParser
-from ...solvers.command_line.screen import Screen, escape_undecodable_names, printable
+from ...solvers.command_line.arguments import SentenceParser
+from ...solvers.command_line.batches import Screen, escape_undecodable_names, printable
 from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
 from ...solvers.files import reason_of, write_atomically
 from ...solvers.processes import add_threads_option

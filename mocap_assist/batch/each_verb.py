@@ -11,30 +11,34 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line.batch import (
+from ...solvers.command_line.arguments import (
+    Outcome,
+    Task,
+    add_sharing_options,
+    check_name_length,
+    unique_targets,
+)
+from ...solvers.command_line.batches import (
+    PICTURE,
     FinishedTask,
+    Screen,
     already_made,
+    check_output_folder,
+    find_inputs,
     has_called_hook,
+    has_picture,
     made_record,
     note_other_builds,
-    share,
-    task_entries,
-    verb_name,
-)
-from ...solvers.command_line.files import check_name_length, unique_targets
-from ...solvers.command_line.options import add_sharing_options
-from ...solvers.command_line.parallel import until_released
-from ...solvers.command_line.report import (
-    PICTURE,
-    has_picture,
     picture_file,
     remove_picture,
+    share,
+    shared_tasks,
+    task_entries,
+    until_released,
+    verb_name,
     write_report,
 )
-from ...solvers.command_line.screen import Screen
 from ...solvers.command_line.sharing import stamp_options
-from ...solvers.command_line.tasks import check_output_folder, find_inputs, shared_tasks
-from ...solvers.command_line.verb_description import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
 from ...solvers.faults import Failure, attempt, escaped
 from ...solvers.files import is_missing, make_folder, real_path

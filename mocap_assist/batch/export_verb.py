@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line.options import arguments_from, settings_from_arguments
+from ...solvers.command_line.arguments import arguments_from, settings_from_arguments
 from ...solvers.errors import InvalidSettingError
 from ...solvers.files import real_path
 from ...solvers.progress import Progress

@@ -5,9 +5,12 @@ from pathlib import Path
 
 import bpy
 
-from ...solvers.command_line.files import find_recordings
-from ...solvers.command_line.options import arguments_from, settings_from_arguments
-from ...solvers.command_line.screen import Screen
+from ...solvers.command_line.arguments import (
+    arguments_from,
+    find_recordings,
+    settings_from_arguments,
+)
+from ...solvers.command_line.batches import Screen
 from ...solvers.errors import InvalidFileError
 from ..importing.button_settings import ImportChoices
 from ..importing.depth_folders import all_recordings_in, is_take

@@ -10,7 +10,7 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line.screen import Screen, printable
+from ...solvers.command_line.batches import Screen, printable
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path, write_atomically
 from ...solvers.progress import Progress

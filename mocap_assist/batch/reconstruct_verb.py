@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line import add_preset_option
+from ...solvers.command_line.arguments import add_preset_option
 from ...solvers.progress import Progress
 from ..blender.name_lists import join_names
 from ..reconstruct.button_settings import Postures, ReconstructBundle

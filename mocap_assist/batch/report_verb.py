@@ -4,9 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from ...solvers.command_line.batch import report_folder
-from ...solvers.command_line.screen import Screen, printable
-from ...solvers.command_line.verb_description import Task
+from ...solvers.command_line.arguments import Task
+from ...solvers.command_line.batches import Screen, printable, report_folder
 from ...solvers.errors import InvalidFileError
 
 HELP = "Write the report on the output folder of each, from the records of all machines."

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import bpy
 
-from ...solvers.command_line.screen import printable
+from ...solvers.command_line.batches import printable
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path, write_atomically
 

@@ -5,8 +5,11 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line import add_preset_option
-from ...solvers.command_line.options import arguments_from, settings_from_arguments
+from ...solvers.command_line.arguments import (
+    add_preset_option,
+    arguments_from,
+    settings_from_arguments,
+)
 from ...solvers.physics import SimulateSettings
 from ...solvers.progress import Progress
 from ..physics.simulating import SimulateBundle, read_simulating, write_simulated

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line import add_preset_option
+from ...solvers.command_line.arguments import add_preset_option
 from ...solvers.progress import Progress, within
 from ..variants.button_settings import VaryBundle
 from ..variants.listing import chosen

@@ -8,8 +8,13 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line import add_preset_option
-from ...solvers.command_line.files import MOTIONS, POINTS_BY_DEFAULT, check_target, convert
+from ...solvers.command_line.arguments import (
+    MOTIONS,
+    POINTS_BY_DEFAULT,
+    add_preset_option,
+    check_target,
+    convert,
+)
 from ...solvers.errors import InvalidSettingError
 from ...solvers.progress import Progress
 from ..actions.armature_read import read_take

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import bpy
 
-from ...solvers.command_line.files import check_name_length
+from ...solvers.command_line.arguments import check_name_length
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path
 from ..blender.compat import Source

@@ -5,18 +5,18 @@ from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
 
+from ...solvers.command_line.arguments import (
+    MOTIONS,
+    find_recordings,
+    scene_files_in,
+    unique_targets,
+)
 from ...solvers.command_line.farm import (
     FlamencoJob,
     FlamencoSettings,
     SubmittedJob,
     check_job,
     texts_of_settings,
-)
-from ...solvers.command_line.files import (
-    MOTIONS,
-    find_recordings,
-    scene_files_in,
-    unique_targets,
 )
 from ...solvers.command_line.fix_verb import add_fix_options
 from ...solvers.errors import InvalidFileError

@@ -15,9 +15,15 @@ from ..progress import Progress, Remark, collect_remarks, within
 from ..recordings import depth_takes_in, read_depth, write_joint_csv
 from ..recordings.depth_files import DepthSettings
 from ..workflows import CapturedMotion, capture_recording
-from .files import JOINTS, find_recordings, write
-from .options import arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
+from .arguments import (
+    JOINTS,
+    Outcome,
+    Task,
+    arguments_from,
+    find_recordings,
+    settings_from_arguments,
+    write,
+)
 
 
 def add_capture_options(parser: argparse.ArgumentParser) -> None:

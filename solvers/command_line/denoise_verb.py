@@ -26,10 +26,19 @@ from ..errors import InvalidMotionError, InvalidSettingError
 from ..markers import Swap, unswap_markers
 from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, within
-from .files import add_reading_options, read, read_all, with_body, write
+from .arguments import (
+    Outcome,
+    Task,
+    add_preset_option,
+    add_reading_options,
+    arguments_from,
+    read,
+    read_all,
+    settings_from_arguments,
+    with_body,
+    write,
+)
 from .from_library import add_library_option, check_library, learn_bases
-from .options import add_preset_option, arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
 
 
 class LearnedPrior(NamedTuple):

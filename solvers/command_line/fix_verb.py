@@ -17,9 +17,15 @@ from ..workflows import (
     find_origin,
     fix_take,
 )
-from .files import add_reading_options, read_recorded, write
-from .options import arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
+from .arguments import (
+    Outcome,
+    Task,
+    add_reading_options,
+    arguments_from,
+    read_recorded,
+    settings_from_arguments,
+    write,
+)
 
 
 def add_fix_options(parser: argparse.ArgumentParser) -> None:

@@ -10,7 +10,7 @@ from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress
 from ..retrieval import ClipLibrary, load_clip_library
 from ..workflows import LibraryBases, LibraryPostures, bases_from_library, postures_from_library
-from .options import settings_from_arguments
+from .arguments import settings_from_arguments
 
 
 def add_library_option(parser: argparse._ActionsContainer) -> None:

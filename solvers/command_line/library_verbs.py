@@ -21,10 +21,8 @@ from ..retrieval import (
     load_clip_library,
 )
 from ..workflows import IndexReport, index_files
+from .arguments import Outcome, Task, add_body_option, arguments_from, settings_from_arguments
 from .farm import cluster_workers
-from .files import add_body_option
-from .options import arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
 
 DEFAULT_N_MATCHES = 10
 """Default number of matches."""

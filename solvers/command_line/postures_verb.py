@@ -6,9 +6,14 @@ from pathlib import Path
 from ..progress import Progress, within
 from ..reconstruction import PostureLibrarySettings
 from ..workflows import posture_library_from_clips
-from .files import add_reading_options, read_all
-from .options import arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
+from .arguments import (
+    Outcome,
+    Task,
+    add_reading_options,
+    arguments_from,
+    read_all,
+    settings_from_arguments,
+)
 
 
 def add_postures_options(parser: argparse.ArgumentParser) -> None:

@@ -24,10 +24,20 @@ from ..workflows import (
     reconstruct_motion,
     reconstruct_recording,
 )
-from .files import JOINTS, add_reading_options, read_all, read_recorded, with_body, write
+from .arguments import (
+    JOINTS,
+    Outcome,
+    Task,
+    add_preset_option,
+    add_reading_options,
+    arguments_from,
+    read_all,
+    read_recorded,
+    settings_from_arguments,
+    with_body,
+    write,
+)
 from .from_library import add_library_option, check_library, collect_postures
-from .options import add_preset_option, arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
 
 
 class RebuiltTake(NamedTuple):

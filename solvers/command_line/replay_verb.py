@@ -9,8 +9,7 @@ from ..errors import InvalidSettingError
 from ..motion import JointRecording, Motion, Tracks, resample
 from ..progress import Progress, within
 from ..recordings.streams import PORT, Packets, StreamProtocol, encode_recording
-from .files import add_reading_options, read_recorded
-from .verb_description import Outcome, Task
+from .arguments import Outcome, Task, add_reading_options, read_recorded
 
 PROTOCOLS = {each.value: each for each in StreamProtocol if each is not StreamProtocol.AUTO}
 LOOPBACK = "127.0.0.1"

@@ -12,8 +12,7 @@ from ..progress import Progress, within
 from ..reconstruction import ResidualPriorSettings, learn_residual_prior
 from ..reconstruction.residual_correction import calibrate_confidence
 from ..recordings import read_tracked, recordings_in
-from .options import arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
+from .arguments import Outcome, Task, arguments_from, settings_from_arguments
 
 
 def add_residuals_options(parser: argparse.ArgumentParser) -> None:

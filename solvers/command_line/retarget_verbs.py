@@ -19,9 +19,17 @@ from ..motion import (
 from ..progress import Progress, within
 from ..recordings.conventions import CENTIMETER
 from ..retargeting import RetargetSettings, UnbakeSettings, reduce_keys, retarget
-from .files import add_reading_options, read, with_body, write
-from .options import add_preset_option, arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
+from .arguments import (
+    Outcome,
+    Task,
+    add_preset_option,
+    add_reading_options,
+    arguments_from,
+    read,
+    settings_from_arguments,
+    with_body,
+    write,
+)
 
 
 class RetargetTarget(NamedTuple):

@@ -15,31 +15,41 @@ from ..faults import Failure, attempt, escaped
 from ..files import is_missing, reason_of
 from ..processes import add_threads_option
 from ..version import version
-from .batch import (
-    FinishedTask,
-    already_made,
-    draw_task,
-    has_called_hook,
-    made_record,
-    note_other_builds,
-    record_end,
-    task_entries,
-    verb_name,
-)
-from .farm import FlamencoSettings, add_flamenco_options, check_job, job_of_batch
-from .options import (
+from .arguments import (
+    OutputKind,
     SentenceParser,
+    Task,
+    Verb,
     add_cluster_option,
     add_sharing_options,
     arguments_from,
     settings_from_arguments,
 )
-from .parallel import run_tasks, until_released, workers_for
-from .report import PAGE, has_picture, write_report
-from .screen import Screen, escape_undecodable_names, printable
+from .batches import (
+    PAGE,
+    FinishedTask,
+    Screen,
+    already_made,
+    check_output_folder,
+    draw_task,
+    escape_undecodable_names,
+    has_called_hook,
+    has_picture,
+    made_record,
+    note_other_builds,
+    printable,
+    record_end,
+    run_tasks,
+    shared_tasks,
+    task_entries,
+    tasks_of,
+    until_released,
+    verb_name,
+    workers_for,
+    write_report,
+)
+from .farm import FlamencoSettings, add_flamenco_options, check_job, job_of_batch
 from .sharing import stamp_options
-from .tasks import check_output_folder, shared_tasks, tasks_of
-from .verb_description import OutputKind, Task, Verb
 
 FILES = {
     OutputKind.WORDS: "Recordings to read, or folders of them",

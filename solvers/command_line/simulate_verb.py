@@ -8,9 +8,16 @@ from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..physics import Simulated, SimulateSettings, simulate
 from ..progress import Progress, within
-from .files import add_reading_options, read, write
-from .options import add_preset_option, arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
+from .arguments import (
+    Outcome,
+    Task,
+    add_preset_option,
+    add_reading_options,
+    arguments_from,
+    read,
+    settings_from_arguments,
+    write,
+)
 
 
 def add_simulate_options(parser: argparse.ArgumentParser) -> None:

@@ -9,9 +9,15 @@ from ..markers import SolveSettings
 from ..motion import Tracks
 from ..progress import Progress, within
 from ..workflows import MarkerMotion, MarkerMotionSettings, motion_from_markers
-from .files import add_reading_options, read, write
-from .options import arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
+from .arguments import (
+    Outcome,
+    Task,
+    add_reading_options,
+    arguments_from,
+    read,
+    settings_from_arguments,
+    write,
+)
 
 MAX_LISTED_SWAPS = 5
 

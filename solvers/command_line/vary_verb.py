@@ -11,9 +11,15 @@ from ..progress import Progress, within
 from ..recordings import write_bvh
 from ..variation import VarySettings, measure_variation
 from ..workflows import vary_motions
-from .files import add_reading_options, read_all
-from .options import add_preset_option, arguments_from, settings_from_arguments
-from .verb_description import Outcome, Task
+from .arguments import (
+    Outcome,
+    Task,
+    add_preset_option,
+    add_reading_options,
+    arguments_from,
+    read_all,
+    settings_from_arguments,
+)
 
 SHEET = "variants.png"
 MAX_DRAWN_VARIANTS = 20

@@ -11,13 +11,23 @@ from ..denoising import (
 )
 from ..progress import Progress, within
 from ..recordings import FloorPlacementSettings, depth_takes_in, takes_in
-from .batch import report_folder
+from .arguments import (
+    Outcome,
+    OutputKind,
+    Task,
+    Verb,
+    add_reading_options,
+    arguments_from,
+    convert,
+    read,
+    read_all,
+    settings_from_arguments,
+)
+from .batches import report_folder
 from .capture_verb import add_capture_options, perform_capture, read_body
 from .denoise_verb import add_denoise_options, learn_prior, perform_denoise
-from .files import add_reading_options, convert, read, read_all
 from .fix_verb import add_fix_options, perform_fix
 from .library_verbs import add_find_options, add_index_options, perform_find, perform_index
-from .options import arguments_from, settings_from_arguments
 from .postures_verb import add_postures_options, perform_postures
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
 from .replay_verb import add_replay_options, perform_replay
@@ -32,7 +42,6 @@ from .retarget_verbs import (
 from .simulate_verb import add_simulate_options, perform_simulate
 from .solve_verb import add_solve_options, perform_solve
 from .vary_verb import add_vary_options, perform_vary
-from .verb_description import Outcome, OutputKind, Task, Verb
 
 
 def _learn_options(parser: argparse.ArgumentParser) -> None:

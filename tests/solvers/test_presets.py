@@ -2,8 +2,12 @@
 
 import pytest
 
-from solvers.command_line import add_preset_option, settings_from_arguments
-from solvers.command_line.options import SentenceParser, arguments_from
+from solvers.command_line.arguments import (
+    SentenceParser,
+    add_preset_option,
+    arguments_from,
+    settings_from_arguments,
+)
 from solvers.denoising import DenoiseSettings, PlantSettings
 from solvers.physics import Ground, SimulateSettings
 from solvers.presets import PRESETS, mentioned_settings

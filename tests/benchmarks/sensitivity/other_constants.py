@@ -60,7 +60,7 @@ REASONS: dict[str, tuple[str, ...]] = {
     ),
     "priors of a marker set, whose numbers have names": ("markers/body_tables.SIDE*",),
     "fraction of a bar of progress": (
-        "command_line/screen.MIN_STEP",
+        "command_line/batches/screen.MIN_STEP",
         "recordings/read_recording.OPENING_FRACTION",
         "mocap_assist/exporting/write_file.*",
         "mocap_assist/importing/import_transaction.READING_FRACTION",

@@ -13,7 +13,7 @@ from importlib.util import find_spec
 import pytest
 from clusters.dask_cluster import DEADLY_VERBS, local_cluster
 
-from solvers.command_line import parallel
+from solvers.command_line.batches import parallel
 from solvers.command_line.farm import cluster as cluster_module
 from solvers.command_line.run import run
 from solvers.command_line.sharing import Records

@@ -17,7 +17,7 @@ from long_takes import write_long_bvh
 
 from solvers.recordings import read_bvh, read_recording, write_bvh
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 CLAIM = ".mocap_assist/late.bvh.*.1.claim"
 PNG = b"\x89PNG\r\n\x1a\n"
 

@@ -7,8 +7,8 @@ from time import process_time
 
 import pytest
 
-from solvers.command_line import tasks
-from solvers.command_line.files import unique_targets
+from solvers.command_line.arguments import unique_targets
+from solvers.command_line.batches import tasks
 from solvers.command_line.sharing import fingerprints
 from solvers.errors import InvalidSettingError
 from solvers.recordings import read_bvh
@@ -112,7 +112,7 @@ def test_parallel_jobs_name_the_failed_file_and_do_the_others(
 DEADLY = """
 import os, sys
 from solvers.command_line.run import run
-from solvers.command_line.verb_description import OutputKind, Outcome, Verb
+from solvers.command_line.arguments import OutputKind, Outcome, Verb
 
 def no_options(parser):
     pass

@@ -6,7 +6,11 @@ from math import pi
 
 import pytest
 
-from solvers.command_line.options import SentenceParser, arguments_from, settings_from_arguments
+from solvers.command_line.arguments import (
+    SentenceParser,
+    arguments_from,
+    settings_from_arguments,
+)
 from solvers.errors import InvalidSettingError
 from solvers.settings import Settings, setting, with_present_names
 

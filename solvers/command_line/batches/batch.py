@@ -8,16 +8,14 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, NamedTuple
 
-from ..errors import InvalidFileError
-from ..faults import Failure, attempt
-from ..files import is_missing, make_folder
-from ..pictures import StickFigureSettings, draw_stick_figures
-from ..progress import Progress, Remark, collect_remarks, unwatched
-from ..recordings import is_depth_recording, read_motion_or_tracks
-from .files import read
-from .report import Entry, output_of, picture_file, picture_of, remove_picture, write_report
-from .screen import Screen
-from .sharing import (
+from ...errors import InvalidFileError
+from ...faults import Failure, attempt
+from ...files import is_missing, make_folder
+from ...pictures import StickFigureSettings, draw_stick_figures
+from ...progress import Progress, Remark, collect_remarks, unwatched
+from ...recordings import is_depth_recording, read_motion_or_tracks
+from ..arguments import Outcome, Task, Verb, read
+from ..sharing import (
     Record,
     Records,
     claimed,
@@ -26,7 +24,8 @@ from .sharing import (
     is_of_another_build,
     run_hook,
 )
-from .verb_description import Outcome, Task, Verb
+from .report import Entry, output_of, picture_file, picture_of, remove_picture, write_report
+from .screen import Screen
 
 SKIPPED = "skipped"
 """Figure of a take that another process has."""

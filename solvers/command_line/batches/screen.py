@@ -4,7 +4,7 @@ import io
 import sys
 from typing import TextIO
 
-from ..faults import escaped
+from ...faults import escaped
 
 MIN_STEP = 0.01
 

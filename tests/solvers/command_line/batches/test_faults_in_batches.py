@@ -4,9 +4,8 @@ import json
 
 import pytest
 
-from solvers.command_line.files import add_reading_options, write
+from solvers.command_line.arguments import Outcome, OutputKind, Verb, add_reading_options, write
 from solvers.command_line.run import run
-from solvers.command_line.verb_description import Outcome, OutputKind, Verb
 from solvers.progress import unwatched
 from solvers.recordings import read_bvh
 
@@ -94,7 +93,7 @@ def test_take_is_written_and_the_picture_is_named_when_drawing_raises(
     def fail(*_):
         raise IndexError
 
-    monkeypatch.setattr("solvers.command_line.batch.draw_stick_figures", fail)
+    monkeypatch.setattr("solvers.command_line.batches.batch.draw_stick_figures", fail)
     words = [legs[0], "--output-folder", tmp_path / "out", "--report"]
 
     first, again = perform(copy, *words), perform(copy, *words)

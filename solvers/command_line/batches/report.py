@@ -7,10 +7,10 @@ from pathlib import Path, PurePosixPath
 from string import Template
 from typing import Any, NamedTuple
 
-from ..faults import Failure, attempt
-from ..files import remove_leftovers, write_atomically
-from .sharing import Record, Records, claimed
-from .verb_description import Task
+from ...faults import Failure, attempt
+from ...files import remove_leftovers, write_atomically
+from ..arguments import Task
+from ..sharing import Record, Records, claimed
 
 PAGE, FIGURES, PICTURES = "report.html", "report.json", Path("report")
 PICTURE = ".png"

@@ -10,14 +10,14 @@ from pathlib import Path
 from time import sleep
 from typing import Any
 
-from ..processes import LocalWorkers, Workers, threads_from
-from ..progress import unwatched
+from ...processes import LocalWorkers, Workers, threads_from
+from ...progress import unwatched
+from ..arguments import Task, Verb
+from ..farm import cluster_workers
+from ..sharing import RENEWAL_INTERVAL_S
 from .batch import FinishedTask, attempt_task, record_end
-from .farm import cluster_workers
 from .screen import Screen
-from .sharing import RENEWAL_INTERVAL_S
 from .tasks import check_output_folder
-from .verb_description import Task, Verb
 
 
 def workers_for(tasks: Sequence[Task]) -> AbstractContextManager[Workers | None]:

@@ -8,10 +8,10 @@ from math import degrees, isfinite, radians
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
-from ..errors import InvalidSettingError
-from ..presets import PRESETS, find_preset
-from ..settings import Described, Settings, former_names
-from .sharing import parse_hook, parse_shard
+from ...errors import InvalidSettingError
+from ...presets import PRESETS, find_preset
+from ...settings import Described, Settings, former_names
+from ..sharing import parse_hook, parse_shard
 
 SettingsClass = TypeVar("SettingsClass", bound=Settings)
 MAX_LISTED_LETTERS = 32

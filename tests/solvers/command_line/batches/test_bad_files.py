@@ -18,7 +18,7 @@ from solvers.denoising import learn_filter_bases, load_filter_bases
 from solvers.errors import InvalidFileError
 from solvers.recordings import read_bvh, write_bvh
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 HIERARCHY = """HIERARCHY
 ROOT hip
 {

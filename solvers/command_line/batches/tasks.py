@@ -6,16 +6,19 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from ..errors import InvalidFileError, InvalidSettingError
-from ..faults import Failure, attempt
-from ..files import is_missing, real_path
-from .files import (
+from ...errors import InvalidFileError, InvalidSettingError
+from ...faults import Failure, attempt
+from ...files import is_missing, real_path
+from ..arguments import (
     FOR_JOINTS,
     FOR_MOTIONS,
     JOINTS,
     LEARNED,
     MOTIONS,
     RECORDED,
+    OutputKind,
+    Task,
+    Verb,
     bodies_in,
     check_name_length,
     check_target,
@@ -24,9 +27,8 @@ from .files import (
     unique_targets,
     with_body,
 )
+from ..sharing import Listed, Records, claimed, read_manifest
 from .report import PICTURE
-from .sharing import Listed, Records, claimed, read_manifest
-from .verb_description import OutputKind, Task, Verb
 
 MAX_NAME_LETTERS = 40
 """Letters of the name of a body in the name of a file."""

@@ -7,8 +7,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..progress import Progress
-from ..recordings import recordings_in
+from ...progress import Progress
+from ...recordings import recordings_in
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from ..errors import InvalidFileError
-from ..faults import Failure, attempt
-from ..files import real_path
-from ..motion import JointRecording, Motion, Tracks
-from ..progress import Progress, within
-from ..recordings import (
+from ...errors import InvalidFileError
+from ...faults import Failure, attempt
+from ...files import real_path
+from ...motion import JointRecording, Motion, Tracks
+from ...progress import Progress, within
+from ...recordings import (
     FloorPlacement,
     ReadingSettings,
     describe_no_recording,
@@ -26,8 +26,8 @@ from ..recordings import (
     write_c3d,
     write_trc,
 )
-from ..recordings.containers import files_below, is_folder, shown
-from ..recordings.conventions import conventions_of
+from ...recordings.containers import files_below, is_folder, shown
+from ...recordings.conventions import conventions_of
 from .options import arguments_from, settings_from_arguments
 from .verb_description import Outcome
 

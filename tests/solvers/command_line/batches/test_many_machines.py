@@ -10,19 +10,19 @@ from pathlib import Path
 
 import pytest
 
-from solvers.command_line import batch
-from solvers.command_line.files import read
-from solvers.command_line.report import Entry, write_report
+from solvers.command_line.arguments import read
+from solvers.command_line.batches import batch
+from solvers.command_line.batches.report import Entry, write_report
 from solvers.command_line.sharing import Records, claimed
 
 N_TAKES = 24
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 N_PROCESSES = 12
 NOTING = "import sys; open(sys.argv[1], 'a').write(sys.argv[2] + chr(10))"
 HOLDER = """
 import os, sys
 from pathlib import Path
-from solvers.command_line.report import Entry, write_report
+from solvers.command_line.batches.report import Entry, write_report
 from solvers.command_line.sharing import Records, claimed
 with claimed(Path(sys.argv[1])):
     print("held", flush=True)

@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from solvers.command_line import parallel
+from solvers.command_line.batches import parallel
 from solvers.command_line.sharing import claimed, claims
 
 

@@ -1,0 +1,49 @@
+"""Perform a verb on many files: tasks, records, workers, progress and report."""
+
+from .batch import (
+    FinishedTask,
+    already_made,
+    draw_task,
+    has_called_hook,
+    made_record,
+    note_other_builds,
+    record_end,
+    report_folder,
+    share,
+    task_entries,
+    verb_name,
+)
+from .parallel import run_tasks, until_released, workers_for
+from .report import PAGE, PICTURE, has_picture, picture_file, remove_picture, write_report
+from .screen import Screen, escape_undecodable_names, printable
+from .tasks import check_output_folder, find_inputs, shared_tasks, tasks_of
+
+__all__ = [
+    "PAGE",
+    "PICTURE",
+    "FinishedTask",
+    "Screen",
+    "already_made",
+    "check_output_folder",
+    "draw_task",
+    "escape_undecodable_names",
+    "find_inputs",
+    "has_called_hook",
+    "has_picture",
+    "made_record",
+    "note_other_builds",
+    "picture_file",
+    "printable",
+    "record_end",
+    "remove_picture",
+    "report_folder",
+    "run_tasks",
+    "share",
+    "shared_tasks",
+    "task_entries",
+    "tasks_of",
+    "until_released",
+    "verb_name",
+    "workers_for",
+    "write_report",
+]
