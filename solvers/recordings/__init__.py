@@ -60,7 +60,7 @@ from .reading_settings import (
 from .recording_figures import recording_figures
 from .refuse_stand_ins import refuse_stand_ins
 from .scene_suffixes import SCENE_SUFFIXES, is_scene_file, suffix_by_content
-from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
+from .skeleton_files import read_acclaim, read_bvh, write_bvh
 
 __all__ = [
     "ALL_BODIES",
@@ -89,7 +89,6 @@ __all__ = [
     "open_bodies",
     "questions_of",
     "read_acclaim",
-    "read_acclaim_limits",
     "read_as",
     "read_bvh",
     "read_c3d",

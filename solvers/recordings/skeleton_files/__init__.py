@@ -1,7 +1,6 @@
 """Read and write skeletons with rotations: BVH, Acclaim, SMPL and Kimodo."""
 
 from .acclaim import find_skeleton, read_acclaim
-from .acclaim_limits import read_acclaim_limits
 from .bvh import open_bvh, read_bvh
 from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, open_kimodo
@@ -23,7 +22,6 @@ __all__ = [
     "open_mvnx",
     "open_smpl",
     "read_acclaim",
-    "read_acclaim_limits",
     "read_bvh",
     "read_motion_x",
     "read_vrma",

@@ -1,6 +1,5 @@
-"""Read Acclaim skeletons (ASF): bones, hierarchy, units and joint limits."""
+"""Read Acclaim skeletons (ASF): bones, hierarchy and units."""
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,6 @@ from ..conventions import PLAUSIBLE_REACH_M, guess_unit, longest_bone_path
 
 INCH = 0.0254
 ROOT = "root"
-BRACKETS = re.compile(r"\(([^()]*)\)")
 CHANNELS = {f"{kind}{axis}" for kind in "rt" for axis in "xyz"} | {"l"}
 
 
@@ -33,8 +31,6 @@ class AcclaimBone:
     """Axes of the first, second and third rotation."""
     channels: tuple[str, ...]
     """Channels in the AMC file, such as `rx`, `rz`."""
-    limits: Mapping[str, tuple[float, float]]
-    """Minimum and maximum of channels, if stored, in the units of the file."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +104,6 @@ class _SkeletonFile:
                 entries = {}
             elif keyword == "end":
                 yield entries
-            elif keyword.startswith("("):  # A bone has a line of limits for each channel.
-                entries["limits"] = entries.get("limits", []) + words
             else:
                 entries[keyword] = words[1:]
 
@@ -132,26 +126,7 @@ class _SkeletonFile:
             self._refuse(
                 f"{shown(name)} has the degrees of freedom {shown(' '.join(channels))!r}"
             )
-        limits = self._limits(name, entries.get("limits", []), channels)
-        return AcclaimBone(name, direction * length, frame, order, channels, limits)
-
-    def _limits(
-        self, name: str, words: list[str], channels: tuple[str, ...]
-    ) -> dict[str, tuple[float, float]]:
-        """Return the limits in brackets, in the order of the channels."""
-        pairs = BRACKETS.findall(" ".join(words))
-        if len(pairs) > len(channels):
-            self._refuse(f"{shown(name)} has more limits than degrees of freedom")
-        limits = {}
-        for channel, pair in zip(channels, pairs, strict=False):
-            try:
-                low, high = (float(bound) for bound in pair.replace(",", " ").split())
-            except ValueError:
-                low, high = np.inf, -np.inf
-            if not low <= high:
-                self._refuse(f"{shown(name)} has the limits {shown(pair)!r}")
-            limits[channel] = low, high
-        return limits
+        return AcclaimBone(name, direction * length, frame, order, channels)
 
     def _hierarchy(
         self, bones: Mapping[str, AcclaimBone]
