@@ -12,8 +12,8 @@ from ..conventions import ConstantRate
 from .images import NO_IMAGE
 
 MAX_LENGTH_RATIO = 4
-"""Maximum number of frames per image that numbers in names may give. Chosen by hand: x0.5 and
-x2 fail no test of this module."""
+"""Number of frames per image from which numbers in names are no frames. It guards folders of
+images from several takes (`test_distant_numbers_are_no_gap`)."""
 MAX_TIME_OFFSET_S = 0.02
 """Maximum offset in seconds of color from depth. By definition of the scripts of the TUM data
 set."""

@@ -17,8 +17,8 @@ WIDTHS = ((1920, 1440), (1280, 960), (640, 480), (256, 192))
 WITH_TIMES, POSE = 9, 7
 """Values in a line of the odometry: time, frame and pose, or the pose alone."""
 MAX_STATIC_MOTION_M = 0.1
-"""Maximum movement of a static camera, meters. Chosen by hand: x0.5 and x2 fail no test of this
-module."""
+"""Movement of the camera, meters, above which it is reported. It decides a sentence only, which
+rounds it to 0.1 m."""
 
 
 def stray_layout(root: Path) -> Layout | None:

@@ -205,6 +205,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
     "decides a sentence of a report only": (
         "denoising/window_estimates/channel_groups.POOR_FIT_FRACTION",
         "motion/humanoid/role_evidence.MIN_CONFIDENCE",
+        "recordings/depth_files/stray_scanner.MAX_STATIC_MOTION_M",
         "variation/learn_variation.MAX_DISTANCE_RATIO",
     ),
     "decides what is drawn only": DRAWN,

@@ -19,7 +19,6 @@ from solvers.recordings import (
     read_recording,
     read_tracked,
 )
-from solvers.recordings.depth_files.raw import read_depth_raw
 
 SMALL = Camera(9.0, 8.0, 3.5, 2.5, 8, 6)
 LENS = DepthSettings(fx=9.0, fy=8.0)
@@ -82,16 +81,6 @@ def test_in_utd_mhad_the_right_arm_is_at_the_left_of_the_picture(recordings):
 
     middle = np.average(np.arange(320), weights=seen.sum(axis=(0, 1)))
     assert np.average(np.arange(320), weights=moving.sum(axis=0)) < middle - 10.0
-
-
-def test_raw_frames_of_skeltrack(recordings):
-    for path in sorted((recordings / "depth" / "skeltrack").iterdir()):
-        expected = np.fromfile(path, "<u2").reshape(480, 640) * 0.001
-
-        recording = read_recording(path)
-
-        assert (recording.n_frames, recording.camera.width) == (1, 640)
-        assert_allclose(recording.frame(0), expected, rtol=1e-6)
 
 
 @pytest.mark.parametrize("packed", [True, False])
@@ -275,18 +264,3 @@ def test_a_camera_that_was_held_otherwise_sees_the_same_points(write, held, mirr
 def in_one_order(points: np.ndarray) -> np.ndarray:
     points = points[points[:, 2] > 0.0]
     return points[np.lexsort(points.round(9).T)]
-
-
-def test_raw_frames_of_another_camera(write):
-    depth = pictures(3)
-
-    recording = read_depth_raw(
-        write(depth.tobytes()), DepthSettings(width=8, height=6, fx=9.0, fy=8.0)
-    )
-
-    assert (recording.n_frames, recording.camera) == (3, SMALL)
-    assert_allclose(recording.frame(2), depth[2] * 0.001, rtol=1e-6)
-    with pytest.raises(InvalidFileError, match=r"8 x 6 pixels from an unknown camera"):
-        read_depth_raw(write(depth.tobytes()), DepthSettings(width=8, height=6))
-    with pytest.raises(InvalidFileError, match="is not a multiple of an image of 640 x 480"):
-        read_depth_raw(write(depth.tobytes()))

@@ -214,6 +214,14 @@ def test_every_third_picture_is_no_gap(tmp_path, depth):
     assert read_depth(folder, MILLIMETERS).n_frames == 9
 
 
+def test_distant_numbers_are_no_gap(tmp_path):
+    """They are of two takes, not of one with a hundred empty frames."""
+    plain(tmp_path, pictures(4))
+    plain(tmp_path, pictures(5), first=101)
+
+    assert read_depth(tmp_path, MILLIMETERS).n_frames == 9
+
+
 def test_a_folder_can_be_sent_to_another_process(tmp_path, depth):
     recording = read_depth(open3d(tmp_path, depth))
 
