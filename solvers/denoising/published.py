@@ -6,6 +6,7 @@ from ..arrays import Array
 from ..progress import Progress
 from ..signals import fill_channel_gaps, remove_outliers
 from .channels import Channels, Estimate
+from .outliers import OFFSET_DEVIATION
 from .window_priors import (
     FilterBases,
     FilterBasesSettings,
@@ -19,9 +20,6 @@ WELSCH_SCALE_DEG = 3.0
 """p of the Welsch estimator, degrees. From [LC10]."""
 PATTERN_WEIGHT = 0.1
 """Weight lambda of eq. 2.10. From [LC10]."""
-UNOBSERVED_DEVIATION = 30.0
-"""Standard deviation, degrees or centimeters, reported for missing samples and outliers: the
-method of [LC10] has none. Chosen by hand."""
 N_REWEIGHTS = 3
 """Reweightings of the samples per round."""
 MAX_ITERATIONS = 20
@@ -50,7 +48,7 @@ def filter_as_published(
         values[start::step], inliers[start::step] = motion + mean, weight
         iterations, converged = max(iterations, n_needed), converged and has_settled
         progress((start + 1) / step, "Filtering")
-    deviation = np.where(inliers > 0.5, WELSCH_SCALE_DEG, UNOBSERVED_DEVIATION)
+    deviation = np.where(inliers > 0.5, WELSCH_SCALE_DEG, OFFSET_DEVIATION)
     unknown = np.full_like(values, np.nan)
     return Estimate(values, inliers, deviation, unknown, iterations, converged), used
 
