@@ -18,19 +18,19 @@ AXES: dict[AxisName, Array] = {
 }  # fmt: skip
 """Axes of a file as directions of a motion that was read with Y up."""
 MIN_STANDING = -0.5
-"""Evidence, a ratio, of a body that is upside down. It is meant for handstands, which are rarer
-than bodies that lie. Chosen by hand: x0.5 and x2 fail no test of this module."""
+"""Evidence, a ratio, of a body that is upside down. It guards handstands, which must not
+outvote the rest pose (`test_a_handstand_stays_one`)."""
 MIN_TRAVEL_FRACTION = 1.0
-"""Travel, relative to the height of the body, from which it is evidence. It is meant for takes
-in place, whose small steps have any direction. Chosen by hand: x0.5 and x2 fail no test of this
-module."""
+"""Travel, relative to the height of the body, from which it is evidence. Chosen by hand: in 87
+upright takes of ten makers, longer travel has 0.71 to 0.99 of evidence for the right axis,
+shorter travel 0 to 0.92."""
 MAX_FLOOR_FRACTION = 0.4
 """Distance of the lowest joint from zero, relative to the height, that is no evidence. Chosen
 by hand: x0.5 fails `test_a_lying_actor_is_left_lying_and_reported`, x2
 `test_any_axis_may_be_up`."""
-MIN_SPREAD_FRACTION = 0.03
-"""Distance between the feet, relative to the height, below which a rest pose is folded. Chosen
-by hand: 5 cm of an adult; x0.5 and x2 fail no test of this module."""
+MIN_SPREAD_FRACTION = 0.06
+"""Distance between the feet, relative to the size, below which a rest pose is folded. Chosen by
+hand: in the rest poses of these takes it is 0.09 to 0.88, in a folded one 0."""
 
 
 class StandingJoints(NamedTuple):
@@ -65,7 +65,7 @@ def is_unfolded(rest: Array, body: StandingJoints) -> bool:
     """Whether the rest pose shows a body with separate legs, not all joints at one point."""
     spread = np.linalg.norm(rest[body.feet[0]] - rest[body.feet[-1]])
     return len(body.feet) < 2 or bool(
-        spread > 2 * MIN_SPREAD_FRACTION * np.ptp(rest[body.joints], axis=0).max()
+        spread > MIN_SPREAD_FRACTION * np.ptp(rest[body.joints], axis=0).max()
     )
 
 

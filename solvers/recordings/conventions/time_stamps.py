@@ -25,9 +25,8 @@ MIN_GAP_FRAMES = 1.6
 """Minimum distance in frame times of two frames between which a frame is missing, not late.
 Chosen by hand: x0.5 fails `test_a_cubic_is_followed_exactly_through_uneven_stamps`."""
 MAX_COUNTED_STEPS = 5.0
-"""Maximum step between two frames, in typical steps, that is used to measure the rate. It is
-meant for pauses, whose length need be no multiple of a frame. Chosen by hand: x0.5 and x2 fail
-no test of this module."""
+"""Maximum step between two frames, in typical steps, from which the rate is measured. It guards
+pauses, whose length need be no multiple of a frame (`test_pauses_do_not_change_the_rate`)."""
 MAX_DISTANCE_FRAMES = 0.5
 """Maximum distance in frame times of a time sample in a gap from the frame it copies. By
 definition half: farther away, another sample is nearer."""

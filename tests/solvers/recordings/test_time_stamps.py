@@ -49,6 +49,15 @@ def test_late_frames_are_interpolated_and_missing_frames_are_gaps():
     assert_allclose(found[expected, 0, 0], np.flatnonzero(expected) * FRAME, atol=1e-12)
 
 
+def test_pauses_do_not_change_the_rate():
+    """Six pauses of 20.4 frames each, at 27 Hz, which is no common rate."""
+    steps = np.where(np.arange(60) % 10 == 9, 20.4, 1.0) / 27.0
+
+    clock = ConstantRate("take", np.cumsum(steps))
+
+    assert clock.frame_rate == pytest.approx(27.0)
+
+
 def test_no_observed_frame_is_dropped_next_to_a_gap(rng):
     """However the clock drifts: each frame has a moment within half a frame time of it."""
     steps = np.where(rng.uniform(size=300) < 0.2, 2.0, 1.0) + rng.normal(scale=0.05, size=300)
