@@ -14,8 +14,8 @@ MAX_FRAME_S = 2.0
 steps of 5 to 100 Hz are 0.01 to 0.2 s, or 10 to 200 ms."""
 MAX_CENTER_FRACTION = 0.2
 """Distance of the middle of the hips from the origin, relative to the size of the body, up to
-which landmarks are those of the world, whose origin is there. It is meant for landmarks of the
-image, whose origin is a corner. Chosen by hand: x0.5 and x2 fail no test of this module."""
+which landmarks are those of the world, whose origin is there. Chosen by hand: in a picture,
+whose origin is a corner, it is 0.5 and more, since hips are in the middle of a body."""
 MIN_INSIDE = 0.95
 """Coordinates in a picture, a fraction of all. It guards takes of scenes, with a third and more
 outside; MediaPipe also guesses limbs that leave the picture."""

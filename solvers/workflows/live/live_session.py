@@ -21,9 +21,8 @@ from ...recordings.streams import (
 
 GESTURE_SETTINGS = GestureSettings()
 MIN_PERFORMANCE_S = 0.5
-"""Minimum duration in seconds of a performance to search with. It guards
-`test_performance_without_duration_is_dropped`. Chosen by hand: x0.5 and x2 fail no test of this
-module."""
+"""Minimum duration in seconds of a performance to search with. It guards a performance that
+ends where it begins (`test_performance_without_duration_is_dropped`)."""
 MAX_FRAMES = 20_000
 """Maximum number of recorded frames of a performance. It bounds the memory: eleven minutes at
 30 Hz."""
