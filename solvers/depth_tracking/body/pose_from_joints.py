@@ -13,7 +13,7 @@ from .normal_equations import (
 )
 from .pose_priors import LIMIT_WEIGHT, MAX_STEP, joint_limits, stay_near
 from .segment_kinematics import segment_frames, segment_twists
-from .tables import END_SEGMENTS, JOINTS, SEGMENTS
+from .tables import END_SEGMENTS, JOINTS, LENGTHS, OFFSETS, SEGMENTS
 
 _CARRIERS = np.array([*range(len(SEGMENTS)), *END_SEGMENTS])
 _YAW = COORDINATES.index("yaw")
@@ -22,9 +22,10 @@ _REST_WEIGHT = 1e-3
 _FRAME_WEIGHT = 100.0
 """Weight per square meter of a joint's distance. Chosen by hand; `make sensitivity` varies
 it."""
-_SHOULDER_RATIO = 1.1
-"""Ratio of half the distance of the upper arms to a shoulder's length, whose rest direction is
-not quite level. Chosen by hand; `make sensitivity` varies it."""
+_SHOULDER_JOINTS = [JOINTS.index("leftShoulder"), JOINTS.index("leftUpperArm")]
+_SHOULDER_RATIO = OFFSETS[_SHOULDER_JOINTS, 0, LENGTHS.index("leftShoulder")].sum()
+"""Ratio of half the distance of the upper arms to a shoulder's length. By definition of the
+offsets of both joints."""
 _ROTATION_POINTS = 0.05 * np.array([*np.eye(3), *-np.eye(3)])
 """Points of a segment, meters, that constrain its rotation; larger offsets weigh more. Chosen
 by hand: 5 cm is about the radius of a limb."""
