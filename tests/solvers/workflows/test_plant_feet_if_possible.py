@@ -87,12 +87,12 @@ def test_reliable_ankle_is_planted_near_its_rest_position(recordings, take):
         assert moved[sure].max(initial=0.0) < 0.05, name
 
 
-def test_missing_toe_that_points_up_is_flattened():
+@pytest.mark.parametrize("toe_reliability", [0.0, 1.0])
+def test_toe_that_points_up_is_flattened(toe_reliability):
     motion = standing(np.array([0.0, -0.1, 0.1]))
 
-    planted = plant_feet_if_possible(
-        motion, PLANTING, STANDING, reliability=reliability_of(motion, "FootLeft", 0.0)
-    ).motion
+    reliability = reliability_of(motion, "FootLeft", toe_reliability)
+    planted = plant_feet_if_possible(motion, PLANTING, STANDING, reliability=reliability).motion
 
     toe = positions_of(planted, "FootLeft") - positions_of(planted, "AnkleLeft")
     assert (toe[:, 2] < -0.02).all()
