@@ -19,17 +19,23 @@ settings.register_profile("repeatable", deadline=None, derandomize=True, databas
 settings.load_profile("repeatable")
 
 ON_ONE_PYTHON = {
+    "command_line/arguments/test_several_bodies.py": (3, 13),
     "command_line/batches/test_bad_files.py": (3, 13),
     "command_line/batches/test_batch.py": (3, 13),
+    "command_line/batches/test_faults_in_batches.py": (3, 13),
     "command_line/batches/test_many_machines.py": (3, 11),
     "command_line/batches/test_report.py": (3, 11),
     "command_line/farm": (3, 11),
     "command_line/sharing/test_claims.py": (3, 11),
+    "command_line/sharing/test_manifests_and_hooks.py": (3, 13),
+    "command_line/sharing/test_shards.py": (3, 13),
     "command_line/test_capture_verb.py": (3, 11),
     "command_line/test_command_line.py": (3, 11),
     "command_line/test_fix_verb.py": (3, 13),
     "command_line/test_library_verbs.py": (3, 11),
+    "command_line/test_odd_folders.py": (3, 13),
     "command_line/test_reconstruct_verb.py": (3, 11),
+    "command_line/test_replay_verb.py": (3, 13),
     "command_line/test_residuals_verb.py": (3, 11),
     "command_line/test_retarget_verbs.py": (3, 13),
     "command_line/test_simulate_verb.py": (3, 13),
@@ -43,14 +49,14 @@ ON_ONE_PYTHON = {
     "feet": (3, 13),
     "gestures": (3, 11),
     "markers": (3, 11),
-    "motion/humanoid/test_shifted_names.py": (3, 13),
-    "motion/humanoid/test_skeleton_families.py": (3, 11),
+    "motion/humanoid": (3, 13),
     "motion_fitting": (3, 13),
     "physics": (3, 13),
     "reconstruction": (3, 13),
-    "recordings/depth_files/test_fuzz_depth.py": (3, 11),
-    "recordings/joint_files/test_point_tables.py": (3, 11),
-    "recordings/joint_files/test_unnamed_joints.py": (3, 11),
+    "recordings/depth_files": (3, 11),
+    "recordings/joint_files": (3, 11),
+    "recordings/marker_files": (3, 13),
+    "recordings/skeleton_files": (3, 13),
     "recordings/streams": (3, 13),
     "recordings/test_fuzz.py": (3, 13),
     "recordings/test_fuzz_joints.py": (3, 11),
@@ -58,33 +64,50 @@ ON_ONE_PYTHON = {
     "retargeting": (3, 13),
     "retrieval": (3, 11),
     "signals/test_noise.py": (3, 11),
+    "test_archives.py": (3, 13),
     "test_solver_contracts.py": (3, 13),
     "variation": (3, 13),
     "workflows/test_capture_recording.py": (3, 11),
     "workflows/test_clean_from_library.py": (3, 13),
     "workflows/test_describe_files.py": (3, 11),
+    "workflows/test_fix_lacking_takes.py": (3, 13),
+    "workflows/test_fix_take.py": (3, 13),
+    "workflows/test_index_at_once.py": (3, 11),
     "workflows/test_index_files.py": (3, 11),
+    "workflows/test_joints_from_source.py": (3, 11),
+    "workflows/test_live_session.py": (3, 11),
+    "workflows/test_live_take.py": (3, 11),
     "workflows/test_motion_from_markers.py": (3, 11),
+    "workflows/test_pose_take.py": (3, 11),
     "workflows/test_prior_validation.py": (3, 13),
+    "workflows/test_reconstruct_from_library.py": (3, 13),
+    "workflows/test_reconstruct_recording.py": (3, 13),
+    "workflows/test_reliability_terms.py": (3, 13),
+    "workflows/test_vary_motions.py": (3, 13),
 }
-"""Below tests/solvers: families of pure numpy, and long files, which run on one Python where
-there are two. In Blender 4.5 and 5.2 what they test runs on both."""
+"""Below tests/solvers: families of pure numpy, readers, and long files, which run on one Python
+where there are two, unless they are named. What they test runs in both Blenders."""
+HERE = Path(__file__).parent
+ONLY_ON = {HERE / "solvers" / name: where for name, where in ON_ONE_PYTHON.items()}
+assert all(path.exists() for path in ONLY_ON)
+HAS_BOTH = (HERE.parent / ".venv-5.2" / "ready").exists()
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    here, root = Path(__file__).parent, Path(__file__).parents[1]
-    only = {here / "solvers" / name: where for name, where in ON_ONE_PYTHON.items()}
-    assert all(path.exists() for path in only)
-    if not (root / ".venv-5.2" / "ready").exists():
-        return
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Skip what runs on another Python, which then need not be imported here."""
     own = sys.version_info[:2]
-    elsewhere = [
-        item
-        for item in items
-        if any(only.get(path, own) != own for path in (item.path, *item.path.parents))
+    if not HAS_BOTH or ONLY_ON.get(collection_path, own) == own:
+        return None
+    named = [
+        (config.invocation_params.dir / arg.split("::")[0]).resolve() for arg in config.args
     ]
-    items[:] = [item for item in items if item not in elsewhere]
-    config.hook.pytest_deselected(items=elsewhere)
+    return not any(path.is_relative_to(collection_path) for path in named) or None
+
+
+def pytest_report_header() -> str:
+    own = sys.version_info[:2]
+    n_elsewhere = sum(HAS_BOTH and where != own for where in ONLY_ON.values())
+    return f"{n_elsewhere} files and folders run on another Python (tests/conftest.py)"
 
 
 @pytest.fixture
