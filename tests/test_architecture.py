@@ -2,7 +2,6 @@
 
 import ast
 from collections import Counter
-from collections.abc import Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -34,14 +33,17 @@ def modules(path: str) -> list[Path]:
 
 
 @cache
-def tree(module: Path) -> ast.Module:
-    return ast.parse(module.read_text(encoding="utf-8"))
+def nodes(module: Path) -> list[ast.Import | ast.ImportFrom | ast.ClassDef]:
+    """The imports and classes of a module, wherever they stand."""
+    tree = ast.parse(module.read_text(encoding="utf-8"))
+    kinds = ast.Import, ast.ImportFrom, ast.ClassDef
+    return [node for node in ast.walk(tree) if isinstance(node, kinds)]
 
 
 def imports(module: Path) -> set[tuple[int, str]]:
-    """(number of leading dots, first name) of each import statement, wherever it stands."""
+    """(number of leading dots, first name) of each import statement."""
     found = set()
-    for node in ast.walk(tree(module)):
+    for node in nodes(module):
         if isinstance(node, ast.Import):
             found |= {(0, alias.name.split(".")[0]) for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -50,16 +52,19 @@ def imports(module: Path) -> set[tuple[int, str]]:
     return found
 
 
-def imported_paths(module: Path) -> Iterator[Path]:
+@cache
+def imported_paths(module: Path) -> set[Path]:
     """Modules and packages of ours that a module imports from, as paths without a suffix."""
-    for node in ast.walk(tree(module)):
+    found = set()
+    for node in nodes(module):
         if not isinstance(node, ast.ImportFrom) or not node.level:
             continue
         target = module.parents[node.level - 1].joinpath(*(node.module or "").split("."))
         for alias in node.names:
             inner = target / alias.name
             is_module = not node.module and inner.with_suffix(".py").exists()
-            yield inner if is_module or inner.is_dir() else target
+            found.add(inner if is_module or inner.is_dir() else target)
+    return found
 
 
 def folder(path: Path) -> Path:
@@ -169,7 +174,7 @@ def test_each_class_has_a_name_of_its_own():
         node.name
         for layer in MAY_IMPORT
         for module in modules(layer)
-        for node in ast.walk(tree(module))
+        for node in nodes(module)
         if isinstance(node, ast.ClassDef)
     )
 

@@ -67,10 +67,15 @@ def bent(motion: Motion, knee: int, angles: np.ndarray) -> Motion:
     return motion.with_poses(rotations)
 
 
+@pytest.fixture(scope="module", params=[30.0, 120.0])
+def made(request):
+    """The made takes at a frame rate, by name."""
+    return made_takes(request.param)
+
+
 @pytest.mark.parametrize("name", PLANS)
-@pytest.mark.parametrize("rate", [30.0, 120.0])
-def test_feet_of_made_takes_are_fixed_in_contact(name, rate):
-    take = made_takes(rate)[name]
+def test_feet_of_made_takes_are_fixed_in_contact(made, name):
+    take = made[name]
     legs = find_legs(take.motion.skeleton)
     joints = np.array([[leg.ankle, leg.toe] for leg in legs])
     feet = forward_kinematics(take.motion).positions[:, joints]
