@@ -37,7 +37,7 @@ help:  ## this list
 .PHONY: test-wheel
 test: environments  ## every check and test below, on Blender 4.5 and 5.2, two at a time
 	@$(SUBMAKE) --output-sync=target --keep-going \
-	    lint test-blender-4.5 test-blender-5.2 test-source-4.5 test-source-5.2 test-wheel
+	    test-source-4.5 test-blender-4.5 test-blender-5.2 test-source-5.2 lint test-wheel
 	@if [ -e .venv-5.2/ready ]; then echo "All is well, on Blender 4.5 and 5.2."; \
 	else echo "$(NO_5.2)"; echo "All is well, on Blender 4.5."; fi
 
