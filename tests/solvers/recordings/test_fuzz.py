@@ -11,7 +11,7 @@ from hypothesis import given
 
 from solvers.recordings import read_acclaim, read_recording
 
-EXAMPLES = 100
+EXAMPLES = 50
 
 
 @pytest.mark.parametrize("kind", ["bvh", "c3d", "trc", "amc"])

@@ -7,7 +7,7 @@ from hypothesis import given
 
 from solvers.recordings import read_recording
 
-EXAMPLES = 60
+EXAMPLES = 30
 
 
 @pytest.mark.parametrize("kind", JOINT_FILES)

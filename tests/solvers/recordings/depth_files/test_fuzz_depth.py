@@ -13,7 +13,7 @@ from PIL import Image
 
 from solvers.recordings import DepthSettings, read_depth, read_recording
 
-EXAMPLES = 60
+EXAMPLES = 30
 OWN = DepthSettings(fx=9.0, fy=8.0)
 DEPTH = pictures(5)
 BY_COLUMN = DEPTH.transpose(1, 2, 0)
