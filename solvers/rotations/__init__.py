@@ -1,6 +1,6 @@
 """Unit quaternions (w x y z): conversions, algebra, interpolation and least-squares fits."""
 
-from .quaternion_algebra import multiply_components, rotate_components
+from .quaternion_algebra import cross, multiply_components, rotate_components
 from .representations import (
     FULL_TURN_RAD,
     IDENTITY,
@@ -31,6 +31,7 @@ __all__ = [
     "IDENTITY",
     "RIGID_POINTS",
     "angle_between",
+    "cross",
     "euler_from_quaternion",
     "fit_rotations",
     "fit_similarity",

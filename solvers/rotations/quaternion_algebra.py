@@ -59,5 +59,5 @@ def rotate_components(rotation: Components, vector: Components) -> tuple[Array, 
 
 
 def cross(a: Array, b: Array) -> Array:
-    """`np.cross` of (..., 3) arrays without its overhead: three times faster."""
+    """Return the cross product, shape (..., 3), at a third of the cost of `np.cross`."""
     return joined(cross_components(components_of(a), components_of(b)))

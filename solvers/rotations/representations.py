@@ -266,11 +266,12 @@ def rotation_between(start: ArrayLike, stop: ArrayLike) -> Array:
     start, stop = np.broadcast_arrays(np.asarray(start, float), np.asarray(stop, float))
     lengths = np.linalg.norm(start, axis=-1) * np.linalg.norm(stop, axis=-1)
     agreement = (lengths + np.einsum("...i,...i->...", start, stop))[..., None]
-    shortest = np.concatenate([agreement, cross(start, stop)], axis=-1)
-    axis = cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
-    half_turn = np.concatenate([np.zeros_like(lengths)[..., None], axis], axis=-1)
-    opposite = (shortest[..., 0] <= 1e-12 * lengths) & (lengths > 0.0)
-    result = np.where(opposite[..., None], half_turn, shortest)
+    result = np.concatenate([agreement, cross(start, stop)], axis=-1)
+    opposite = (result[..., 0] <= 1e-12 * lengths) & (lengths > 0.0)
+    if opposite.any():
+        axis = cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
+        half_turn = np.concatenate([np.zeros_like(lengths)[..., None], axis], axis=-1)
+        result = np.where(opposite[..., None], half_turn, result)
     result = np.where((lengths == 0.0)[..., None], IDENTITY, result)
     return normalize(result)
 

@@ -15,7 +15,7 @@ from ...motion.humanoid import (
     SPINE,
     positions_from_directions,
 )
-from ...rotations import nearest_rotations
+from ...rotations import cross, nearest_rotations
 
 HEAD = POSTURE_JOINTS.index("head")
 ARMS, LEGS, SHINS, TOES = (
@@ -142,6 +142,6 @@ def bone_axis_corrections(
 def _axes(up: Array, left: Array) -> Array:
     """Right-handed axes as columns (left, back, up), shape (n, 3, 3)."""
     z = up / np.maximum(np.linalg.norm(up, axis=-1, keepdims=True), 1e-6)
-    y = np.cross(z, left)
+    y = cross(z, left)
     y /= np.maximum(np.linalg.norm(y, axis=-1, keepdims=True), 1e-6)
-    return np.stack([np.cross(y, z), y, z], axis=-1)
+    return np.stack([cross(y, z), y, z], axis=-1)

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ...rotations import cross
 
 Complex = NDArray[np.complex128]
 
@@ -23,7 +24,7 @@ def measure_flexion(upper: Array, lower: Array) -> tuple[Array, Array]:
 
     From the unit vectors, (..., 3), of the segments above and below the hinge.
     """
-    normals = np.cross(upper, lower)
+    normals = cross(upper, lower)
     along = np.einsum("...i,...i->...", upper, lower)
     return normals, np.arctan2(np.linalg.norm(normals, axis=-1), along)
 
@@ -34,7 +35,7 @@ def axial_angles(directions: Array, untwisted: Array, hinges: Array) -> Complex:
     All of shape (..., 3), `hinges` of any length; NaN where one is NaN or no angle exists.
     """
     cos = np.einsum("...i,...i->...", untwisted, hinges)
-    sin = np.einsum("...i,...i->...", np.cross(untwisted, hinges), directions)
+    sin = np.einsum("...i,...i->...", cross(untwisted, hinges), directions)
     size = np.hypot(cos, sin)
     is_defined = size > MIN_LENGTH
     return np.asarray(

@@ -7,7 +7,7 @@ from scipy.linalg import solveh_banded
 
 from ...arrays import Array
 from ...motion import Skeleton
-from ...rotations import inverse, multiply, quaternion_from_rotation_vector, rotate
+from ...rotations import cross, inverse, multiply, quaternion_from_rotation_vector, rotate
 from .limb_angles import Complex, axial_angles, measure_flexion, unit_vectors
 
 HINGES = {"Arm": (0.0, -1.0, 0.0), "Leg": (0.0, 1.0, 0.0)}
@@ -119,7 +119,7 @@ def rotations_from_flexion(
     """
     along = unit_vectors(skeleton.offsets[limb.lower])
     axis = rotate(rotations, along)
-    hinge = rotate(rotations, unit_vectors(np.cross(along, limb.flexion_direction)))
+    hinge = rotate(rotations, unit_vectors(cross(along, np.array(limb.flexion_direction))))
     normal, flexion = measure_flexion(
         axis, unit_vectors(positions[:, limb.end] - positions[:, limb.lower])
     )
@@ -172,8 +172,8 @@ def rotations_from_thumb(
     frame_rate : float, hertz
     """
     axis = rotate(rotations, unit_vectors(along))
-    reference = rotate(rotations, unit_vectors(np.cross(along, thumb)))
-    normal = np.cross(axis, unit_vectors(observed))
+    reference = rotate(rotations, unit_vectors(cross(along, thumb)))
+    normal = cross(axis, unit_vectors(observed))
     return twist_to_normal(
         rotations,
         axis,

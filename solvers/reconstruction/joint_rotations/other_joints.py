@@ -1,6 +1,7 @@
 """Move the tracked joints that are not posture joints along with the nearest posture joint."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,12 @@ def find_anchors(names: Sequence[str]) -> NDArray[np.intp]:
 
     A posture joint is its own anchor. Others use the nearest one in the tree, ancestors first.
     """
+    return _anchors(tuple(names))
+
+
+@lru_cache(maxsize=16)
+def _anchors(names: tuple[str, ...]) -> NDArray[np.intp]:
+    """Find the anchors once for each sensor: a live take needs them in every frame."""
     posture_joints = _posture_joints(names)
     parents = joint_parents(names)
     connected = [
@@ -43,7 +50,9 @@ def find_anchors(names: Sequence[str]) -> NDArray[np.intp]:
         anchors.append(
             next((posture_joints[each] for each in frontier if each in posture_joints), 0)
         )
-    return np.array(anchors, dtype=np.intp)
+    found = np.array(anchors, dtype=np.intp)
+    found.flags.writeable = False
+    return found
 
 
 class JointOffsets(NamedTuple):

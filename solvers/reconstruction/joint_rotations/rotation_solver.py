@@ -59,6 +59,7 @@ class RotationSolver:
         self.limbs = self._limbs()
         self.hands = {self.roles[role] for role in HANDS if role in self.roles}
         self.world = np.empty((*observed.shape[:2], 4))
+        self.has_length = np.linalg.norm(skeleton.offsets, axis=-1) > MIN_BONE_M
         self.hinges: dict[str, HingeAxes] = {}
         """Where similar poses have the hinges of limbs, by the roles of their upper joints."""
 
@@ -138,7 +139,7 @@ class RotationSolver:
         if joint in self.hands:  # a thumb is too noisy to orient the hand
             children = children[:1]
         for child in children:
-            if np.linalg.norm(self.skeleton.offsets[child]) > MIN_BONE_M:
+            if self.has_length[child]:
                 rest.append(self.skeleton.offsets[child])
                 tracked.append(self._child_direction(joint, child))
                 is_exclusive.append(True)
@@ -175,6 +176,8 @@ class RotationSolver:
         Where children are observed but too close to define a direction, the base rotation
         stays.
         """
+        if not self.skeleton.children[joint]:
+            return above
         directions = self._child_directions(joint)
         if not len(directions.rest):
             return above

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...motion.humanoid import POSTURE_JOINTS
+from ...rotations import cross
 from .library_body import bone_frames
 from .limb_angles import MIN_LENGTH, Complex, measure_flexion, unit_vectors
 from .limb_twist import HINGES, HingeAxes
@@ -123,7 +124,7 @@ def hinges_from_twists(postures: Array, twists: LimbTwists) -> dict[str, HingeAx
     twists : LimbTwists
     """
     directions, untwisted = untwisted_hinges(postures)
-    perpendicular = np.cross(directions, untwisted)
+    perpendicular = cross(directions, untwisted)
     cos, sin = twists.vectors.real[..., None], twists.vectors.imag[..., None]
     axes = np.nan_to_num(cos * untwisted + sin * perpendicular)
     return {

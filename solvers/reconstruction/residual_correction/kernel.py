@@ -67,10 +67,13 @@ def squared_exponential(one: Array, other: Array, length: float) -> Array:
     return np.asarray(np.exp(-0.5 * squared_distances(one, other) / length**2))
 
 
-def proximity(features: Array, points: Array, far: tuple[float, float]) -> Array:
-    """Return 1 near the points, falling to 0 with distance from the nearest, shape (n,)."""
+def proximity(squared: Array, far: tuple[float, float]) -> Array:
+    """Return 1 near the points, falling to 0 with distance from the nearest, shape (n,).
+
+    `squared` are the squared distances from all points, shape (n, n_points).
+    """
     near, fall_off = far
-    distance = np.sqrt(squared_distances(features, points).min(axis=1))
+    distance = np.sqrt(squared.min(axis=1))
     return np.asarray(np.exp(-0.5 * (np.maximum(distance - near, 0.0) / fall_off) ** 2))
 
 

@@ -26,6 +26,14 @@ class Prediction:
     variances: Array
     coverage: Array
 
+    def halves(self) -> tuple["Prediction", "Prediction"]:
+        """Return the first half of the frames, and the second."""
+        offsets, variances, coverage = (
+            np.split(each, 2) for each in (self.offsets, self.variances, self.coverage)
+        )
+        first, second = map(Prediction, offsets, variances, coverage)
+        return first, second
+
 
 def interpolate_prediction(prediction: Prediction, frames: NDArray[np.intp]) -> Prediction:
     """Interpolate predictions of some frames linearly to all frames."""

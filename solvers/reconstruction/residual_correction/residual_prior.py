@@ -19,10 +19,10 @@ from .inputs import (
     fill_missing,
     neighborhood_features,
 )
-from .kernel import Kernel, proximity
+from .kernel import Kernel, proximity, squared_distances
 from .movement_process import MEMBERS, MovementProcess, movement_from_arrays
 from .prediction import Prediction, interpolate_prediction
-from .sparse_process import basis_functions, cholesky_root, shared_design
+from .sparse_process import basis_values, cholesky_root, shared_design
 
 MOVEMENT_PREFIX = "movement_"
 """Prefix of the movement process's array names in a file."""
@@ -175,10 +175,10 @@ class ResidualPrior:
 
     def _predict_static(self, features: Array) -> Prediction:
         """Predict from each pose separately."""
-        prediction = self._predict_learned(features)
         if not self.mirrored:
-            return prediction
-        mirror_image = self._predict_learned(mirror_postures(features))
+            return self._predict_learned(features)
+        both = self._predict_learned(np.concatenate([features, mirror_postures(features)]))
+        prediction, mirror_image = both.halves()
         counterparts = list(MIRROR_JOINTS)
         weight = np.where(
             np.arange(N_JOINTS) == counterparts, 0.5, np.arange(N_JOINTS) < counterparts
@@ -200,23 +200,20 @@ class ResidualPrior:
         offsets, variances = np.zeros(shape), np.full(shape[:2], np.inf)
         coverage = np.zeros(shape[:2])
         pose_features = posture_components(features, self.mean_pose, self.components)
-        near = proximity(pose_features, self.pose_points, POSTURE_COVERAGE_M)
+        pose_distances = squared_distances(pose_features, self.pose_points)
+        near = proximity(pose_distances, POSTURE_COVERAGE_M)
         for index, name in enumerate(self.joints):
             joint, kernel = POSTURE_JOINTS.index(str(name)), self.kernel(index)
-            local, roots = neighborhood_features(features, joint), self._cholesky_roots[index]
-            bases = (
-                basis_functions(local, self.local_points[index], kernel.lengths[0], roots[0]),
-                basis_functions(pose_features, self.pose_points, kernel.lengths[1], roots[1]),
-            )
+            local = neighborhood_features(features, joint)
+            distances = squared_distances(local, self.local_points[index]), pose_distances
+            bases = [*map(basis_values, distances, kernel.lengths, self._cholesky_roots[index])]
             columns = shared_design(bases, kernel)
             offsets[:, joint] = columns @ self.means[index]
             variance = np.einsum("ni,ni->n", columns @ self.covariances[index], columns)
             for one, shared in zip(bases, kernel.shared, strict=True):
                 variance += shared * np.maximum(1.0 - (one**2).sum(axis=1), 0.0)
             variances[:, joint] = variance
-            coverage[:, joint] = near * proximity(
-                local, self.local_points[index], LOCAL_COVERAGE_M
-            )
+            coverage[:, joint] = near * proximity(distances[0], LOCAL_COVERAGE_M)
         return Prediction(offsets, variances, coverage)
 
     def constant_variances(self, constant: bool = True) -> Array:

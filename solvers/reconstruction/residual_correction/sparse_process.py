@@ -14,7 +14,7 @@ from scipy.cluster.vq import kmeans2
 from scipy.linalg import solve_triangular
 
 from ...arrays import Array
-from .kernel import Kernel, squared_exponential
+from .kernel import Kernel, squared_distances, squared_exponential
 
 REGULARIZATION = 1e-6
 """Added to the diagonal of a covariance, relative to the variance. It guards a
@@ -40,16 +40,18 @@ def cholesky_root(points: Array, length: float) -> Array:
     )
 
 
-def basis_functions(
-    features: Array, points: Array, length: float, root: Array | None = None
-) -> Array:
-    """Return functions of unit prior variance whose sum is the process, (n, n_points).
+def basis_functions(features: Array, points: Array, length: float) -> Array:
+    """Return functions of unit prior variance whose sum is the process, (n, n_points)."""
+    root = cholesky_root(points, length)
+    return basis_values(squared_distances(features, points), length, root)
 
-    `root` is the `cholesky_root` of the same points and length, if already computed.
+
+def basis_values(squared: Array, length: float, root: Array) -> Array:
+    """Return the functions of `basis_functions`, given what it computes first.
+
+    `squared` are the squared distances from the points; `root` is their `cholesky_root`.
     """
-    if root is None:
-        root = cholesky_root(points, length)
-    values = squared_exponential(features, points, length)
+    values = np.exp(-0.5 * squared / length**2)
     return np.asarray(solve_triangular(root, values.T, lower=True, check_finite=False).T)
 
 
