@@ -4,13 +4,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...rotations import skew_matrices
+from ...rotations import cross, skew_matrices
 from .coordinates import N_COORDINATES, N_ROOT, ROTATION_AXES
 from .model import BodyModel
 from .tables import END_SEGMENTS, PARENTS, SEGMENTS
 
 N_SEGMENTS = len(SEGMENTS)
 _PARENT = np.array(PARENTS)
+_YAW_ROLL_PITCH = np.eye(3)[[1, 2, 0]]
+"""Axes of the rotations of the root, in the order of its coordinates."""
 _SMALL_ANGLE = 1e-4
 """Radians below which a series replaces the quotient. It guards a division."""
 
@@ -36,6 +38,16 @@ def _axis_tables() -> tuple[NDArray[np.intp], Array, Array, Array]:
     )
 
 
+def _levels() -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+    """List segments equally far from the root, and their parents; nearest first, no root."""
+    depths = [0]
+    for parent in PARENTS[1:]:
+        depths.append(depths[parent] + 1)
+    levels = (np.flatnonzero(np.array(depths) == depth) for depth in range(1, max(depths) + 1))
+    return [(segments, _PARENT[segments]) for segments in levels]
+
+
+_LEVELS = _levels()
 _AXIS_SEGMENT, _AXES, _MOVES, _AXIS_COORDINATE = _axis_tables()
 
 
@@ -54,22 +66,15 @@ def segment_frames(body: BodyModel, poses: Array) -> Array:
         camera_from_segment of each of the `SEGMENTS`; its translation is the joint.
     """
     poses = np.asarray(poses, dtype=np.float64)
-    local_rotations = matrix_from_rotation_vector(
+    frames = np.zeros((*poses.shape[:-1], N_SEGMENTS, 4, 4))
+    frames[..., :3, :3] = matrix_from_rotation_vector(
         np.einsum("sik,...k->...si", ROTATION_AXES, poses)
     )
-    rotations = np.empty((*poses.shape[:-1], N_SEGMENTS, 3, 3))
-    origins = np.empty((*poses.shape[:-1], N_SEGMENTS, 3))
-    rotations[..., 0, :, :] = _root_rotation(poses)
-    origins[..., 0, :] = poses[..., :3]
-    for segment, parent in enumerate(PARENTS[1:], start=1):
-        parent_rotation = rotations[..., parent, :, :]
-        rotations[..., segment, :, :] = parent_rotation @ local_rotations[..., segment, :, :]
-        origins[..., segment, :] = (
-            origins[..., parent, :] + parent_rotation @ body.offsets[segment]
-        )
-    frames = np.zeros((*poses.shape[:-1], N_SEGMENTS, 4, 4))
-    frames[..., :3, :3], frames[..., :3, 3] = rotations, origins
+    frames[..., :3, 3] = body.offsets[:N_SEGMENTS]
     frames[..., 3, 3] = 1.0
+    frames[..., 0, :3, :3], frames[..., 0, :3, 3] = _root_rotation(poses), poses[..., :3]
+    for segments, parents in _LEVELS:
+        frames[..., segments, :, :] = frames[..., parents, :, :] @ frames[..., segments, :, :]
     return frames
 
 
@@ -104,7 +109,7 @@ def segment_twists(pose: Array, frames: Array) -> Array:
     local = np.einsum("nij,nj->ni", _left_jacobians(vectors), _AXES)
     axes = np.einsum("nij,nj->ni", rotations[_PARENT[_AXIS_SEGMENT]], local)
     centers = frames[_AXIS_SEGMENT, :3, 3]
-    screws = np.concatenate([axes, np.cross(centers, axes)], axis=1)
+    screws = np.concatenate([axes, cross(centers, axes)], axis=1)
     segment_screws = _MOVES[:, np.newaxis, :] * screws.T
     twists: Array = segment_screws @ _AXIS_COORDINATE
     twists[:, :, :N_ROOT] = _root_twists(pose)
@@ -140,22 +145,21 @@ def _series(first: Array, second: Array, crosses: Array) -> Array:
 
 
 def _root_rotation(poses: Array) -> Array:
-    yaw, roll, pitch = np.moveaxis(poses[..., 3:N_ROOT], -1, 0)
-    unit = np.eye(3)
-    about_y, about_z, about_x = (
-        matrix_from_rotation_vector(angle[..., np.newaxis] * unit[axis])
-        for angle, axis in ((yaw, 1), (roll, 2), (pitch, 0))
-    )
+    about_y, about_z, about_x = np.moveaxis(_root_rotations(poses), -3, 0)
     rotation: Array = about_y @ about_z @ about_x
     return rotation
+
+
+def _root_rotations(poses: Array) -> Array:
+    """Return the rotations of yaw, roll and pitch, shape (..., 3, 3, 3)."""
+    return matrix_from_rotation_vector(poses[..., 3:N_ROOT, np.newaxis] * _YAW_ROLL_PITCH)
 
 
 def _root_twists(pose: Array) -> Array:
     """Return the twists of the root coordinates, shape (6, 6)."""
     twists = np.zeros((6, N_ROOT))
     twists[3:, :3] = np.eye(3)
-    about_y = matrix_from_rotation_vector(np.array([0.0, pose[3], 0.0]))
-    about_z = matrix_from_rotation_vector(np.array([0.0, 0.0, pose[4]]))
+    about_y, about_z, _ = _root_rotations(pose)
     axes = np.array([[0.0, 1.0, 0.0], about_y[:, 2], (about_y @ about_z)[:, 0]])
-    twists[:3, 3:], twists[3:, 3:] = axes.T, np.cross(pose[:3], axes).T
+    twists[:3, 3:], twists[3:, 3:] = axes.T, cross(pose[:3], axes).T
     return twists
