@@ -1,7 +1,7 @@
 """Clean motion to learn from, and what is learned of it."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...solvers.denoising import (
     FilterBases,
@@ -14,7 +14,9 @@ from ...solvers.motion import JointLimits, Motion, Tracks
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.recordings import is_scene_file, read_motion_or_tracks
 from ..jobs.in_blender import BackgroundBlender, read_blends
-from ..library.solve_prior import LibraryPrior
+
+if TYPE_CHECKING:  # imports every family of solvers, which the process of Clean waits for
+    from ..library.solve_prior import LibraryPrior
 
 
 class Learned(NamedTuple):
@@ -43,7 +45,7 @@ class ExampleSource:
     found: tuple[str, ...] = ()
     """The same from folders; those that cannot be read or have no motion are left out."""
     bases_file: str = ""
-    library: LibraryPrior | None = None
+    library: "LibraryPrior | None" = None
     blender: BackgroundBlender | None = None
 
     def read(self, progress: Progress = unwatched) -> Examples:
