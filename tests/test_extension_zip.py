@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from zipfile import ZipFile
@@ -197,12 +198,14 @@ def test_zip_does_not_change_the_import_path_or_use_the_network(shipped):
         assert not changed, f"{name} changes the import path"
 
 
+@cache
 def modules(archive: ZipFile) -> list[tuple[str, ast.Module]]:
     """Name and syntax tree of each Python file in the zip."""
     names = [name for name in archive.namelist() if name.endswith(".py")]
     return [(name, ast.parse(archive.read(name), name)) for name in names]
 
 
+@cache
 def absolute_imports(tree: ast.Module) -> set[str]:
     """The top-level names that a module imports, wherever the statements stand."""
     names = set()

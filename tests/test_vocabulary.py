@@ -146,10 +146,11 @@ def joined_texts() -> str:
 
 @pytest.mark.parametrize("retired", RETIRED_IN_TEXTS)
 def test_texts_have_no_retired_word(retired):
+    word = re.escape(retired)  # first in the pattern, which makes the search fast
+    pattern = re.compile(rf"{word}(?<![\w-]{word})(?![\w-])")
     positions = []
-    if retired in joined_texts():
-        pattern = re.compile(rf"(?<![\w-]){re.escape(retired)}(?![\w-])", re.IGNORECASE)
-        positions = [where for where, text in texts() if pattern.search(text)]
+    if pattern.search(joined_texts()):
+        positions = [where for where, text in texts() if pattern.search(text.lower())]
 
     assert not positions, (
         f"instead of {retired!r} write: {RETIRED_IN_TEXTS[retired]}; see {positions}"
