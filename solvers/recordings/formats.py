@@ -9,6 +9,7 @@ from ..files import open_regular, unreadable
 from .containers import (
     BYTE_ORDER_MARK,
     ZIP_MEMBER,
+    as_utf8,
     check_folder_access,
     is_c3d,
     json_length,
@@ -162,7 +163,7 @@ def detect_format(path: Path | str) -> Format | None:
         return None
     try:
         with open_regular(path) as file:
-            head = file.read(HEAD_BYTES).removeprefix(BYTE_ORDER_MARK)
+            head = as_utf8(file.read(HEAD_BYTES))
             head += file.read(min(json_length(head), MAX_JSON_BYTES))
             if _is_wide_table(head):
                 head += file.read(MAX_TITLES_BYTES)

@@ -45,6 +45,39 @@ numbers, which JSON does not limit."""
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+")
 PART = re.compile(r"(left|right|l|r)?(hands?|fingers?|faces?|mano)|lh|rh")
 """Word in the key of a part of a person."""
+GEOMETRY = rb"[^\[]*\"(?:MultiLineString|(?:Multi)?Polygon)\""
+"""Type of a geometry in GeoJSON, whose coordinates are nested like joints."""
+LIST = rb"\[\s*(?:(?:\[[\s\[\],]*\]|null)\s*,\s*)*"
+"""The begin of a list of frames, of which the first ones may have no people."""
+ROW = rb"\[(?:\s*-?\d[^,\[\]]*,){23}"
+"""Numbers of a body in a row; matrices of something else are shorter."""
+OBJECT = rb"(?:\[\s*)+\{\s*\"x\"\s*:"
+HEAD = re.compile(
+    rb"\s*(?:\{(?!"
+    + GEOMETRY
+    + rb")[^\[]*)?"
+    + LIST
+    + rb"(?:(?:\[\s*){2,}[-\d]|"
+    + b"|".join((OBJECT, ROW))
+    + rb")|\s*[\[{].*?\"("
+    + "|".join(POINT_KEYS).encode()
+    + rb')"\s*:\s*(\[\s*([\[{\d-]|null)|\{)|\s*[\[{].*?\"('
+    + "|".join(LANDMARK_KEYS).encode()
+    + rb')"\s*:\s*\[',
+    re.DOTALL,
+)
+JOINT = re.compile(
+    # The word begins the name, or follows a sign, a lower-case letter or a word of its own.
+    rb"\"(?:[^\"]*(?:[^\"a-zA-Z]|(?<=[a-z])(?=[A-Z])))?"
+    rb"(?i:left|right|upper|lower|up|low|fore|mid|[lr])*"
+    rb"(?i:hips?|pelvis|spine|head|neck|nose|shoulder|arm|elbow|wrist|hand|leg|knee|ankle|foot|root)"
+    rb"(?i:left|right|joint|center|top|base|tip)*(?![a-z])[^\"]*\"\s*:\s*"
+    rb"(?:\{\s*\"(?i:pos\w*)\"\s*:\s*)?"
+    rb"(?:\{\s*\"[xX]\"\s*:\s*\[?\s*\"?[-\d]"
+    rb"|\[\s*(?:null\s*,\s*)*(?:\[\s*)?-?\d[^\s,\[\]]*(?:\s*,\s*-?\d[^\s,\[\]]*){2})"
+)
+NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*(\[\s*){2,}[-\d]")
+"""The first frame of those that are keyed by their number."""
 
 
 class JsonPerson(NamedTuple):
@@ -54,6 +87,13 @@ class JsonPerson(NamedTuple):
     points: Points
     is_identified: bool = True
     """Whether the file says who it is; otherwise it is a place in a list of landmarks."""
+
+
+def is_frames_json(head: bytes) -> bool:
+    """Return whether a file lists joints, from its first bytes."""
+    if HEAD.match(head) or NUMBERED.match(head):
+        return True
+    return head.lstrip()[:1] in {b"{", b"["} and JOINT.search(head) is not None
 
 
 def people_of_frame(frame: Any, key: str = "") -> Iterator[JsonPerson]:

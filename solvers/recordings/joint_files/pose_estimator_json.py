@@ -1,6 +1,5 @@
 """Read JSON of any pose estimator that lists the joints of people, frame by frame."""
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -36,13 +35,11 @@ from .body_json import BodiesFrame, BodyJoints, open_frames, stacked
 from .joined_frames import MAX_PEOPLE, NumberedFrame, joined_frames
 from .json_people import (
     NUMBER_KEYS,
-    POINT_KEYS,
     RATE_KEYS,
     is_number,
     people_of_frame,
     time_of_frame,
 )
-from .json_points import LANDMARK_KEYS
 from .keyed_frames import json_by_frame
 
 LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
@@ -53,39 +50,6 @@ of files whose names differ between frames."""
 MAX_FEW_COLUMNS = 1 << 22
 """Columns of named joints in all frames that any file may have. It bounds the memory:
 130 MB."""
-GEOMETRY = rb"[^\[]*\"(?:MultiLineString|(?:Multi)?Polygon)\""
-"""Type of a geometry in GeoJSON, whose coordinates are nested like joints."""
-LIST = rb"\[\s*(?:(?:\[[\s\[\],]*\]|null)\s*,\s*)*"
-"""The begin of a list of frames, of which the first ones may have no people."""
-ROW = rb"\[(?:\s*-?\d[^,\[\]]*,){23}"
-"""Numbers of a body in a row; matrices of something else are shorter."""
-OBJECT = rb"(?:\[\s*)+\{\s*\"x\"\s*:"
-HEAD = re.compile(
-    rb"\s*(?:\{(?!"
-    + GEOMETRY
-    + rb")[^\[]*)?"
-    + LIST
-    + rb"(?:(?:\[\s*){2,}[-\d]|"
-    + b"|".join((OBJECT, ROW))
-    + rb")|\s*[\[{].*?\"("
-    + "|".join(POINT_KEYS).encode()
-    + rb')"\s*:\s*(\[\s*([\[{\d-]|null)|\{)|\s*[\[{].*?\"('
-    + "|".join(LANDMARK_KEYS).encode()
-    + rb')"\s*:\s*\[',
-    re.DOTALL,
-)
-JOINT = re.compile(
-    # The word begins the name, or follows a sign, a lower-case letter or a word of its own.
-    rb"\"(?:[^\"]*(?:[^\"a-zA-Z]|(?<=[a-z])(?=[A-Z])))?"
-    rb"(?i:left|right|upper|lower|up|low|fore|mid|[lr])*"
-    rb"(?i:hips?|pelvis|spine|head|neck|nose|shoulder|arm|elbow|wrist|hand|leg|knee|ankle|foot|root)"
-    rb"(?i:left|right|joint|center|top|base|tip)*(?![a-z])[^\"]*\"\s*:\s*"
-    rb"(?:\{\s*\"(?i:pos\w*)\"\s*:\s*)?"
-    rb"(?:\{\s*\"[xX]\"\s*:\s*\[?\s*\"?[-\d]"
-    rb"|\[\s*(?:null\s*,\s*)*(?:\[\s*)?-?\d[^\s,\[\]]*(?:\s*,\s*-?\d[^\s,\[\]]*){2})"
-)
-NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*(\[\s*){2,}[-\d]")
-"""The first frame of those that are keyed by their number."""
 
 
 class _Content(NamedTuple):
@@ -103,13 +67,6 @@ class _Content(NamedTuple):
         """Number of frames of the person in most frames."""
         counts = Counter(body for frame in self.frames for body in frame.bodies)
         return max(counts.values(), default=0)
-
-
-def is_frames_json(head: bytes) -> bool:
-    """Return whether a file lists joints, from its first bytes."""
-    if HEAD.match(head) or NUMBERED.match(head):
-        return True
-    return head.lstrip()[:1] in {b"{", b"["} and JOINT.search(head) is not None
 
 
 def is_frame_json(path: Path | str) -> bool:

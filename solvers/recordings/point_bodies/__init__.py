@@ -16,20 +16,33 @@ from .point_arrays import (
     stand_body,
     without_undetected,
 )
-from .time_units import TimeName, read_time, second_of_times, time_name
+from .point_titles import coordinate_of_title, is_rotation, numbered_axes
+from .time_units import (
+    TimeCells,
+    TimeName,
+    column_of_times,
+    read_time,
+    second_of_times,
+    time_name,
+)
 from .unnamed_joints import has_layout
 
 __all__ = [
     "HIPS",
     "LANDMARK_JOINTS",
     "N_POINTS",
+    "TimeCells",
     "TimeName",
     "body_of_named_points",
     "body_of_points",
+    "column_of_times",
+    "coordinate_of_title",
     "has_layout",
+    "is_rotation",
     "is_world",
     "landmark_columns",
     "missing_limbs",
+    "numbered_axes",
     "points_of_array",
     "read_body",
     "read_time",

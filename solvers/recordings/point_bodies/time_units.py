@@ -1,6 +1,7 @@
 """Find times among named values, and judge their unit from names and steps."""
 
 import re
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from functools import lru_cache
 from math import isfinite
@@ -25,8 +26,9 @@ SECONDS = {
 }  # fmt: skip
 """Seconds per unit, by its name without the plural s."""
 WORD_OF_TIME = re.compile(
-    r"(?i)(?:time[\s_\-]*stamps?|times?|ts?|zeit(?:stempel)?|temps|tiempo|tempo"
-    r"|offset(?=.)|pts(?=.))"
+    r"(?i)(?:(?:unix|utc|system|capture|sensor|device|recording|relative)[\s_\-]*)?"
+    r"(?:time[\s_\-]*stamps?|times?|zeit(?:stempel)?|temps|tiempo|tempo|時間|时间|時刻|elapsed"
+    r"|offset(?=.)|pts(?=.)|ts?)"
     r"(?:[\s_\-]*(?:in\s)?[\s_\-]*[(\[]?\s*(?P<unit>[a-z\u00b5\u03bc]+)\s*[)\]]?)?"
 )
 MIN_UNIT_LETTERS = 3
@@ -61,7 +63,7 @@ def _singular(unit: str) -> str:
 def read_time(value: Any, second: float | None) -> tuple[float, float | None]:
     """Return a time and its seconds per unit; NaN for what is no time.
 
-    A text may be a number, or a date with a time of day as in ISO 8601.
+    A text may be a number, a date with a time of day as in ISO 8601, or a time of day.
 
     Parameters
     ----------
@@ -73,12 +75,7 @@ def read_time(value: Any, second: float | None) -> tuple[float, float | None]:
             return float(value), second
         except ValueError:
             pass
-        try:
-            moment = datetime.fromisoformat(value.strip())
-        except ValueError:
-            return np.nan, second
-        moment = moment if moment.tzinfo else moment.replace(tzinfo=UTC)
-        return moment.timestamp(), 1.0
+        return _seconds_of_date(value.strip(), second)
     if isinstance(value, bool) or not isinstance(value, int | float):
         return np.nan, second
     try:
@@ -86,6 +83,37 @@ def read_time(value: Any, second: float | None) -> tuple[float, float | None]:
     except OverflowError:
         return np.nan, second
     return (time if isfinite(time) else np.nan), second
+
+
+def _seconds_of_date(text: str, second: float | None) -> tuple[float, float | None]:
+    """Return the seconds of a date, or of a time of day; NaN and `second` for other texts."""
+    for text_of_date in (text, f"1970-01-01T{text}"):
+        try:
+            moment = datetime.fromisoformat(text_of_date)
+        except ValueError:
+            continue
+        moment = moment if moment.tzinfo else moment.replace(tzinfo=UTC)
+        return moment.timestamp(), 1.0
+    return np.nan, second
+
+
+def column_of_times(titles: Sequence[str]) -> int | None:
+    """Return the column of times, those with a unit first; None without one."""
+    names = {column: name for column, title in enumerate(titles) if (name := time_name(title))}
+    return min(names, key=lambda column: names[column].second is None, default=None)
+
+
+class TimeCells:
+    """Converts the cells of a column of times to numbers, those of dates too."""
+
+    def __init__(self, name: TimeName) -> None:
+        self.second = name.second
+        """Seconds per unit, known after the last cell; None if nothing states it."""
+
+    def __call__(self, cell: bytes) -> bytes:
+        """Return the number of a cell; blank for what is no time."""
+        time, self.second = read_time(cell.decode("latin-1").replace(",", "."), self.second)
+        return repr(time).encode() if isfinite(time) else b""
 
 
 class TimeUnit(NamedTuple):
