@@ -151,3 +151,25 @@ def test_lines_of_joints_may_have_units_and_comments(read_any, walk, titles):
     recording = read_any("\n".join([titles, *lines]))
 
     assert recording.tracks.n_frames == F and "left_wrist" in recording.names
+
+
+@pytest.mark.parametrize("axes", [
+    lambda p: (p[..., 0], p[..., 1], p[..., 2]), lambda p: (p[..., 0], p[..., 2], -p[..., 1]),
+], ids=["z up", "y up"])  # fmt: skip
+@pytest.mark.parametrize("lies", [True, False])
+def test_an_actor_who_lies_all_the_time_is_no_clear_case(
+    read_any, collected_messages, walk, axes, lies
+):
+    """Before, an actor on the back, head along an axis of the file, was stood upright."""
+    messages, progress = collected_messages
+    body = walk
+    if lies:
+        x, y, z = np.moveaxis(walk, -1, 0)
+        body = np.stack([x, z + 2.0, -y], axis=-1)
+        body[..., 2] += 0.05 - body[..., 2].min(axis=1, keepdims=True)
+    head = body[:, [0, 6]].mean(axis=1) * 1.3 - body[:, [3, 9]].mean(axis=1) * 0.3
+    points = np.concatenate([body, head[:, None]], axis=1)
+
+    read_any(table(np.stack(axes(points), axis=-1), names=[*NAMES, "head"]), progress=progress)
+
+    assert any("is interpreted as up" in message for message in messages) == lies
