@@ -24,7 +24,7 @@ SECONDS = {
     "microsecond": 1e-6,
     "ns": 1e-9, "nsec": 1e-9, "nano": 1e-9, "nanosecond": 1e-9,
 }  # fmt: skip
-"""Seconds per unit, by its name without the plural s."""
+"""Seconds per unit, by its name without the plural s. By definition of the units."""
 WORD_OF_TIME = re.compile(
     r"(?i)(?:(?:unix|utc|system|capture|sensor|device|recording|relative)[\s_\-]*)?"
     r"(?:time[\s_\-]*stamps?|times?|zeit(?:stempel)?|temps|tiempo|tempo|時間|时间|時刻|elapsed"
