@@ -113,8 +113,12 @@ def _is_number(value: Any) -> bool:
 def _confidence_of(joint: Any) -> float:
     if not isinstance(joint, Mapping):
         return np.nan
-    value = next(members(joint, CONFIDENCE_KEYS), None)
-    return float(value) if _is_number(value) and abs(float(value)) <= 1.0 else np.nan
+    value = next(members(joint, CONFIDENCE_KEYS), np.nan)
+    try:
+        confidence = float(value) if _is_number(value) else np.nan
+    except (ValueError, OverflowError):  # a decimal comma, or a number without bounds
+        return np.nan
+    return confidence if abs(confidence) <= 1.0 else np.nan
 
 
 def _names_of(joints: list[Mapping[str, Any]]) -> tuple[str, ...]:
