@@ -9,6 +9,7 @@ from ..files import open_regular, unreadable
 from .containers import (
     BYTE_ORDER_MARK,
     ZIP_MEMBER,
+    as_utf8,
     check_folder_access,
     is_c3d,
     json_length,
@@ -19,7 +20,6 @@ from .joint_files import (
     is_azure_csv,
     is_azure_json,
     is_frame_json,
-    is_frame_mediapipe,
     is_frames_json,
     is_irds,
     is_joint_csv,
@@ -27,7 +27,6 @@ from .joint_files import (
     is_kinect_csv,
     is_long_table,
     is_mediapipe_csv,
-    is_mediapipe_json,
     is_msr_action3d,
     is_npy,
     is_ntu_skeleton,
@@ -50,7 +49,6 @@ from .joint_files import (
     open_zed_json,
     read_kinect_csv,
     read_mediapipe_csv,
-    read_mediapipe_json,
     read_msr_action3d,
     read_ui_prmd,
 )
@@ -141,12 +139,6 @@ FORMATS = (
     Format("Nuitrack CSV", is_nuitrack_csv, open_nuitrack_csv),
     Format("Nuitrack JSON", is_nuitrack_json, open_nuitrack_json),
     Format("MediaPipe CSV", is_mediapipe_csv, one_body(read_mediapipe_csv)),
-    Format(
-        "MediaPipe JSON",
-        is_mediapipe_json,
-        one_body(read_mediapipe_json),
-        is_one_frame=is_frame_mediapipe,
-    ),
     Format("joint CSV", is_joint_csv, open_joint_csv),
     Format("joint JSON", is_joint_json, open_joint_json),
     Format("JSON of joints", is_frames_json, open_frames_json, is_one_frame=is_frame_json),
@@ -171,7 +163,7 @@ def detect_format(path: Path | str) -> Format | None:
         return None
     try:
         with open_regular(path) as file:
-            head = file.read(HEAD_BYTES).removeprefix(BYTE_ORDER_MARK)
+            head = as_utf8(file.read(HEAD_BYTES))
             head += file.read(min(json_length(head), MAX_JSON_BYTES))
             if _is_wide_table(head):
                 head += file.read(MAX_TITLES_BYTES)

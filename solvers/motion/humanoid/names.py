@@ -24,6 +24,13 @@ MIN_SIDED_JOINTS = 6
 """Joints with a mirrored name, from which a single letter in that place is a side."""
 
 EXPORT_NUMBER = re.compile(r"(.+)_(\d+)$")
+SIDE_WORDS = {
+    **dict.fromkeys(("links", "linke", "linker", "linkes", "gauche", "izquierdo", "izquierda",
+                     "izq"), "left"),
+    **dict.fromkeys(("rechts", "rechte", "rechter", "rechtes", "droit", "droite", "derecho",
+                     "derecha"), "right"),
+}  # fmt: skip
+"""Words for the sides in other languages."""
 JAPANESE_SIDES = str.maketrans({"左": " left ", "右": " right "})
 FINGER = re.compile(
     r"(thumb|index|mid(?:dle)?|ring|pinky|little|親指|人指|人差指|中指|薬指|小指).*?"
@@ -227,7 +234,8 @@ def _swapped(word: str, side: str, remainder: str) -> str:
 def _words(name: str) -> list[str]:
     """Split at separators, digits and capitals: "J_Bip_L_UpperArm" is j, bip, l, upper, arm."""
     plain = unicodedata.normalize("NFKC", name).translate(JAPANESE_SIDES)
-    return [word.lower() for word in WORD.findall(plain)]
+    words = (word.lower() for word in WORD.findall(plain))
+    return [SIDE_WORDS.get(word, word) for word in words]
 
 
 def _fingers(names: Sequence[str], roles: Mapping[str, str]) -> dict[str, str]:

@@ -240,4 +240,33 @@ TABLES: dict[str, tuple[str, ...]] = {
         "hand wrist", "upperLeg upLeg thigh", "lowerLeg lowLeg loLeg shin calf leg",
         "foot ankle", "toes toe toeBase ball",
     ),
+    "German": (
+        "Becken Hüfte Huefte", "Wirbelsäule Wirbelsaeule Rücken", "Brust Oberkörper", "",
+        "Hals Nacken", "Kopf",
+        "Schlüsselbein Schluesselbein", "Schulter Oberarm", "Ellenbogen Ellbogen Unterarm",
+        "Handgelenk Hand",
+        "Hüfte Huefte Oberschenkel", "Knie Unterschenkel",
+        "Fußgelenk Fussgelenk Knöchel Knoechel Sprunggelenk Fuß Fuss",
+        "Zehen Zeh Zehe Fußspitze Fussspitze Fuß Fuss",
+    ),
+    "French": (
+        "bassin hanches", "colonne dos", "poitrine thorax torse", "", "cou", "tête tete",
+        "clavicule", "épaule epaule bras", "coude avantbras", "poignet main",
+        "hanche cuisse", "genou jambe", "cheville pied", "orteils orteil pied",
+    ),
+    "Spanish": (
+        "pelvis caderas cadera", "columna espalda", "pecho tórax torax", "", "cuello", "cabeza",
+        "clavícula clavicula", "hombro brazo", "codo antebrazo", "muñeca muneca mano",
+        "cadera muslo", "rodilla pierna", "tobillo pie", "dedos punta pie",
+    ),
+    "Japanese": (  # of keypoints: the shoulder is the joint of the arm
+        "骨盤 腰", "背骨 脊椎", "胸", "", "首", "頭",
+        "鎖骨", "肩", "肘 ひじ", "手首",
+        "股関節 腰", "膝 ひざ", "足首", "つま先 爪先",
+    ),
+    "Chinese": (
+        "骨盆 盆骨 臀部", "脊柱 脊椎 腰部 腰", "胸部 胸", "", "颈部 脖子 颈", "头部 头",
+        "锁骨", "肩 肩膀 肩部 上臂", "肘 手肘 肘部 前臂", "手腕 腕 腕部 手",
+        "髋 髋部 胯 大腿", "膝 膝盖 膝部 小腿", "脚踝 踝 足踝 脚", "脚趾 脚尖 脚",
+    ),
 }  # fmt: skip

@@ -1,7 +1,7 @@
 """Read container formats and tables: C3D, Matroska, MATLAB, NumPy, JSON and text."""
 
 from .c3d_file import BLOCK_BYTES, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
-from .delimited import find_separator, split_cells, stream_cells
+from .delimited import SPACE, find_separator, split_cells, stream_cells
 from .folder_scan import check_folder_access, files_below, is_folder
 from .frame_files import (
     FrameFiles,
@@ -49,6 +49,7 @@ from .stored_bytes import (
 from .text import (
     BYTE_ORDER_MARK,
     ROWS_AT_ONCE,
+    as_utf8,
     decode_text,
     parse_rows,
     read_bytes,
@@ -72,6 +73,7 @@ __all__ = [
     "NUMBER",
     "NUMBERS",
     "ROWS_AT_ONCE",
+    "SPACE",
     "ZIP_MEMBER",
     "Block",
     "ByteSlice",
@@ -93,6 +95,7 @@ __all__ = [
     "UniqueNames",
     "archive_names",
     "array_from_json",
+    "as_utf8",
     "check_folder_access",
     "check_n_joints",
     "check_n_poses",

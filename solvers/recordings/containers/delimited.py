@@ -14,7 +14,9 @@ from .growing_table import GrowingTable
 from .line_reader import LineReader
 from .text import ROWS_AT_ONCE, parse_rows
 
-SEPARATORS = (b"\t", b";", b",")
+SEPARATORS = (b"\t", b";", b",", b"|")
+SPACE = b" "
+"""Separator of lines without any other."""
 QUOTED = re.compile(rb'"([^"]*)"')
 NO_CONVERTERS: Mapping[int, Callable[[bytes], bytes]] = MappingProxyType({})
 INSIDE_QUOTES = b"\0"
@@ -24,11 +26,14 @@ INSIDE_QUOTES = b"\0"
 def find_separator(line: bytes) -> bytes:
     """Return the separator that is most frequent in a line, outside quotes."""
     plain = QUOTED.sub(b"", line)
-    return max(SEPARATORS, key=plain.count)
+    found = max(SEPARATORS, key=plain.count)
+    return found if found in plain or SPACE not in plain.strip() else SPACE
 
 
 def split_cells(line: bytes, separator: bytes) -> list[bytes]:
     """Return the cells of a line, without quotes and surrounding space."""
+    if separator == SPACE:
+        return line.split()
     if b'"' not in line:
         return [cell.strip() for cell in line.split(separator)]
     line = QUOTED.sub(lambda match: match[1].replace(separator, INSIDE_QUOTES), line)
@@ -46,6 +51,7 @@ def stream_cells(
     is_end: Callable[[bytes], bool] = lambda line: False,
     keep_blank: bool = False,
     converters: Mapping[int, Callable[[bytes], bytes]] = NO_CONVERTERS,
+    prepare: Callable[[bytes], bytes] = bytes,
 ) -> NDArray[np.float64]:
     """Read the numbers of each remaining line, up to a line that ends the table.
 
@@ -67,6 +73,8 @@ def stream_cells(
         Whether a line of blank cells is a row of NaN; otherwise it is skipped.
     converters : mapping of column to callable
         Returns the number for a cell that is a word; blank for NaN.
+    prepare : callable
+        Returns a line as one of the cells that are wanted.
 
     Returns
     -------
@@ -86,7 +94,8 @@ def stream_cells(
                 ended = is_end(line)
                 if ended:
                     break
-                spaced = _spaced(line, separator, width, converters, f"{path}, line {number}")
+                row = prepare(line)
+                spaced = _spaced(row, separator, width, converters, f"{path}, line {number}")
                 is_row = spaced or (keep_blank and separator in line)
                 lines.append(spaced or b"nan " * width if is_row else b"")
             numbers = range(part.first, part.first + len(lines))

@@ -30,7 +30,8 @@ class JsonMember(NamedTuple):
 def json_members(path: Path | str, *, lists: bool = False) -> Iterator[JsonMember]:
     """Yield the members of the outermost object, lists element by element.
 
-    With `lists`, the outermost value may be a list, whose elements have an empty key.
+    With `lists`, the outermost value may be a list, whose elements have an empty key, or there
+    may be one in each line.
 
     Raises InvalidFileError if the file is missing or not a JSON object.
     """
@@ -39,7 +40,9 @@ def json_members(path: Path | str, *, lists: bool = False) -> Iterator[JsonMembe
         text = content.decode("utf-8")
         del content
         start = _skip_space(text, 0)
-        if lists and text[start] == "[":
+        if lists and _has_lines(text, start):
+            yield from _lines(text, start)
+        elif lists and text[start] == "[":
             yield from _elements(text, start, "")
         else:
             yield from _members(text)
@@ -52,8 +55,12 @@ def json_content(path: Path | str, done: float = 1.0) -> JsonMember:
 
     Raises InvalidFileError if the file is missing or not JSON.
     """
+    content = read_bytes(path)
     try:
-        return JsonMember("", parse_json(read_bytes(path)), done)
+        text = content.decode("utf-8")
+        if _has_lines(text, _skip_space(text, 0)):
+            return JsonMember("", [line.value for line in _lines(text, 0)], done)
+        return JsonMember("", parse_json(text), done)
     except (ValueError, RecursionError):
         raise _damaged(path) from None
 
@@ -73,6 +80,28 @@ def _damaged(path: Path | str) -> InvalidFileError:
     return InvalidFileError(
         f"{path} is not readable as JSON: it is damaged or cut short. Export it again."
     )
+
+
+def _has_lines(text: str, start: int) -> bool:
+    """Return whether a text has a value of JSON in each line, as loggers write."""
+    end = text.find("\n", start)
+    if end < 0 or text[end - 2 : end].strip()[-1:] not in {"}", "]"}:
+        return False
+    following = _skip_space(text, end)
+    if text[following : following + 1] not in {"{", "["}:
+        return False
+    try:
+        return DECODER.raw_decode(text, start)[1] <= end
+    except ValueError:
+        return False
+
+
+def _lines(text: str, at: int) -> Iterator[JsonMember]:
+    at = _skip_space(text, at)
+    while at < len(text):
+        value, at = DECODER.raw_decode(text, at)
+        yield JsonMember("", value, at / len(text))
+        at = _skip_space(text, at)
 
 
 def _members(text: str) -> Iterator[JsonMember]:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ...errors import InvalidFileError
 from ...files import open_regular, unreadable
-from .text import BYTE_ORDER_MARK
+from .text import BYTE_ORDER_MARK, WIDE_MARKS, as_utf8
 
 BLOCK_BYTES = 1 << 22
 """Bytes per read."""
@@ -111,6 +111,9 @@ def _blocks(path: Path) -> Iterator[tuple[list[bytes], float]]:
             size = max(1, file.seek(0, 2))
             file.seek(0)
             mark = file.read(len(BYTE_ORDER_MARK))
+            if mark.startswith(WIDE_MARKS):
+                yield as_utf8(mark + file.read()).splitlines(), 1.0
+                return
             incomplete = [] if mark == BYTE_ORDER_MARK else [mark]
             while block := file.read(BLOCK_BYTES):
                 end = _end_of_lines(block)

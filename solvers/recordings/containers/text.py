@@ -2,7 +2,8 @@
 
 import mmap
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -15,15 +16,46 @@ from .names import shown
 
 ROWS_AT_ONCE = 2000
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
-MISSING = {b"nan", b"-nan", b"inf", b"-inf", b"null", b"none", b"-"}
+WIDE_MARKS = (b"\xff\xfe", b"\xfe\xff")
+"""Byte-order marks of UTF-16, in which Excel and PowerShell save text."""
+EAST_ASIAN = ("shift_jis", "gbk")
+BODY_LETTERS = frozenset(
+    "左右腰骨盤盆上下半身背脊椎柱胸首頭头颈鎖锁肩膀肘腕手股関关節节膝盖足踝脚趾尖先髋臀胯臂腿前親人中薬小指目部爪"
+    "ひじざつまセンター"
+)
+"""Letters in Japanese and Chinese names of joints, by which their encoding is recognized."""
+MISSING = {b"nan", b"n/a", b"na", b"-nan", b"inf", b"-inf", b"null", b"none", b"-"}
 
 
 def decode_text(line: bytes) -> str:
-    """Decode a line of UTF-8 or, failing that, of Latin-1, which any bytes are."""
+    """Decode a line of UTF-8 or, failing that, of Latin-1, which any bytes are.
+
+    Names of joints in Shift-JIS or GBK are recognized by their letters.
+    """
     try:
         return line.decode()
     except UnicodeDecodeError:
-        return line.decode("latin-1")
+        return max(_decodings(line), key=_is_of_body)
+
+
+def as_utf8(content: bytes) -> bytes:
+    """Return the content of a file without byte-order mark, in UTF-8 if it was in UTF-16."""
+    if content.startswith(WIDE_MARKS):
+        return content.decode("utf-16", "replace").encode()
+    return content.removeprefix(BYTE_ORDER_MARK)
+
+
+def _decodings(line: bytes) -> Iterator[str]:
+    yield line.decode("latin-1")
+    for encoding in EAST_ASIAN:
+        with suppress(UnicodeDecodeError):
+            yield line.decode(encoding)
+
+
+def _is_of_body(text: str) -> bool:
+    """Return whether most letters beyond ASCII are those of joints in Japanese or Chinese."""
+    letters = [letter for letter in text if not letter.isascii()]
+    return sum(letter in BODY_LETTERS for letter in letters) > len(letters) / 2
 
 
 def map_bytes(path: Path | str) -> bytes | mmap.mmap:
@@ -53,7 +85,7 @@ def read_bytes(path: Path | str) -> bytes:
         raise InvalidFileError(f"There is no file {path}.")
     try:
         with open_regular(path) as file:
-            return file.read().removeprefix(BYTE_ORDER_MARK)
+            return as_utf8(file.read())
     except OSError as error:
         raise unreadable(path, error) from None
 

@@ -25,6 +25,7 @@ from .bodies import (
     stack_body_frames,
 )
 from .body_axes import (
+    UpAxis,
     UpAxisName,
     describe_guessed_axis,
     estimate_up_axis,
@@ -92,6 +93,7 @@ __all__ = [
     "Body",
     "ConstantRate",
     "MarkerSubject",
+    "UpAxis",
     "UpAxisName",
     "axes_of_points",
     "bodies_of_frames",

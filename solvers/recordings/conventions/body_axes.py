@@ -23,6 +23,7 @@ from .standing_joints import (
     StandingJoints,
     is_unfolded,
     measure_floor,
+    measure_rest,
     measure_standing,
     measure_travel,
     sampled_positions,
@@ -58,6 +59,9 @@ more; the motion alone has 0.79 and more in all 87 takes."""
 CLEAR_FLOOR_LEAD = 0.3
 """Lead of the evidence of the floor, a ratio, for that. Chosen by hand: it is 0.40 and more in
 those takes, and 0.09 in `bvh_test3.bvh`, which is near zero on both axes."""
+MIN_LYING_FLOOR = 0.8
+"""Evidence of the floor along another axis, a ratio, from which the body may lie there rather
+than stand. Chosen by hand: joints of who lies are up to 8 % of the stature above the floor."""
 MIN_REST_STANDING = 0.7
 """Evidence, a ratio, from which the rest pose has an axis of its own. Chosen by hand: x2 fails
 `test_any_axis_may_be_up`."""
@@ -145,7 +149,8 @@ def _weigh(
 ) -> UpAxis:
     """Weigh the evidence; the rest pose gets the axis of the motion.
 
-    A body that stands along an axis that the format does not have is no clear case.
+    A body that stands along an axis that the format does not have is no clear case, nor is one
+    whose feet are far from zero but that lies on zero along another axis.
     """
     standing = measure_standing(positions, body)
     floor, travel = measure_floor(positions, body), measure_travel(positions, body)
@@ -157,14 +162,17 @@ def _weigh(
         + (expected or EXPECTED).get(axis, 0.0)
         for axis in expected or AXES
     }
+    resting = measure_rest(positions, body, floor)
     best, second = sorted(totals, key=lambda axis: totals[axis], reverse=True)[:2]
     lead = (totals[best] - totals[second]) / CLEAR_LEAD
     on_floor = floor[best] - floor[second] >= CLEAR_FLOOR_LEAD
     stands = min(standing[best], floor[best]) if on_floor else 0.0
     elsewhere = max((standing[axis] for axis in AXES if axis not in totals), default=0.0)
     is_elsewhere = elsewhere >= CLEAR_STANDING and elsewhere > standing[best]
-    is_clear = (lead >= 1.0 or stands >= CLEAR_STANDING) and not is_elsewhere
-    sure = 0.0 if is_elsewhere else max(lead, stands)
+    lying = max((resting[axis] for axis in totals if axis != best), default=0.0)
+    may_lie = lying >= MIN_LYING_FLOOR and lying - floor[best] >= CLEAR_FLOOR_LEAD
+    is_clear = (lead >= 1.0 or stands >= CLEAR_STANDING) and not (is_elsewhere or may_lie)
+    sure = 0.0 if is_elsewhere or may_lie else max(lead, stands)
     confidence = 1.0 if is_clear else float(np.clip(sure, 0.0, 0.99))
     return UpAxis(best, best, is_clear, 0.5 + 0.5 * confidence)
 

@@ -28,6 +28,9 @@ MAX_FLOOR_FRACTION = 0.4
 """Distance of the lowest joint from zero, relative to the height, that is no evidence. Chosen
 by hand: x0.5 fails `test_a_lying_actor_is_left_lying_and_reported`, x2
 `test_any_axis_may_be_up`."""
+MIN_HIPS_FRACTION = 0.03
+"""Height of the hips of who lies on a floor, relative to the body. Chosen by hand: 5 cm of an
+adult, whose hips are 8 cm and more above the floor."""
 MIN_SPREAD_FRACTION = 0.06
 """Distance between the feet, relative to the size, below which a rest pose is folded. Chosen by
 hand: in the rest poses of these takes it is 0.09 to 0.88, in a folded one 0."""
@@ -98,6 +101,18 @@ def measure_floor(positions: Array, body: StandingJoints) -> dict[AxisName, floa
         )
         for axis, direction in AXES.items()
     }
+
+
+def measure_rest(
+    positions: Array, body: StandingJoints, floor: Mapping[AxisName, float]
+) -> dict[AxisName, float]:
+    """Return the evidence of the floor along each axis, 0 where the hips are the origin."""
+    least = MIN_HIPS_FRACTION * height_of(positions, body)
+    hips = {
+        axis: abs(float(np.median(positions[:, body.hips] @ direction)))
+        for axis, direction in AXES.items()
+    }
+    return {axis: floor[axis] if hips[axis] >= least else 0.0 for axis in AXES}
 
 
 def measure_travel(positions: Array, body: StandingJoints) -> dict[AxisName, float]:

@@ -6,16 +6,10 @@ from .freemocap import is_npy, read_freemocap, read_freemocap_points
 from .irds import is_irds, open_irds
 from .joint_csv import is_joint_csv, open_joint_csv, write_joint_csv
 from .joint_json import is_joint_json, open_joint_json, write_joint_json
+from .json_people import is_frames_json, people_of_frame, time_of_frame
 from .kinect_csv import is_kinect_csv, read_kinect_csv
 from .long_table import is_long_table, open_long_table
 from .mediapipe_csv import is_mediapipe_csv, read_mediapipe_csv
-from .mediapipe_json import (
-    frame_landmarks,
-    frame_time,
-    is_frame_mediapipe,
-    is_mediapipe_json,
-    read_mediapipe_json,
-)
 from .msr_action3d import is_msr_action3d, read_msr_action3d
 from .ntu_skeleton import is_ntu_skeleton, open_ntu_skeleton
 from .nuitrack import (
@@ -25,19 +19,16 @@ from .nuitrack import (
     open_nuitrack_json,
 )
 from .point_table import is_point_table, open_point_table
-from .pose_estimator_json import is_frame_json, is_frames_json, open_frames_json
+from .pose_estimator_json import is_frame_json, open_frames_json
 from .table_titles import MAX_TITLE_LINES
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
 from .zed_json import is_zed_json, open_zed_json
 
 __all__ = [
     "MAX_TITLE_LINES",
-    "frame_landmarks",
-    "frame_time",
     "is_azure_csv",
     "is_azure_json",
     "is_frame_json",
-    "is_frame_mediapipe",
     "is_frames_json",
     "is_irds",
     "is_joint_csv",
@@ -45,7 +36,6 @@ __all__ = [
     "is_kinect_csv",
     "is_long_table",
     "is_mediapipe_csv",
-    "is_mediapipe_json",
     "is_msr_action3d",
     "is_npy",
     "is_ntu_skeleton",
@@ -66,14 +56,15 @@ __all__ = [
     "open_nuitrack_json",
     "open_point_table",
     "open_zed_json",
+    "people_of_frame",
     "read_freemocap",
     "read_freemocap_points",
     "read_kinect_csv",
     "read_mediapipe_csv",
-    "read_mediapipe_json",
     "read_msr_action3d",
     "read_ui_prmd",
     "read_ui_prmd_pair",
+    "time_of_frame",
     "write_joint_csv",
     "write_joint_json",
 ]

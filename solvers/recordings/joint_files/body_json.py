@@ -23,6 +23,8 @@ class BodyJoints(NamedTuple):
     """Shape (n_joints, 3)."""
     confidence: Array
     """Shape (n_joints,), NaN where the file has none."""
+    names: tuple[str, ...] = ()
+    """Of the joints, where they may be others in each frame; otherwise empty."""
 
 
 class BodiesFrame(NamedTuple):

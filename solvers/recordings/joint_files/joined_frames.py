@@ -1,7 +1,7 @@
 """Join what a file of JSON holds of each person, or in each row, to the frames of a take."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby, pairwise
 from math import isnan
 from pathlib import Path
@@ -11,7 +11,7 @@ import numpy as np
 
 from ...errors import InvalidFileError
 from .body_json import BodiesFrame, BodyJoints
-from .json_people import PEOPLE_KEYS, POINT_KEYS
+from .json_people import PART, PEOPLE_KEYS, POINT_KEYS, has_word
 
 MAX_MISSING_FRAMES = 100_000
 """Missing numbers, frames, that a file may have. It bounds the memory of damaged files."""
@@ -27,9 +27,6 @@ NAME_OF_PERSON = re.compile(
     r"(?i)\D*|\D*(person|people|body|actor|subject|track|player|human|user|skeleton|id)[\W_]*\d+"
 )
 """Key of a member that is no frame: it has no number, or that of a person."""
-WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+")
-PART = re.compile(r"(left|right|l|r)?(hands?|fingers?|faces?|mano)|lh|rh")
-"""Word in the key of a part of a person."""
 WORDS_OF_DATA = frozenset((
     "frames", "data", "pose", "poses", "tpose", "apose", "rest", "calibration", "reference",
     "raw", "original", "unfiltered", "filtered", "smooth", "smoothed", "clean", "cleaned",
@@ -48,15 +45,9 @@ class NumberedFrame(NamedTuple):
     frame: BodiesFrame
 
 
-class JoinedFrames(NamedTuple):
-    """Frames of a take."""
-
-    frames: list[BodiesFrame]
-    identities: dict[str, str]
-    """What the members of the file call each person in the frames."""
-
-
-def joined_frames(by_key: Mapping[str, list[NumberedFrame]], path: Path | str) -> JoinedFrames:
+def joined_frames(
+    by_key: Mapping[str, list[NumberedFrame]], path: Path | str
+) -> list[BodiesFrame]:
     """Return the frames of all people of a file.
 
     Members with frames each are people, unless they are called as data of one person
@@ -66,13 +57,12 @@ def joined_frames(by_key: Mapping[str, list[NumberedFrame]], path: Path | str) -
 
     Raises InvalidFileError if very many frames are left out.
     """
-    identities: dict[str, str] = {}
     found = {
-        key: _one_of_people(rows, identities) if key.lower() in PEOPLE_KEYS else rows
+        key: _one_of_people(rows) if key.lower() in PEOPLE_KEYS else rows
         for key, rows in by_key.items()
         if any(row.frame.bodies for row in rows)
     }
-    bodies = {key: rows for key, rows in found.items() if not _has_word(key, PART.fullmatch)}
+    bodies = {key: rows for key, rows in found.items() if not has_word(key, PART.fullmatch)}
     found = bodies or found
     longest = max(found, key=lambda key: _n_observed(found[key]), default="")
     if len(found.get(longest, ())) > 1:
@@ -80,25 +70,19 @@ def joined_frames(by_key: Mapping[str, list[NumberedFrame]], path: Path | str) -
             key: rows for key, rows in found.items() if len(rows) > 1 and not _is_data(key)
         }
         if longest not in people or len(people) == 1:
-            return _of_one(found[longest], identities, path)
-        return _of_several(people, identities, path)
+            return _of_one(found[longest], path)
+        return _of_several(people, path)
     n_numbered = sum(any(map(str.isdigit, key)) for key in found)
     if n_numbered <= MAX_PEOPLE and all(map(NAME_OF_PERSON.fullmatch, found)):
-        return _of_several(found, identities, path)
-    return _of_one([row for rows in found.values() for row in rows], identities, path)
-
-
-def _has_word(key: str, is_meant: Callable[[str], object]) -> bool:
-    return any(is_meant(word.lower()) for word in WORD.findall(key))
+        return _of_several(found, path)
+    return _of_one([row for rows in found.values() for row in rows], path)
 
 
 def _is_data(key: str) -> bool:
-    return key in POINT_KEYS or _has_word(key, WORDS_OF_DATA.__contains__)
+    return key in POINT_KEYS or has_word(key, WORDS_OF_DATA.__contains__)
 
 
-def _one_of_people(
-    rows: list[NumberedFrame], identities: dict[str, str]
-) -> list[NumberedFrame]:
+def _one_of_people(rows: list[NumberedFrame]) -> list[NumberedFrame]:
     """Return rows below a key for people as one frame, if each is a person without a time."""
     observed = [row for row in rows if row.frame.bodies]
     if len(observed) > MAX_PEOPLE or not all(
@@ -106,37 +90,31 @@ def _one_of_people(
         for row in observed
     ):
         return rows
-    return [observed[0]._replace(frame=_one_frame([row.frame for row in observed], identities))]
+    return [observed[0]._replace(frame=_one_frame([row.frame for row in observed]))]
 
 
-def _of_one(
-    rows: list[NumberedFrame], identities: dict[str, str], path: Path | str
-) -> JoinedFrames:
+def _of_one(rows: list[NumberedFrame], path: Path | str) -> list[BodiesFrame]:
     """Return the frames of members that state who is in them."""
-    known = {who: identities.get(who, who) for row in rows for who in row.frame.bodies}
-    return _by_stamp(rows, known, path) or JoinedFrames([row.frame for row in rows], known)
+    return _by_stamp(rows, path) or [row.frame for row in rows]
 
 
 def _of_several(
-    people: Mapping[str, list[NumberedFrame]], identities: dict[str, str], path: Path | str
-) -> JoinedFrames:
+    people: Mapping[str, list[NumberedFrame]], path: Path | str
+) -> list[BodiesFrame]:
     """Return the frames of members with the frames of a person each.
 
     Those that cannot be joined by what they state are joined by their place in the lists.
     """
-    known: dict[str, str] = {}
     stated, placed = [], []
     for key, rows in people.items():
         is_alone = len({who for row in rows for who in row.frame.bodies}) == 1
         for index, row in enumerate(rows):
             names = {who: key if is_alone else f"{key} {who}" for who in row.frame.bodies}
-            known |= {name: identities.get(who, who) for who, name in names.items()}
             bodies = {names[who]: joints for who, joints in row.frame.bodies.items()}
             frame = row.frame._replace(bodies=bodies)
             stated.append(NumberedFrame(row.number, frame))
             placed.append(NumberedFrame(index, frame))
-    found = _by_stamp(stated, known, path) or _by_stamp(placed, known, path)
-    return found or JoinedFrames([], known)
+    return _by_stamp(stated, path) or _by_stamp(placed, path) or []
 
 
 def missing_before(numbers: Sequence[float], start: float, path: Path | str) -> list[int]:
@@ -173,9 +151,7 @@ def _n_observed(rows: Iterable[NumberedFrame]) -> int:
     return sum(bool(row.frame.bodies) for row in rows)
 
 
-def _by_stamp(
-    rows: list[NumberedFrame], identities: dict[str, str], path: Path | str
-) -> JoinedFrames | None:
+def _by_stamp(rows: list[NumberedFrame], path: Path | str) -> list[BodiesFrame] | None:
     """Return rows by their number or time, those with the same as one frame.
 
     None if some state neither, or if rows with the same share a person: these are frames of
@@ -187,13 +163,11 @@ def _by_stamp(
         ordered = sorted(numbers)
         is_joined = any(len(numbers[number]) > 1 for number in ordered)
         if is_joined or _step(ordered):
-            frames = [_one_frame(numbers[number], identities) for number in ordered]
-            return JoinedFrames(_with_gaps(frames, ordered, path), identities)
+            frames = [_one_frame(numbers[number]) for number in ordered]
+            return _with_gaps(frames, ordered, path)
     times = _groups(rows, [row.frame.time for row in rows])
     if _are_frames(times) and any(len(group) > 1 for group in times.values()):
-        return JoinedFrames(
-            [_one_frame(times[t], identities) for t in sorted(times)], identities
-        )
+        return [_one_frame(times[t]) for t in sorted(times)]
     return None
 
 
@@ -251,8 +225,8 @@ def _with_gaps(
     return found
 
 
-def _one_frame(rows: list[BodiesFrame], identities: dict[str, str]) -> BodiesFrame:
-    """Return rows of a frame as one; people of the same name get numbers and identities."""
+def _one_frame(rows: list[BodiesFrame]) -> BodiesFrame:
+    """Return rows of a frame as one; people of the same name get numbers."""
     if len(rows) == 1:
         return rows[0]
     bodies: dict[str, BodyJoints] = {}
@@ -260,6 +234,5 @@ def _one_frame(rows: list[BodiesFrame], identities: dict[str, str]) -> BodiesFra
         for who, joints in row.bodies.items():
             names = (who, *(f"{who} {count}" for count in range(2, len(rows) + 1)))
             name = next(name for name in names if name not in bodies)
-            identities.setdefault(name, identities.get(who, who))
             bodies[name] = joints
     return rows[0]._replace(bodies=bodies)

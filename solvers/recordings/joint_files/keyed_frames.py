@@ -13,20 +13,20 @@ from .body_json import name_of_body
 from .joined_frames import missing_before
 from .json_people import (
     IDENTITY_KEYS,
-    MIN_JOINTS,
     NUMBERS_KEYS,
     PEOPLE_KEYS,
     POINT_KEYS,
     RATE_KEYS,
     START_KEYS,
-    TIMES_KEYS,
     as_frame,
     have_identities,
     is_number,
     is_position,
     listed_numbers,
+    listed_times,
     people_of_frame,
 )
+from .json_points import MIN_JOINTS
 
 FRAME_KEY = re.compile(r"(?i)\s*(?:frame|f|t)?[\s_\-]*(\d+(?:\.\d+)?)\s*")
 """Key of a frame: its number, or its time in seconds."""
@@ -122,7 +122,7 @@ def _rate_of(takes: Collection[Take], path: Path | str) -> Iterator[JsonMember]:
 def _without_positions(
     members: Iterable[JsonMember], positions: dict[str, list[Any]]
 ) -> Iterator[JsonMember]:
-    """Add the places of joints to those by their key, and yield all else."""
+    """Add the positions of joints to those by their key, and yield all else."""
     for member in members:
         if is_position(member.value):
             positions.setdefault(member.key, []).append(member.value)
@@ -131,11 +131,11 @@ def _without_positions(
 
 
 def _with_nulls(group: Iterator[JsonMember]) -> tuple[list[JsonMember], Iterator[JsonMember]]:
-    """Return the members up to the first one that is not null, and all others."""
+    """Return the members up to the first one that is not null or empty, and all others."""
     first = []
     for member in group:
         first.append(member)
-        if member.value is not None:
+        if member.value not in (None, [], {}):
             break
     return first, group
 
@@ -224,12 +224,11 @@ def _stamped(take: Take, value: Mapping[str, Any]) -> Take:
     if not numbers and min(take) == 0.0 and float(start).is_integer():
         numbers = [float(start) + number for number in take]
     frames = [*take.values()]
-    key = next((key for key in TIMES_KEYS if listed_numbers(value, (key,), len(take))), "")
+    key = listed_times(value, len(take))
     if key:
-        times = listed_numbers(value, (key,), len(take))
         frames = [
-            {TIMES_KEYS[key]: time, **as_frame(frame)}
-            for time, frame in zip(times, frames, strict=True)
+            {key: time, **as_frame(frame)}
+            for time, frame in zip(value[key], frames, strict=True)
         ]
     is_unique = len({*numbers}) == len(take)
     stamped = Take(zip(numbers if is_unique else take, frames, strict=True))
@@ -242,7 +241,7 @@ def _has_people(frame: Any) -> bool:
 
 
 def _path(value: Any) -> list[Any] | None:
-    """Return the places of a joint in all frames; None for other values."""
+    """Return the positions of a joint in all frames; None for other values."""
     if isinstance(value, Mapping) and all(isinstance(value.get(axis), list) for axis in "xyz"):
         axes = [value[axis] for axis in "xyz"]
         return [list(position) for position in zip(*axes, strict=False)]

@@ -17,7 +17,6 @@ from ..containers import (
     LineReader,
     NumberedWords,
     check_n_joints,
-    find_separator,
     shown,
     stream_cells,
 )
@@ -28,17 +27,19 @@ from ..conventions import (
     observed_body,
     recorded_seconds,
 )
-from ..point_bodies import second_of_times
-from .point_table import TIMES, ignored_columns, recording_of_points
-from .table_titles import titles_of_line
+from ..point_bodies import TimeCells, TimeName, column_of_times, second_of_times, time_name
+from .point_table import ignored_columns, recording_of_points
+from .table_titles import MAX_TITLE_LINES, table_titles
 
 FRAMES = ("frame", "frame_id", "frameid", "frame_index", "frame_number", "frame_num", "image")
 JOINTS = (
     "joint", "joint_name", "jointname", "joint_id", "joint_index", "landmark", "landmark_name",
     "landmark_id", "landmark_index", "keypoint", "keypoint_name", "keypoint_id", "point",
     "point_id", "jointtype", "joint_type", "marker", "marker_name", "body_part", "bodypart",
-    "bone", "name", "part",
+    "bone", "name", "part", "gelenk", "knochen", "articulation", "articulación",
 )  # fmt: skip
+UNIT = re.compile(r"\s*[(\[]\w+[)\]]$")
+"""Unit in the title of a coordinate."""
 PEOPLE = (
     "person", "person_id", "body", "body_id", "track_id", "trackingid", "tracking_id",
     "subject", "skeleton_id",
@@ -66,8 +67,7 @@ class _LongColumns(NamedTuple):
 
     frame: int | None
     time: int | None
-    second: float | None
-    """Seconds per unit of the times; None if the title does not state it."""
+    times: TimeCells
     joint: int
     person: int | None
     identity: int | None
@@ -88,7 +88,7 @@ class _LongTable(NamedTuple):
 def is_long_table(head: bytes) -> bool:
     """Return whether the first line of a file names a frame, a joint and its coordinates."""
     lines = head.lstrip(b"\r\n").splitlines()
-    return len(lines) > 1 and _columns(titles_of_line(lines[0]).titles) is not None
+    return len(lines) > 1 and table_titles(lines, _columns) is not None
 
 
 def open_long_table(
@@ -130,7 +130,7 @@ def open_long_table(
     names, order = table.joints.in_order()
     points = _points(path, table, frames, order)
     if times is not None:
-        times = times * (columns.second or second_of_times(times, progress))
+        times = times * (columns.times.second or second_of_times(times, progress))
     duration = len(points[0]) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
     listed = tuple(
         observed_body(
@@ -151,13 +151,14 @@ def open_long_table(
 def _read_table(path: Path | str, progress: Progress) -> _LongTable:
     reader = LineReader(path)
     reader.skip_blank_lines()
-    first = reader.take(1)
-    titles = titles_of_line(first[0]).titles if first else []
-    columns = _columns(titles)
-    if columns is None:
+    header = table_titles(reader.peek(MAX_TITLE_LINES), _columns)
+    columns = _columns(header.titles) if header else None
+    if header is None or columns is None:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
+    reader.take(header.n_lines)
+    titles = header.titles
     joints, people = NumberedWords(), NumberedWords()
-    used = {columns.joint, columns.frame, columns.time, *columns.axes}
+    used = {columns.joint, columns.frame, *columns.axes}
     converters: dict[int, Callable[[bytes], bytes]] = {
         **ignored_columns(len(titles), used),
         columns.joint: joints,
@@ -167,9 +168,12 @@ def _read_table(path: Path | str, progress: Progress) -> _LongTable:
         converters[person] = people
     if columns.frame is not None:
         converters[columns.frame] = _frame_number
-    separator, width = find_separator(first[0]), len(titles)
+    if columns.time is not None:
+        converters[columns.time] = columns.times
     progress = within(progress, 0.0, 0.6)
-    rows = stream_cells(reader, separator, width, path, progress, converters=converters)
+    rows = stream_cells(
+        reader, header.separator, len(titles), path, progress, converters=converters
+    )
     return _LongTable(rows, columns, joints, people)
 
 
@@ -251,13 +255,13 @@ def _frames(rows: Array, columns: _LongColumns) -> tuple[NDArray[np.intp], Array
 
 def _columns(titles: Sequence[str]) -> _LongColumns | None:
     """Return the columns of such a table; None if one is missing."""
-    lower = [title.strip().lower().replace(" ", "_") for title in titles]
+    lower = [UNIT.sub("", title).strip().lower().replace(" ", "_") for title in titles]
 
     def find(names: Iterable[str]) -> int | None:
         return next((lower.index(name) for name in names if name in lower), None)
 
     joint, frame = find(JOINTS), find(FRAMES)
-    time = next((column for column, title in enumerate(titles) if title.lower() in TIMES), None)
+    time = column_of_times(titles)
     axes = next(
         (
             tuple(map(lower.index, wanted))
@@ -268,5 +272,5 @@ def _columns(titles: Sequence[str]) -> _LongColumns | None:
     )
     if joint is None or axes is None or (frame is None and time is None):
         return None
-    second = None if time is None else TIMES[titles[time].lower()]
-    return _LongColumns(frame, time, second, joint, find(PEOPLE), find(IDENTITIES), axes)
+    times = TimeCells((time_name(titles[time]) if time is not None else None) or TimeName(None))
+    return _LongColumns(frame, time, times, joint, find(PEOPLE), find(IDENTITIES), axes)

@@ -13,7 +13,7 @@ from ...motion.skeletons import BODY_POINTS
 from ...progress import Progress, unwatched, within
 from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
 from ..conventions import check_scale
-from ..point_bodies import N_POINTS, recording_from_landmarks, seconds
+from ..point_bodies import N_POINTS, recording_from_landmarks, second_of_times, time_name
 
 CHANNELS = {"x": 0, "y": 1, "z": 2, "v": 3, "vis": 3, "visibility": 3}
 PREFIX = re.compile(r"((world|pose|landmarks?|lm|kp|point)(_|(?=\d)))+")
@@ -26,11 +26,6 @@ than half of the 33 of MediaPipe."""
 INDEX_TITLES = ("landmark", "landmark_index", "landmark_id", "landmark_name", "joint", "index",
                 "name")  # fmt: skip
 FRAME_TITLES = ("frame", "frame_number", "frame_id", "frame_idx", "frame_index")
-TIME_TITLES = {
-    "timestamp_ms": 1e-3, "time_ms": 1e-3, "timestampms": 1e-3, "timestamp": 1.0, "time": 1.0,
-    "time_s": 1.0, "timestamp_s": 1.0, "seconds": 1.0, "time_sec": 1.0,
-}  # fmt: skip
-"""Seconds per unit of a time stamp, by the title of its column."""
 
 
 class _Table(NamedTuple):
@@ -101,21 +96,26 @@ def read_mediapipe_csv(
     )
     if not len(rows):
         raise InvalidFileError(f"{path} has a header but no frames. Export it again.")
-    table = _from_long(titles, rows, index, path) if index >= 0 else _from_wide(titles, rows)
+    if index >= 0:
+        table = _from_long(titles, rows, index, path, progress)
+    else:
+        table = _from_wide(titles, rows, progress)
     return recording_from_landmarks(path, table.points, table.times, None, scale, progress)
 
 
-def _from_wide(titles: list[str], rows: Array) -> _Table:
+def _from_wide(titles: list[str], rows: Array, progress: Progress) -> _Table:
     points = np.full((len(rows), N_POINTS, 4), np.nan)
     for (landmark, channel), column in _columns(titles).items():
         points[:, landmark, channel] = rows[:, column]
     if np.isnan(points[..., 2]).all():
         points[..., 2] = np.where(np.isfinite(points[..., 0]), 0.0, np.nan)  # a picture
-    return _Table(points, _times(titles, rows))
+    return _Table(points, _times(titles, rows, progress))
 
 
-def _from_long(titles: list[str], rows: Array, index: int, path: Path | str) -> _Table:
-    key = next(title for title in (*FRAME_TITLES, *TIME_TITLES) if title in titles)
+def _from_long(
+    titles: list[str], rows: Array, index: int, path: Path | str, progress: Progress
+) -> _Table:
+    key = next(title for title in (*FRAME_TITLES, *_time_titles(titles)) if title in titles)
     stamps, landmarks = rows[:, titles.index(key)], rows[:, index]
     usable = np.isin(landmarks, np.arange(N_POINTS)) & np.isfinite(stamps)
     rows, stamps, landmarks = rows[usable], stamps[usable], landmarks[usable].astype(int)
@@ -126,14 +126,21 @@ def _from_long(titles: list[str], rows: Array, index: int, path: Path | str) -> 
     for title, column in {title: at for at, title in enumerate(titles)}.items():
         if title in CHANNELS:
             points[frames, landmarks, CHANNELS[title]] = rows[:, column]
-    return _Table(points, _times(titles, rows[first]))
+    return _Table(points, _times(titles, rows[first], progress))
 
 
-def _times(titles: list[str], rows: Array) -> Array | None:
-    for title, unit in TIME_TITLES.items():
-        if title in titles and np.isfinite(rows[:, titles.index(title)]).sum() > 1:
-            return seconds(unit * rows[:, titles.index(title)])
+def _times(titles: list[str], rows: Array, progress: Progress) -> Array | None:
+    for title, second in _time_titles(titles).items():
+        times = rows[:, titles.index(title)]
+        if np.isfinite(times).sum() > 1:
+            return np.asarray(times * (second or second_of_times(times, progress)))
     return None
+
+
+def _time_titles(titles: list[str]) -> dict[str, float | None]:
+    """Return the titles of times and their seconds per unit, None where not stated; last."""
+    found = {title: name.second for title in titles if (name := time_name(title))}
+    return dict(sorted(found.items(), key=lambda each: each[1] is None))
 
 
 def _titles(line: bytes) -> list[str]:
@@ -146,7 +153,7 @@ def _is_long(titles: list[str]) -> bool:
     return (
         {"x", "y"} <= set(titles)
         and _index_column(titles) >= 0
-        and bool({*FRAME_TITLES, *TIME_TITLES} & set(titles))
+        and bool({*FRAME_TITLES, *_time_titles(titles)} & set(titles))
     )
 
 

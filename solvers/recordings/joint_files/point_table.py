@@ -1,6 +1,5 @@
 """Read tables of any program whose columns are named after points and coordinates."""
 
-import re
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -26,35 +25,21 @@ from ..conventions import (
     stand_markers,
 )
 from ..point_bodies import (
+    TimeCells,
+    TimeName,
     body_of_named_points,
     body_of_points,
+    column_of_times,
+    coordinate_of_title,
+    is_rotation,
     missing_limbs,
+    numbered_axes,
     read_body,
     second_of_times,
     stand_body,
+    time_name,
 )
 from .table_titles import MAX_TITLE_LINES, MIN_POINTS, table_titles
-
-COORDINATE = re.compile(
-    r"(?P<name>.*?)([\s_.:\-]+(pos(ition)?|loc(ation)?|translat(e|ion)|tr?|world))?[\s_.:\-]*"
-    r"(?P<axis>[xyz])(\s*[(\[](?P<unit>\w+)[)\]])?",
-    re.IGNORECASE,
-)
-AXIS_FIRST = re.compile(r"(?P<axis>[xyz])[\s_.:\-]?(?P<name>\d+)", re.IGNORECASE)
-NO_POSITION = re.compile(
-    r"(rotation|rotate|quat(ernion)?|euler|orientation|velocity|acceleration"
-    r"|(^|[\s_.:\-])(rot|orient|angles?|scale|vel|acc|gyro|mag|std|error|[qr]))$",
-    re.IGNORECASE,
-)
-"""Ends of the names of columns that hold no positions."""
-TIMES = {
-    "time": None, "times": None, "timestamp": None, "t": None, "seconds": 1.0, "time_s": 1.0,
-    "timestamp_s": 1.0, "time (s)": 1.0, "time(s)": 1.0, "time [s]": 1.0, "sec": 1.0,
-    "time (seconds)": 1.0,
-    "time_ms": 0.001, "timestamp_ms": 0.001, "time (ms)": 0.001, "milliseconds": 0.001,
-}  # fmt: skip
-"""Seconds per unit of a time stamp, by the title of its column; None where that does not state
-it."""
 
 
 class _Columns(NamedTuple):
@@ -64,8 +49,7 @@ class _Columns(NamedTuple):
     positions: Array
     """Column of x, y and z of each point, shape (n_points, 3)."""
     time: int | None
-    second: float | None
-    """Seconds per unit of the times; None if the title does not state it."""
+    times: TimeCells
     unit: float | None
     """Meters, by the titles; None if they do not say it."""
     width: int
@@ -76,8 +60,7 @@ def is_point_table(head: bytes) -> bool:
     lines = head.lstrip(b"\r\n").splitlines()
     if len(lines) < 2:
         return False
-    columns = _columns(table_titles(lines).titles)
-    return columns is not None and len(columns.names) >= MIN_POINTS
+    return table_titles(lines, _has_points) is not None
 
 
 def open_point_table(
@@ -111,7 +94,7 @@ def open_point_table(
     reader = LineReader(path)
     reader.skip_blank_lines()
     first = reader.peek(MAX_TITLE_LINES)
-    header = table_titles(first) if first else None
+    header = table_titles(first, _has_points)
     columns = _columns(header.titles) if header else None
     if header is None or columns is None:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
@@ -122,14 +105,23 @@ def open_point_table(
         columns.width,
         path,
         within(progress, 0.0, 0.8),
-        converters=ignored_columns(columns.width, {*columns.positions.flat, columns.time}),
+        converters={
+            **ignored_columns(columns.width, {*columns.positions.flat}),
+            **({} if columns.time is None else {columns.time: columns.times}),
+        },
+        prepare=header.expand,
     )
-    points = rows[:, columns.positions.astype(int)]
     times = None if columns.time is None else rows[:, columns.time]
+    if times is not None and np.isfinite(times).any():  # Lines such as of means may follow.
+        rows = rows[: np.flatnonzero(np.isfinite(times))[-1] + 1]
+        times = times[: len(rows)]
+    points = rows[:, columns.positions.astype(int)]
     if times is None or not np.isfinite(times).all():
         times = None
     else:
-        times = times * (columns.second or second_of_times(times, progress))
+        times = times * (columns.times.second or second_of_times(times, progress))
+    if times is None and header.rate is not None:
+        times = np.arange(len(points)) / header.rate
     unit = columns.unit if scale is None else scale
     people = _people(columns.names, points, progress) if np.isfinite(points).any() else []
     duration = len(points) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
@@ -236,23 +228,30 @@ def recording_of_points(
     return stand_markers(names, points * unit, rate, unit, "")
 
 
+def _has_points(titles: Sequence[str]) -> bool:
+    columns = _columns(titles)
+    return columns is not None and len(columns.names) >= MIN_POINTS
+
+
 def _columns(titles: Sequence[str]) -> _Columns | None:
     """Return the columns of points; None if none has all three coordinates."""
     found: dict[str, dict[str, int]] = {}
     units: set[str] = set()
     for column, title in enumerate(titles):
-        match = AXIS_FIRST.fullmatch(title) or COORDINATE.fullmatch(title)
-        name = match["name"].strip(" _.:-") if match else ""
-        if match is None or not name or NO_POSITION.search(name):
-            continue
-        found.setdefault(name, {}).setdefault(match["axis"].lower(), column)
-        units.add(match.groupdict().get("unit") or "")
-    points = {name: axes for name, axes in found.items() if len(axes) == 3}
+        coordinate = coordinate_of_title(title)
+        if coordinate is not None:
+            found.setdefault(coordinate.name, {}).setdefault(coordinate.axis, column)
+            units.add(coordinate.unit)
+    points = {
+        name: axes
+        for name, axes in found.items()
+        if len(axes) == 3 and not is_rotation(name, found)
+    }
+    points = points or numbered_axes(titles)
     if not points:
         return None
-    lower = [title.lower() for title in titles]
-    time = next((column for column, title in enumerate(lower) if title in TIMES), None)
+    time = column_of_times(titles)
+    times = TimeCells((time_name(titles[time]) if time is not None else None) or TimeName(None))
     unit = meters_from_unit_name(units.pop()) if len(units) == 1 else None
     positions = np.array([[axes[axis] for axis in "xyz"] for axes in points.values()])
-    second = None if time is None else TIMES[lower[time]]
-    return _Columns(tuple(points), positions, time, second, unit, len(titles))
+    return _Columns(tuple(points), positions, time, times, unit, len(titles))

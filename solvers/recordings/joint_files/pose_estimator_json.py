@@ -1,6 +1,5 @@
 """Read JSON of any pose estimator that lists the joints of people, frame by frame."""
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -24,20 +23,22 @@ from ..conventions import DEFAULT_FRAME_RATE, Bodies, check_scale
 from ..point_bodies import (
     body_of_named_points,
     body_of_points,
+    landmark_columns,
     read_body,
+    read_time,
+    recording_from_landmarks,
     second_of_times,
     stand_body,
+    time_name,
 )
 from .body_json import BodiesFrame, BodyJoints, open_frames, stacked
 from .joined_frames import MAX_PEOPLE, NumberedFrame, joined_frames
 from .json_people import (
     NUMBER_KEYS,
-    POINT_KEYS,
     RATE_KEYS,
-    TIME_KEYS,
-    JsonPerson,
     is_number,
     people_of_frame,
+    time_of_frame,
 )
 from .keyed_frames import json_by_frame
 
@@ -49,38 +50,12 @@ of files whose names differ between frames."""
 MAX_FEW_COLUMNS = 1 << 22
 """Columns of named joints in all frames that any file may have. It bounds the memory:
 130 MB."""
-GEOMETRY = rb"[^\[]*\"(?:MultiLineString|(?:Multi)?Polygon)\""
-"""Type of a geometry in GeoJSON, whose coordinates are nested like joints."""
-HEAD = re.compile(
-    rb"\s*(?:\{(?!"
-    + GEOMETRY
-    + rb")[^\[]*)?(?:\[\s*){3,}[-\d]|\s*[\[{].*?\"("
-    + "|".join(POINT_KEYS).encode()
-    + rb')"\s*:\s*(\[\s*([\[{\d-]|null)|\{)',
-    re.DOTALL,
-)
-JOINT = re.compile(
-    # The word begins the name, or follows a sign, a lower-case letter or a word of its own.
-    rb"\"(?:[^\"]*(?:[^\"a-zA-Z]|(?<=[a-z])(?=[A-Z])))?"
-    rb"(?i:left|right|upper|lower|up|low|fore|mid|[lr])*"
-    rb"(?i:hips?|pelvis|spine|head|neck|nose|shoulder|arm|elbow|wrist|hand|leg|knee|ankle|foot|root)"
-    rb"(?i:left|right|joint|center|top|base|tip)*(?![a-z])[^\"]*\"\s*:\s*"
-    rb"(?:\{\s*\"(?i:pos\w*)\"\s*:\s*)?"
-    rb"(?:\{\s*\"[xX]\"\s*:\s*\[?\s*[-\d]"
-    rb"|\[\s*(?:null\s*,\s*)*(?:\[\s*)?-?\d[^\s,\[\]]*(?:\s*,\s*-?\d[^\s,\[\]]*){2})"
-)
-NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*(\[\s*){2,}[-\d]")
-"""The first frame of those that are keyed by their number."""
 
 
 class _Content(NamedTuple):
     """Content of a file, or of the files of a take."""
 
     frames: list[BodiesFrame]
-    columns: dict[str, dict[str, int]]
-    """Column of each named joint, by the identity of a person."""
-    identities: dict[str, str]
-    """By person (`joined_frames`)."""
     rate: float | None
     second: float | None
     """Seconds per unit of the times; None if that is not stated."""
@@ -92,13 +67,6 @@ class _Content(NamedTuple):
         """Number of frames of the person in most frames."""
         counts = Counter(body for frame in self.frames for body in frame.bodies)
         return max(counts.values(), default=0)
-
-
-def is_frames_json(head: bytes) -> bool:
-    """Return whether a file lists joints, from its first bytes."""
-    if HEAD.match(head) or NUMBERED.match(head):
-        return True
-    return head.lstrip()[:1] in {b"{", b"["} and JOINT.search(head) is not None
 
 
 def is_frame_json(path: Path | str) -> bool:
@@ -147,13 +115,15 @@ def open_frames_json(
             f"{path} holds the joints of one frame. Combine all frames in an array of the shape"
             " (frames, joints, 3), and save it with numpy.save."
         )
-    frames, columns, identities, rate, second, listed_names = content
+    frames, rate, second, listed_names = content
     if second is None:
         second = second_of_times(np.array([frame.time for frame in frames]), progress)
 
     def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
-        names = tuple(columns[identities[body]]) or listed_names
-        return _recording(path, names, body, frames, times, rate, scale, progress)
+        names, placed = _in_columns(path, body, frames)
+        return _recording(
+            path, names or listed_names, body, placed, times, rate, scale, progress
+        )
 
     return open_frames(path, frames, second, read)
 
@@ -175,36 +145,48 @@ def _read_content(
 ) -> _Content:
     """Return the frames in the members of a file, or in the files of a take."""
     by_key: dict[str, list[NumberedFrame]] = {}
-    columns: dict[str, dict[str, int]] = {}
     rate: float | None = None
     second: float | None = None
     names: list[str] = []
-    n_points = n_columns = 0
+    times: list[float] = []
+    n_several = 0
     for member in json_by_frame(members, path):
-        if member.key in RATE_KEYS and is_number(member.value):
-            rate = float(member.value)
-        if member.key in LIST_OF_NAMES and isinstance(member.value, str):
-            names.append(member.value)
+        value = member.value
+        if member.key in RATE_KEYS and is_number(value):
+            rate = float(value)
+        if member.key in LIST_OF_NAMES and isinstance(value, str):
+            names.append(value)
         number = time = np.nan
-        if isinstance(member.value, dict):
-            number = _number_of(member.value)
-            key = next((key for key in TIME_KEYS if is_number(member.value.get(key))), "")
-            time, second = (float(member.value[key]), TIME_KEYS[key]) if key else (time, second)
-        found = {}
-        for person in people_of_frame(member.value):
-            positions = _placed(person, columns.setdefault(person.identity, {}))
-            unknown = np.full(len(positions), np.nan)
-            found[person.identity] = BodyJoints(positions, unknown)
-            n_points, n_columns = n_points + len(person.positions), n_columns + len(positions)
-        if n_columns > max(MAX_FEW_COLUMNS, MAX_SPREAD * n_points):
-            raise InvalidFileError(
-                f"{path} has joints with other names in each frame. Export it again."
-            )
+        if isinstance(value, dict):
+            number = _number_of(value)
+            time, stated = time_of_frame(value)
+            second = second if np.isnan(time) else stated
+        elif name := time_name(member.key):
+            time, second = read_time(value, name.second)
+            times.append(time)
+            continue
+        people = [*people_of_frame(value, member.key)]
+        n_several += sum(not person.is_identified for person in people) > 1
+        found = {person.identity: BodyJoints(*person.points) for person in people}
         frame = BodiesFrame(time, found, member.done)
         by_key.setdefault(member.key, []).append(NumberedFrame(number, frame))
         progress(0.8 * member.done, "Reading")
-    frames, identities = joined_frames(by_key, path)
-    return _Content(frames, columns, identities, rate, second, tuple(names))
+    if n_several:
+        progress(
+            0.8,
+            Remark(
+                f"{n_several} frames have more than one person; the first of each is read, who"
+                " may change. Use a tracker that identifies people"
+            ),
+        )
+    return _Content(_timed(joined_frames(by_key, path), times), rate, second, tuple(names))
+
+
+def _timed(frames: list[BodiesFrame], times: list[float]) -> list[BodiesFrame]:
+    """Return frames with the times that are listed apart, if there is one for each."""
+    if len(times) != len(frames) or not all(np.isnan(frame.time) for frame in frames):
+        return frames
+    return [frame._replace(time=time) for frame, time in zip(frames, times, strict=True)]
 
 
 def _number_of(frame: Mapping[str, Any]) -> float:
@@ -213,27 +195,35 @@ def _number_of(frame: Mapping[str, Any]) -> float:
     return float(next(values, np.nan))
 
 
-def _placed(person: JsonPerson, columns: dict[str, int]) -> Array:
-    """Return the joints of a frame in the columns of their names; new names are added."""
-    if not person.names:
-        return person.positions
-    for name in person.names:
-        columns.setdefault(name, len(columns))
-    positions = np.full((len(columns), 3), np.nan)
-    positions[[columns[name] for name in person.names]] = person.positions
-    return positions
+def _in_columns(
+    path: Path | str, body: str, frames: list[BodiesFrame]
+) -> tuple[tuple[str, ...], list[BodiesFrame]]:
+    """Return the frames of one body with each named joint in its own column, and the names.
 
-
-def _widened(frame: BodiesFrame, body: str, n_joints: int) -> BodiesFrame:
-    """Return a frame of one body with the joints that only later frames name."""
-    if body not in frame.bodies:
-        return frame._replace(bodies={})
-    positions, confidence = frame.bodies[body]
-    n_missing = n_joints - len(positions)
-    if n_missing > 0:
-        positions = np.pad(positions, ((0, n_missing), (0, 0)), constant_values=np.nan)
-        confidence = np.pad(confidence, (0, n_missing), constant_values=np.nan)
-    return frame._replace(bodies={body: BodyJoints(positions, confidence)})
+    Raises InvalidFileError if the names differ so much that this would need much memory.
+    """
+    own = [frame.bodies.get(body) for frame in frames]
+    columns = {
+        name: column
+        for column, name in enumerate(dict.fromkeys(
+            name for joints in own if joints is not None for name in joints.names
+        ))
+    }  # fmt: skip
+    n_points = sum(len(joints.positions) for joints in own if joints is not None)
+    if len(columns) * len(own) > max(MAX_FEW_COLUMNS, MAX_SPREAD * n_points):
+        raise InvalidFileError(
+            f"{path} has joints with other names in each frame. Export it again."
+        )
+    placed = []
+    for frame, joints in zip(frames, own, strict=True):
+        if joints is not None and joints.names:
+            at = [columns[name] for name in joints.names]
+            positions = np.full((len(columns), 3), np.nan)
+            confidence = np.full(len(columns), np.nan)
+            positions[at], confidence[at] = joints.positions, joints.confidence
+            joints = BodyJoints(positions, confidence)
+        placed.append(frame._replace(bodies={} if joints is None else {body: joints}))
+    return tuple(columns), placed
 
 
 def _recording(
@@ -247,12 +237,16 @@ def _recording(
     progress: Progress,
 ) -> JointRecording:
     try:
-        points, _ = stacked(body, [_widened(frame, body, len(names)) for frame in frames])
+        points, confidence = stacked(body, frames)
     except ValueError:
         raise InvalidFileError(
             f"{path}: the number of joints of body {body} changes. Export it again."
         ) from None
     is_named = len(names) == points.shape[1]
+    if is_named and (landmarks := landmark_columns(names)) is not None:
+        visibility = np.full(points.shape[:2], np.nan) if confidence is None else confidence
+        marks = np.dstack([points, visibility])[:, landmarks]
+        return recording_from_landmarks(path, marks, times, rate, scale, progress)
     found = body_of_named_points(names, points) if is_named else None
     if found is None:
         unnamed = body_of_points(path, points)

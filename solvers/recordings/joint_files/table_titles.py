@@ -1,10 +1,10 @@
 """Read the titles of the columns of a table, which may stand in several lines."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from ..containers import decode_text, find_separator, split_cells
+from ..containers import SPACE, decode_text, find_separator, split_cells
 from ..conventions import meters_from_unit_name
 
 MAX_TITLE_LINES = 10
@@ -12,6 +12,20 @@ MAX_TITLE_LINES = 10
 MIN_POINTS = 8
 """Number of points of a table. It guards tables of something else, such as of one sensor."""
 AXIS = re.compile(r"(?P<axis>[xyz])\d*(\s*[(\[](?P<unit>\w+)[)\]])?", re.IGNORECASE)
+NUMBER = rb"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan)"
+VECTOR = re.compile(
+    rb"(?i)[\[({]?\s*(?:x\s*[=:]\s*)?" + NUMBER + rb"[\s,;]+(?:y\s*[=:]\s*)?" + NUMBER
+    + rb"[\s,;]+(?:z\s*[=:]\s*)?" + NUMBER + rb"\s*[\])}]?"
+)  # fmt: skip
+"""A cell with x, y and z, such as `(X=1.0,Y=2.0,Z=3.0)` of Unreal Engine or `[1.0 2.0 3.0]`."""
+BRACKETS = re.compile(rb"[\[({][^\[\](){}]*[\])}]")
+INSIDE_BRACKETS = b"\x01"
+"""Replaces separators inside brackets while a line is split."""
+RATE = re.compile(
+    rb"(?i)(?:fps|frames?[ _]?rate|frequency|hz)\W{1,4}(\d{1,4}(?:\.\d+)?)"
+    rb"|\b(\d{1,4}(?:\.\d+)?) ?(?:fps|hz)\b"
+)
+"""A rate in a comment above the titles."""
 KIND = re.compile(r"(?i)pos(ition)?s?|loc(ation)?|translation|rot(ation)?|quat\w*|orientation")
 """What the coordinates below are, in tables that also hold rotations."""
 
@@ -23,20 +37,56 @@ class TableTitles(NamedTuple):
     n_lines: int
     """Number of lines above the frames."""
     separator: bytes
+    rate: float | None = None
+    """Frames per second; None if the lines above do not state it."""
+    vectors: frozenset[int] = frozenset()
+    """Columns of the file whose cells hold x, y and z; these have a title each."""
+
+    def expand(self, line: bytes) -> bytes:
+        """Return a line whose cells have one number each."""
+        if not self.vectors:
+            return line
+        cells: list[bytes] = []
+        for column, cell in enumerate(_bracketed(line, self.separator)):
+            match = VECTOR.fullmatch(cell)
+            if column in self.vectors:
+                cells += match.groups() if match else [b""] * 3
+            else:
+                cells.append(cell.replace(self.separator, SPACE))
+        return self.separator.join(cells)
 
 
-def table_titles(lines: Sequence[bytes]) -> TableTitles:
-    """Return the titles of the first line, or those of lines of names and axes joined.
+def table_titles(
+    lines: Sequence[bytes], fits: Callable[[list[str]], object]
+) -> TableTitles | None:
+    """Return the titles of the first line that fits, or of lines of names and axes joined.
 
-    In tables with the names above x, y and z, a name may stand in any of its columns. A title
-    is then `Hips_x`, or `Hips_position_x (mm)` if kinds and units have lines of their own;
-    where a line above has several people, it begins with `Anna:`.
+    Above it may be comments. In tables with the names above x, y and z, a name may stand in any
+    of its columns. A title is then `Hips_x`, or `Hips_position_x (mm)` if kinds and units have
+    lines of their own; where a line above has several people, it begins with `Anna:`. Titles
+    of cells such as `(X=1.0,Y=2.0,Z=3.0)` are `Hips_x` too.
 
     Parameters
     ----------
     lines : sequence of bytes
-        The first lines of the file, at least one.
+        The first lines of the file.
+    fits : callable
+        Returns whether titles are those of the table.
     """
+    joined = _joined_lines(lines)
+    if joined is not None and fits(joined.titles):
+        return joined
+    for number, line in enumerate(lines[:MAX_TITLE_LINES]):
+        following = lines[number + 1] if number + 1 < len(lines) else b""
+        found = _titles_of_line(line, following)
+        if fits(found.titles):
+            stated = RATE.search(b"\n".join(lines[:number]))
+            rate = float(stated[1] or stated[2]) if stated else None
+            return found._replace(n_lines=number + 1, rate=rate or None)
+    return None
+
+
+def _joined_lines(lines: Sequence[bytes]) -> TableTitles | None:
     for number, line in enumerate(lines[1:MAX_TITLE_LINES], start=1):
         separator = find_separator(line)
         axes = [AXIS.fullmatch(cell) for cell in _cells(line, separator)]
@@ -53,13 +103,29 @@ def table_titles(lines: Sequence[bytes]) -> TableTitles:
                 ]
                 number += 1
             return TableTitles(joined, number + 1, separator)
-    return titles_of_line(lines[0])
+    return None
 
 
-def titles_of_line(line: bytes) -> TableTitles:
+def _titles_of_line(line: bytes, following: bytes) -> TableTitles:
     """Return the titles of one line; the first one may be blank, as that of an index."""
     separator = find_separator(line)
-    return TableTitles(_cells(line.lstrip(b"# "), separator), 1, separator)
+    titles = _cells(line.lstrip(b"# "), separator)
+    cells = _bracketed(following, separator)
+    vectors = {column for column, cell in enumerate(cells) if VECTOR.fullmatch(cell)}
+    if len(vectors) < MIN_POINTS or len(cells) != len(titles):
+        return TableTitles(titles, 1, separator)
+    expanded = [
+        title if axis == "" else f"{title}_{axis}"
+        for column, title in enumerate(titles)
+        for axis in ("xyz" if column in vectors else ("",))
+    ]
+    return TableTitles(expanded, 1, separator, vectors=frozenset(vectors))
+
+
+def _bracketed(line: bytes, separator: bytes) -> list[bytes]:
+    """Return the cells of a line in which brackets may enclose separators."""
+    hidden = BRACKETS.sub(lambda match: match[0].replace(separator, INSIDE_BRACKETS), line)
+    return [cell.replace(INSIDE_BRACKETS, separator) for cell in split_cells(hidden, separator)]
 
 
 def _cells(line: bytes, separator: bytes) -> list[str]:

@@ -1,12 +1,11 @@
 """Recognize the body in points of any program, by names, bones or the number of points."""
 
-from .landmark_recording import recording_from_landmarks
+from .landmark_recording import landmark_columns, recording_from_landmarks
 from .mediapipe_landmarks import (
     HIPS,
     LANDMARK_JOINTS,
     N_POINTS,
     is_world,
-    seconds,
     with_computed_joints,
 )
 from .named_points import body_of_named_points, missing_limbs
@@ -17,24 +16,40 @@ from .point_arrays import (
     stand_body,
     without_undetected,
 )
-from .time_units import second_of_times
+from .point_titles import coordinate_of_title, is_rotation, numbered_axes
+from .time_units import (
+    TimeCells,
+    TimeName,
+    column_of_times,
+    read_time,
+    second_of_times,
+    time_name,
+)
 from .unnamed_joints import has_layout
 
 __all__ = [
     "HIPS",
     "LANDMARK_JOINTS",
     "N_POINTS",
+    "TimeCells",
+    "TimeName",
     "body_of_named_points",
     "body_of_points",
+    "column_of_times",
+    "coordinate_of_title",
     "has_layout",
+    "is_rotation",
     "is_world",
+    "landmark_columns",
     "missing_limbs",
+    "numbered_axes",
     "points_of_array",
     "read_body",
+    "read_time",
     "recording_from_landmarks",
     "second_of_times",
-    "seconds",
     "stand_body",
+    "time_name",
     "with_computed_joints",
     "without_undetected",
 ]

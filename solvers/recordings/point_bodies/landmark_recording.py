@@ -1,15 +1,25 @@
 """Make recordings of MediaPipe's landmarks, of the world or triangulated by cameras."""
 
+import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ...arrays import Array
 from ...errors import InvalidFileError
-from ...motion import JointRecording, Sensor
+from ...motion import AxisName, JointRecording, Sensor, roles_by_name
 from ...motion.skeletons import BODY_POINTS
 from ...progress import Progress, Remark
-from ..conventions import DEFAULT_FRAME_RATE, from_azure_space, joint_recording
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    UpAxis,
+    describe_guessed_axis,
+    estimate_up_of_joints,
+    from_azure_space,
+    joint_recording,
+    z_up_from_y_up,
+)
 from .mediapipe_landmarks import (
     LANDMARK_JOINTS,
     N_POINTS,
@@ -19,6 +29,20 @@ from .mediapipe_landmarks import (
 )
 from .named_points import body_of_named_points
 from .point_arrays import stand_body
+
+UP_OF_WORLD: dict[AxisName, float] = {"-Y": 0.5, "Y": 0.0, "Z": 0.0}
+"""Weight of the evidence of each axis, 0 to 1, in world landmarks. Chosen by hand: half of a
+body that stands along another axis, 1, since a program turned it. By definition of MediaPipe Y
+is down."""
+WORD_START = re.compile(r"[ \-]|(?<=[a-z])(?=[A-Z])")
+
+
+def landmark_columns(names: Sequence[str]) -> list[int] | None:
+    """Return the columns of MediaPipe's landmarks; None if a name of them is missing."""
+    plain = {WORD_START.sub("_", name.rpartition(".")[2]).lower(): at
+             for at, name in reversed([*enumerate(names)])}  # fmt: skip
+    columns = [plain.get(name) for name in BODY_POINTS]
+    return None if None in columns else [at for at in columns if at is not None]
 
 
 def recording_from_landmarks(
@@ -32,7 +56,8 @@ def recording_from_landmarks(
     """Return the recording of world landmarks, or of landmarks that cameras triangulated.
 
     World landmarks have the hips at the origin, x right, y down, z away from the camera. Axes
-    and unit of triangulated landmarks are estimated from the body.
+    and unit of others are estimated from the body: triangulated ones, and those that a program
+    has turned so that the actor stands.
 
     Parameters
     ----------
@@ -53,12 +78,22 @@ def recording_from_landmarks(
     points, visibility = landmarks[..., :3], np.clip(landmarks[..., 3], 0.0, 1.0)
     if np.isnan(points).all():
         raise InvalidFileError(f"{path} has {len(points)} frames but no body in any of them.")
-    if not is_world(points):
-        return _triangulated(path, points, visibility, times, frame_rate, scale, progress)
+    is_centered = is_world(points)
+    if is_centered:
+        progress(
+            0.9, Remark("MediaPipe keeps the hips at the origin, so the actor does not travel")
+        )
+    elif is_of_picture(points):
+        raise InvalidFileError(
+            f"{path} has image landmarks, without true depth. Save the pose_world_landmarks of"
+            " MediaPipe instead."
+        )
+    up = _estimate_up(points) if is_centered else None
+    if up and (up.axis != "-Y" or not up.is_clear):
+        progress(0.9, Remark(describe_guessed_axis(up.axis)))
+    if up is None or up.axis != "-Y":
+        return _converted(path, points, visibility, times, frame_rate, scale, progress)
     _say_missing_rate(times, frame_rate, progress)
-    progress(
-        0.9, Remark("MediaPipe keeps the hips at the origin, so the actor does not travel")
-    )
     return joint_recording(
         path,
         LANDMARK_JOINTS,
@@ -77,7 +112,15 @@ def recording_from_landmarks(
     )
 
 
-def _triangulated(
+def _estimate_up(points: Array) -> UpAxis:
+    """Return the axis along which the actor of world landmarks stands."""
+    roles = {role: LANDMARK_JOINTS.index(name)
+             for role, name in roles_by_name(LANDMARK_JOINTS).items()}  # fmt: skip
+    positions = with_computed_joints(z_up_from_y_up(points))
+    return estimate_up_of_joints(positions, roles, UP_OF_WORLD)
+
+
+def _converted(
     path: Path | str,
     points: Array,
     visibility: Array,
@@ -88,11 +131,6 @@ def _triangulated(
 ) -> JointRecording:
     observed = [at for at in range(N_POINTS) if np.isfinite(points[:, at]).all(axis=-1).any()]
     names = [BODY_POINTS[at] for at in observed]
-    if is_of_picture(points):
-        raise InvalidFileError(
-            f"{path} has image landmarks, without true depth. Save the pose_world_landmarks of"
-            " MediaPipe instead."
-        )
     body = body_of_named_points(names, points[:, observed])
     if body is None:
         raise InvalidFileError(

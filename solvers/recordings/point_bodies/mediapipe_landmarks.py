@@ -4,14 +4,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS
-from ..conventions import MILLISECOND
 
 N_POINTS = len(BODY_POINTS)
 LANDMARK_JOINTS = (*BODY_POINTS, *COMPUTED_JOINTS)
 HIPS = [BODY_POINTS.index("left_hip"), BODY_POINTS.index("right_hip")]
-MAX_FRAME_S = 2.0
-"""Typical step between frames, seconds, above which stamps are milliseconds. Chosen by hand:
-steps of 5 to 100 Hz are 0.01 to 0.2 s, or 10 to 200 ms."""
 MAX_CENTER_FRACTION = 0.2
 """Distance of the middle of the hips from the origin, relative to the size of the body, up to
 which landmarks are those of the world, whose origin is there. Chosen by hand: in a picture,
@@ -19,13 +15,6 @@ whose origin is a corner, it is 0.5 and more, since hips are in the middle of a 
 MIN_INSIDE = 0.95
 """Coordinates in a picture, a fraction of all. It guards takes of scenes, with a third and more
 outside; MediaPipe also guesses limbs that leave the picture."""
-
-
-def seconds(stamps: Array) -> Array:
-    """Return stamps of unstated unit in seconds: they may be milliseconds."""
-    steps = np.diff(stamps[np.isfinite(stamps)])
-    is_long = len(steps) and np.median(steps) > MAX_FRAME_S
-    return np.asarray(MILLISECOND * stamps if is_long else stamps)
 
 
 def is_world(points: Array) -> bool:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from ...errors import InvalidFileError
-from ..containers import MAX_NAME_LENGTH, UniqueNames, printable, shown
+from ..containers import MAX_NAME_LENGTH, UniqueNames, decode_text, printable, shown
 
 CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
 
@@ -132,7 +132,7 @@ class _Hierarchy:
         return word
 
     def _words(self, text: bytes) -> Iterator[str]:
-        for line in text.decode("utf-8", "replace").splitlines():
+        for line in decode_text(text).splitlines():
             yield from line.replace("{", " { ").replace("}", " } ").split()
             self.line += 1
 

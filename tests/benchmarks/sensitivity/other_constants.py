@@ -45,7 +45,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "motion/skeletons/file_conventions.UNIT_NAMES",
         "recordings/conventions/axes.*",
         "recordings/conventions/points.METERS",
-        "recordings/joint_files/*.TIME*",
+        "recordings/point_bodies/time_units.SECONDS",
         "recordings/reading_settings.METRES",
         "recordings/skeleton_files/bvh_channels.IMPERIAL",
         "recordings/streams/protocols/rokoko.HALF",

@@ -6,7 +6,7 @@ body.
 
 import json
 from collections.abc import Iterator, Mapping
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -15,11 +15,12 @@ from ....errors import InvalidFileError, InvalidMotionError
 from ....json_text import parse_json
 from ....motion import Sensor
 from ...conventions import MAX_TIME_S, MILLISECOND, from_azure_space
-from ...joint_files import frame_landmarks, frame_time
+from ...joint_files import people_of_frame, time_of_frame
 from ...point_bodies import (
     HIPS,
     LANDMARK_JOINTS,
     is_world,
+    landmark_columns,
     with_computed_joints,
 )
 from ..frames import LiveFrame
@@ -84,7 +85,7 @@ class MediaPipeDecoder:
             fields = parse_json(part, parse_constant=_refuse)
         except ValueError:
             raise InvalidMotionError(DAMAGED) from None
-        landmarks = frame_landmarks(fields, "A frame")
+        landmarks = _landmarks_of(fields)
         if landmarks is None or not _shows_hips(landmarks):
             return
         points = landmarks[None, :, :3]
@@ -95,7 +96,7 @@ class MediaPipeDecoder:
             )
         visibility = np.nan_to_num(np.clip(landmarks[None, :, 3], 0.0, 1.0), nan=1.0)
         yield LiveFrame(
-            self._seconds(frame_time(fields, "A frame"), arrived),
+            self._seconds(_stamp_of(fields), arrived),
             0,
             LANDMARK_JOINTS,
             with_computed_joints(from_azure_space(checked_positions(points)))[0],
@@ -121,6 +122,23 @@ class MediaPipeDecoder:
         if not abs(time) <= MAX_TIME_S:
             raise InvalidMotionError(f"A frame's time is not a number up to {MAX_TIME_S:g}.")
         return time
+
+
+def _landmarks_of(fields: Any) -> Array | None:
+    """Return x, y, z and visibility of the first person, shape (33, 4); None without one."""
+    person = next(people_of_frame(fields), None)
+    if person is None:
+        return None
+    columns = landmark_columns(person.points.names)
+    if columns is None:
+        raise InvalidMotionError(DAMAGED)
+    return np.column_stack(person.points[:2])[columns]
+
+
+def _stamp_of(fields: Any) -> float:
+    """Return the time of a frame, in seconds if it states the unit; NaN if it has none."""
+    time, second = time_of_frame(fields) if isinstance(fields, Mapping) else (np.nan, None)
+    return time if second is None else time * second
 
 
 def _shows_hips(landmarks: Array) -> bool:

@@ -212,7 +212,7 @@ def test_landmarks_of_a_picture_are_refused_with_what_would_serve(read_any, text
         (nuitrack_json()[0].replace('"real"', '"proj"'), "no joint that is observed"),
         (nuitrack_json()[0][:2000], "damaged or cut short"),
         (mediapipe_json(mediapipe())[:5000], "damaged or cut short"),
-        (mediapipe_json(mediapipe()[:, :20]), "20 landmarks; those of"),
+        (mediapipe_json(mediapipe()[:, :20]), "20 points without names, which form no body"),
         (mediapipe_json(np.full((3, 33, 4), np.nan)), "no body in any"),
         (mediapipe_csv(mediapipe()).splitlines()[0] + "\n", "header but no frames"),
     ],

@@ -16,6 +16,12 @@ PARTS = {"shoulder": "UpperArm", "elbow": "LowerArm", "wrist": "Hand", "hip": "U
          "knee": "LowerLeg", "ankle": "Foot"}  # fmt: skip
 ROLES = {f"{side}_{part}": side + role for part, role in PARTS.items()
          for side in ("left", "right")}  # fmt: skip
+NAMES_OF_UNREAL = {
+    f"{side}_{part}": f"{name}_{side[0]}"
+    for part, name in {"shoulder": "upperarm", "elbow": "lowerarm", "wrist": "hand",
+                       "hip": "thigh", "knee": "calf", "ankle": "foot"}.items()
+    for side in ("left", "right")
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -175,3 +181,42 @@ def write(folder, content):
     path = folder / "take.json"
     path.write_text(json.dumps(content))
     return path
+
+
+@pytest.mark.parametrize("nest", [
+    lambda anna, ben: {"anna": anna, "ben": ben},
+    lambda anna, ben: [{"people": [{"id": 1, "joints": a}, {"id": 2, "joints": b}]}
+                       for a, b in zip(anna, ben, strict=True)],
+    lambda anna, ben: [{"anna": a, "ben": b} for a, b in zip(anna, ben, strict=True)],
+])  # fmt: skip
+def test_people_may_have_joints_of_other_names(tmp_path, two, nest):
+    """Before, each had the names of both, so the second was refused as no body."""
+    path = tmp_path / "two.json"
+    ben = [
+        {NAMES_OF_UNREAL[name]: place for name, place in two(1, k).items()} for k in range(F)
+    ]
+    path.write_text(json.dumps(nest(listed(two, 0), ben)))
+
+    first, second = (read_recording(path, body=each.name) for each in list_bodies(path))
+
+    assert "left_wrist" in first.names and "left_wrist" in second.names
+    wrists = [
+        each.tracks.positions[:, each.names.index("left_wrist")] for each in (first, second)
+    ]
+    feet = [
+        each.tracks.positions[:, each.names.index("left_ankle")] for each in (first, second)
+    ]
+    assert np.allclose(wrists[0] - feet[0], wrists[1] - feet[1], atol=1e-9)
+
+
+def test_actors_of_a_scene_are_called_by_their_names(tmp_path, two):
+    frames = [{"timestamp": k / 50.0, "props": [], "actors": [
+        {"name": name, "body": {joint: {"position": dict(zip("xyz", place, strict=True))}
+                                for joint, place in two(who, k).items()}}
+        for who, name in enumerate(("Anna", "Ben"))
+    ]} for k in range(F)]  # fmt: skip
+    path = tmp_path / "studio.json"
+    path.write_text(json.dumps({"version": "3,0", "scene": {"frames": frames}}))
+
+    assert [each.name for each in list_bodies(path)] == ["Anna", "Ben"]
+    assert read_recording(path, body="Ben").frame_rate == 50.0
