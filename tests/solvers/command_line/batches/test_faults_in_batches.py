@@ -100,7 +100,7 @@ def test_take_is_written_and_the_picture_is_named_when_drawing_raises(
 
     for status, out, err in (first, again):
         assert (status, out.count("\n"), err.count("\n")) == (2, 1, 1)
-        assert f"leg.bvh: {FAULT} (IndexError at solvers/command_line/batch.py:" in err
+        assert f"leg.bvh: {FAULT} (IndexError at solvers/command_line/batches/batch.py:" in err
     assert read_bvh(tmp_path / "out" / "leg.bvh").n_frames == 120
     assert "Already made." in again[1]
 
