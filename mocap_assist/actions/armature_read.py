@@ -46,7 +46,7 @@ def read_take(
     grid : Grid
         Frames to read instead of those of the keys within `choice`.
     root : str
-        Bone that the body begins with; empty judges it by the bones that travel.
+        Bone that the body begins with; empty estimates it from the bones that travel.
 
     Returns
     -------

@@ -178,8 +178,9 @@ def _upright(clips: list[BlendClip]) -> list[BlendClip]:
 def _with_one_root(clips: list[BlendClip], stated: FileConventions) -> list[BlendClip]:
     """Read takes again whose body begins higher up than in another take of its armature.
 
-    Where the body begins is judged by how bones travel, which differs from take to take. What
-    the bones above do is part of the motion; what the hips do below a bone above them is not.
+    Where the body begins is estimated from how bones travel, which differs from take to take.
+    What the bones above do is part of the motion; what the hips do below a bone above them is
+    not.
     """
     smallest: dict[str, Motion] = {}
     for clip in clips:

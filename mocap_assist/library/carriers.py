@@ -68,11 +68,11 @@ def with_carriers(
         raise InvalidMotionError(
             f"The objects above {armature.name} change their size. Bake them into its bones."
         )
-    carried = np.stack([rotation for rotation, _, _ in moves])
+    carrier_rotations = np.stack([rotation for rotation, _, _ in moves])
     shifts = unit * np.stack([shift for _, shift, _ in moves])
     rotations = motion.rotations.copy()
-    rotations[:, 0] = multiply(carried, rotations[:, 0])
-    positions = rotate(carried, motion.root_positions) + shifts
+    rotations[:, 0] = multiply(carrier_rotations, rotations[:, 0])
+    positions = rotate(carrier_rotations, motion.root_positions) + shifts
     return replace(motion, rotations=rotations, root_positions=positions)
 
 

@@ -50,9 +50,9 @@ below which it bears the body. Chosen by hand: x0.5 holds hands of bodies that l
 turns their arms twice as far, x2 lets go of hands while an actor gets down.
 `test_hands_of_a_body_that_lies_are_free` fails without it."""
 HIPS_SMOOTHING_S = 0.1
-"""Seconds over which the path of the pelvis is smoothed before it is judged. Chosen by hand on
-HDM05 lieDownFloor at 120 Hz: without it 1 % of the contact is lost where the root jitters by 1
-cm, with it nothing. `make sensitivity` varies it."""
+"""Seconds over which the path of the pelvis is smoothed before contact is estimated. Chosen by
+hand on HDM05 lieDownFloor at 120 Hz: without it 1 % of the contact is lost where the root
+jitters by 1 cm, with it nothing. `make sensitivity` varies it."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ MAX_GOOD_MISFIT = 1.0
 """Median misfit, relative to the same, below which a label is correct. It guards reflections,
 which fit no label (`test_reflection_does_not_get_the_label_of_a_missing_marker`)."""
 MIN_NEIGHBORS = 3
-"""Number of observed neighbors without which a label is not judged: spheres about three of them
+"""Number of observed neighbors without which no label is checked: spheres about three of them
 meet in two points. Chosen by hand; `make sensitivity` varies it."""
 MIN_JUMP_M = 0.06
 """Step relative to the neighbors in one frame that indicates another marker. It guards markers

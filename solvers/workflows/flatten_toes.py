@@ -33,8 +33,8 @@ BLEND_S, HEADING_SMOOTHING_S = 0.05, 0.5
 smoothed. Chosen by hand: 1.5 frames at 30 Hz, so that toes do not jump, and 15 frames, in which
 a standing foot does not turn."""
 MIN_LEVEL_FRACTION = 0.2
-"""Minimum horizontal fraction of the length of a foot that defines a heading. Chosen by hand: 3
-cm of a foot of 15 cm; a Kinect's joints are off by 4 cm (docs/benchmarks/reconstruction.md)."""
+"""Minimum horizontal fraction of the length of a foot that defines a heading. Chosen by hand:
+a foot below it hangs within 12 degrees of the vertical (3 cm of 15), and does not stand."""
 
 
 def flatten_toes(motion: Motion, reliability: Array, contacts: NDArray[np.bool_]) -> Motion:

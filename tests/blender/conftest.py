@@ -52,7 +52,6 @@ IN_ONE_BLENDER = {
     "importing/test_make_skeleton.py": (5, 2),
     "importing/test_marker_cleaning.py": (4, 5),
     "importing/test_marker_look.py": (5, 2),
-    "importing/test_scene_files.py": (5, 2),
     "importing/test_scene_files_in_batches.py": (4, 5),
     "importing/test_several_bodies.py": (5, 2),
     "importing/test_skinned_meshes.py": (5, 2),

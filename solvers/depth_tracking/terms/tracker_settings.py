@@ -57,6 +57,7 @@ class TrackerSettings(Settings):
         60.0,
         "Smoothness of the joint rotations; higher is smoother and follows slower",
         "1/rad2",
+        former="turn_weight",
     )
     prediction: float = setting(
         0.7, "Fraction of the last movement used for prediction; higher follows faster motion",

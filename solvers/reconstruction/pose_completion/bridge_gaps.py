@@ -24,7 +24,7 @@ def blend_gaps(
 ) -> Array:
     """Blend completed joints with the joint's own path across each gap.
 
-    A joint that rests follows its path, and the probability that it rests is judged on the
+    A joint that rests follows its path, and the probability that it rests is estimated on the
     take (`rest_probability`). Otherwise the weight of the path falls with the time to the ends
     of the gap.
 

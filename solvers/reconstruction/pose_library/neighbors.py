@@ -106,6 +106,7 @@ def nearest_postures(
     compared, so that the time hardly grows with the library. The expected distance of a group
     is the weighted squared distance from the query to its center, less the group's radius,
     joint by joint. Any weights are possible, so they need no quantization as in the paper.
+    To a frame without weights all poses are equally near: it gets poses from all groups.
 
     Parameters
     ----------
@@ -128,6 +129,7 @@ def nearest_postures(
     distances = np.empty((n_frames, n_neighbors))
     search_all = len(index.starts) == 2 or len(index.order) <= n_looked_at
     n_compared = len(index.order) if search_all else n_looked_at
+    spread = np.arange(n_neighbors) * len(index.order) // n_neighbors
     for part in row_blocks(n_frames, n_compared):
         points, weights = _as_points(query.slice(part.start, part.stop))
         if search_all:
@@ -135,6 +137,7 @@ def nearest_postures(
         else:
             found = _search_groups(index, points, weights, n_neighbors, n_looked_at)
             indices[part], distances[part] = found
+        indices[part][~weights.any(axis=1)] = spread
         progress(part.stop / n_frames, "Searching similar poses")
     return index.order[indices], distances
 

@@ -47,7 +47,7 @@ def basis_functions(features: Array, points: Array, length: float) -> Array:
 
 
 def basis_values(squared: Array, length: float, root: Array) -> Array:
-    """Return the functions of `basis_functions`, given what it computes first.
+    """Return what `basis_functions` does, from distances and a root that are already computed.
 
     `squared` are the squared distances from the points; `root` is their `cholesky_root`.
     """

@@ -1,4 +1,4 @@
-"""Find times among named values, and judge their unit from names and steps."""
+"""Find times among named values, and estimate their unit from names and steps."""
 
 import re
 from collections.abc import Sequence

@@ -230,10 +230,10 @@ def _draw_curves(
 def _component(motions: Mapping[str, Motion], moment: Moment) -> dict[str, Array]:
     """Return the same component of the joint in all motions, degrees about the true mean."""
     truth = motions["truth"].rotations[:, moment.joint]
-    rotated = inverse(mean_rotation(truth))
+    from_mean = inverse(mean_rotation(truth))
     vectors = {
         name: rotation_vector_from_quaternion(
-            multiply(rotated, motion.rotations[:, moment.joint])
+            multiply(from_mean, motion.rotations[:, moment.joint])
         )
         for name, motion in motions.items()
     }

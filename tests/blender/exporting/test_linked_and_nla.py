@@ -33,7 +33,7 @@ def chosen(blank, armature):
 
 
 @pytest.mark.parametrize(
-    ("overridden", "ending"), [(False, "fbx"), (True, "glb")], ids=["linked", "overridden"]
+    ("overridden", "ending"), [(False, "fbx"), (True, "bvh")], ids=["linked", "overridden"]
 )
 def test_a_linked_rig_is_exported(rig_file, blank, export, bring, heads, overridden, ending):
     rig = linked(blank, rig_file)

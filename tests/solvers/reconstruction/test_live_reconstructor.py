@@ -78,16 +78,16 @@ def test_actor_of_the_first_seconds_serves_for_the_rest(walk):
 
 
 def test_frame_without_an_actor_keeps_a_pose(walk):
-    """No joint moves farther than joints of the actor do within as many frames."""
-    live, n_missing, true = LiveReconstructor(measure_actor(walk)), 5, walk.tracks.positions
+    """Within a sixth of a second no joint moves by as much as half a step."""
+    live = LiveReconstructor(measure_actor(walk))
+    states = walk.tracking_state
     for frame in range(20):
-        last = live.update(ObservedFrame(true[frame], walk.tracking_state[frame]))
-    own = np.nanmax(np.linalg.norm(true[n_missing:] - true[:-n_missing], axis=-1))
+        last = live.update(ObservedFrame(walk.tracks.positions[frame], states[frame]))
     missing = ObservedFrame(np.full((20, 3), np.nan), np.zeros(20, np.int8))
-    for _ in range(n_missing):
+    for _ in range(5):
         pose = live.update(missing)
         assert np.isfinite(pose.positions).all()
-        assert np.linalg.norm(pose.positions - last.positions, axis=-1).max() < own
+        assert np.linalg.norm(pose.positions - last.positions, axis=-1).max() < 0.3
     assert (pose.reliability == 0.0).all()
 
 

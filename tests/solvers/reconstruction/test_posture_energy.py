@@ -92,6 +92,23 @@ def test_neighbors_minimize_equation_9(bodies, random):
         assert set(indices[frame]) == set(np.argsort(errors)[:12])
 
 
+@pytest.mark.parametrize("n_looked_at", [100, 8000], ids=["groups", "all"])
+def test_a_frame_without_joints_gets_poses_from_the_whole_library(bodies, n_looked_at):
+    """All are equally near; which ones it gets depends on neither rounding nor numpy."""
+    groups = np.repeat(np.arange(9, dtype=np.int32), 100)
+    query = PostureQuery(
+        np.full((2, 20, 3), np.nan), np.zeros((2, 20, 3)), np.zeros((2, 20)), 0.0
+    )
+
+    found, distances = nearest_postures(
+        index_postures(_body(bodies), groups), query, 18, n_looked_at=n_looked_at
+    )
+
+    assert not distances.any()
+    assert (np.bincount(groups[found[0]]) == 2).all()
+    np.testing.assert_array_equal(*found)
+
+
 def test_grouped_search_finds_nearly_all_true_neighbors(random):
     displacements = random.normal(size=(6, 20, 3))
     latent = random.normal(size=(12000, 6))

@@ -41,7 +41,7 @@ class Person:
         From 1, in the order in which people appear.
     body : int
         What the sender first called them.
-    place : float, float, float; meters
+    position : float, float, float; meters
     time : float, seconds
     """
 

@@ -161,7 +161,7 @@ def encode_xsens(frame: PoseFrame, positions: Array, rotations: Array) -> bytes:
     segments = np.zeros(N_SEGMENTS, SEGMENT)
     segments["id"] = np.arange(1, N_SEGMENTS + 1)
     segments["position"] = _unforward(positions) / CENTIMETER
-    segments["rotation"] = _unturned(rotations)
+    segments["rotation"] = _from_z_up(rotations)
     content, milliseconds = segments.tobytes(), round(frame.time / MILLISECOND)
     return HEADER.pack(
         POSE, milliseconds, LAST_DATAGRAM, N_SEGMENTS, milliseconds, frame.body,
@@ -184,5 +184,5 @@ def _z_up(rotations: Array) -> Array:
     return np.concatenate([rotations[..., :1], _forward(rotations[..., 1:])], axis=-1)
 
 
-def _unturned(rotations: Array) -> Array:
+def _from_z_up(rotations: Array) -> Array:
     return np.concatenate([rotations[..., :1], _unforward(rotations[..., 1:])], axis=-1)
