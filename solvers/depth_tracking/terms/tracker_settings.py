@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from ...settings import Settings, setting
 
 
-def _weight(default: float, help: str, unit: str = "1/m2") -> float:
-    value: float = setting(default, help, unit=unit, minimum=0.0, maximum=1e9, advanced=True)
+def _weight(default: float, help: str, unit: str = "1/m2", *, former: str = "") -> float:
+    value: float = setting(
+        default, help, unit=unit, minimum=0.0, maximum=1e9, advanced=True, former=former
+    )
     return value
 
 
