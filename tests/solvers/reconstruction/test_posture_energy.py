@@ -93,7 +93,7 @@ def test_neighbors_minimize_equation_9(bodies, random):
 
 
 @pytest.mark.parametrize("n_looked_at", [100, 8000], ids=["groups", "all"])
-def test_a_frame_without_joints_gets_poses_from_the_whole_library(bodies, n_looked_at):
+def test_frames_without_joints_get_poses_of_all_groups(bodies, n_looked_at):
     """All are equally near; which ones it gets depends on neither rounding nor numpy."""
     groups = np.repeat(np.arange(9, dtype=np.int32), 100)
     query = PostureQuery(

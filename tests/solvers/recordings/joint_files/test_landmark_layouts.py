@@ -132,7 +132,7 @@ def test_a_landmark_that_is_null_is_not_observed(read_any):
     assert np.argwhere(np.isnan(positions[:, :33]).any(axis=2)).tolist() == [[3, 15], [4, 16]]
 
 
-def test_two_people_in_places_of_a_list_can_be_chosen(make_writer):
+def test_two_people_by_their_order_in_a_list_can_be_chosen(make_writer):
     other = [{**each, "x": -each["x"]} for each in objects(0)]
     frames = [{"landmarks": [objects(k), other]} for k in range(N)]
 
