@@ -31,8 +31,8 @@ from ..point_bodies import (
     body_of_points,
     column_of_times,
     coordinate_of_title,
-    is_rotation,
     missing_limbs,
+    names_of_positions,
     numbered_axes,
     read_body,
     second_of_times,
@@ -242,11 +242,8 @@ def _columns(titles: Sequence[str]) -> _Columns | None:
         if coordinate is not None:
             found.setdefault(coordinate.name, {}).setdefault(coordinate.axis, column)
             units.add(coordinate.unit)
-    points = {
-        name: axes
-        for name, axes in found.items()
-        if len(axes) == 3 and not is_rotation(name, found)
-    }
+    complete = [name for name, axes in found.items() if len(axes) == 3]
+    points = {name: found[name] for name in names_of_positions(complete)}
     points = points or numbered_axes(titles)
     if not points:
         return None

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from ..containers import SPACE, decode_text, find_separator, split_cells
 from ..conventions import meters_from_unit_name
+from ..point_bodies import is_quantity
 
 MAX_TITLE_LINES = 10
 """Lines above the frames. It bounds the search; tables of Motive have seven."""
@@ -146,7 +147,7 @@ def _joined(
     for row in rows:
         spread = _spread(_padded(row, len(axes)), axes)
         found = {name for name, match in zip(spread, axes, strict=True) if match}
-        if all(KIND.fullmatch(name) for name in found):
+        if all(KIND.fullmatch(name) or is_quantity(name) for name in found):
             kinds = spread
         elif not names and sum(_is_name(name) for name in found) >= MIN_POINTS:
             names = spread

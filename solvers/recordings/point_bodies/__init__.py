@@ -16,7 +16,12 @@ from .point_arrays import (
     stand_body,
     without_undetected,
 )
-from .point_titles import coordinate_of_title, is_rotation, numbered_axes
+from .point_titles import (
+    coordinate_of_title,
+    is_quantity,
+    names_of_positions,
+    numbered_axes,
+)
 from .time_units import (
     TimeCells,
     TimeName,
@@ -38,10 +43,11 @@ __all__ = [
     "column_of_times",
     "coordinate_of_title",
     "has_layout",
-    "is_rotation",
+    "is_quantity",
     "is_world",
     "landmark_columns",
     "missing_limbs",
+    "names_of_positions",
     "numbered_axes",
     "points_of_array",
     "read_body",
