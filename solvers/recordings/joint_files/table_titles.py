@@ -10,6 +10,8 @@ from ..point_bodies import is_quantity
 
 MAX_TITLE_LINES = 10
 """Lines above the frames. It bounds the search; tables of Motive have seven."""
+N_SAMPLED_LINES = 100
+"""Lines of frames by which columns are recognized. Chosen by hand: above 1 s of most rates."""
 MIN_POINTS = 8
 """Number of points of a table. It guards tables of something else, such as of one sensor."""
 AXIS = re.compile(r"(?P<axis>[xyz])\d*(\s*[(\[](?P<unit>\w+)[)\]])?", re.IGNORECASE)
@@ -42,6 +44,11 @@ class TableTitles(NamedTuple):
     """Frames per second; None if the lines above do not state it."""
     vectors: frozenset[int] = frozenset()
     """Columns of the file whose cells hold x, y and z; these have a title each."""
+
+    def cells(self, lines: Sequence[bytes]) -> list[list[str]]:
+        """Return the cells of the frames among the first lines of the file."""
+        below = [line for line in lines[self.n_lines :] if line.strip()]
+        return [_cells(self.expand(line), self.separator) for line in below]
 
     def expand(self, line: bytes) -> bytes:
         """Return a line whose cells have one number each."""
