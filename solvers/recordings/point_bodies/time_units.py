@@ -34,8 +34,9 @@ WORD_OF_TIME = re.compile(
 TIMECODE = re.compile(r"\d:\d+:\d+[:;]\d")
 """Hours, minutes, seconds and the number of a frame, whose rate is not stated."""
 DAY_S = 86400.0
+"""Seconds of a day. By definition of the units."""
 CLOCK_UNITS = frozenset({"hour", "minute", "min", "h"})
-"""Titles, without the plural s, beside which seconds are those of a clock."""
+"""Titles, without the plural s, next to which seconds are those of a clock."""
 MAX_LINES_BELOW = 10
 """Lines of words, such as of means, that may follow the frames. It guards damaged times."""
 MISSING = {"", "nan", "n/a", "na", "inf", "null", "none", "-"}
@@ -111,7 +112,7 @@ def column_of_times(titles: Sequence[str], cells: Sequence[Sequence[str]] = ()) 
     """Return the column of times; None without one.
 
     Those that increase from frame to frame come first, then those that say more than a unit,
-    and of these, those that state it. Units are no times beside an hour, or another unit.
+    and of these, those that state it. Units are no times next to an hour, or another unit.
 
     Parameters
     ----------
@@ -145,15 +146,15 @@ def _increases(column: int, cells: Sequence[Sequence[str]]) -> bool:
 def bridged_times(times: Array) -> Array:
     """Return times in which frames that alone lack theirs have the mean of their neighbors.
 
-    At an end, the step beside them continues. Longer gaps stay NaN.
+    At an end, the step next to them continues. Longer gaps stay NaN.
 
     Parameters
     ----------
     times : shape (n_frames,)
     """
     known = np.isfinite(times)
-    beside = np.concatenate([[False], ~known, [False]])
-    alone = np.flatnonzero(~known & ~beside[:-2] & ~beside[2:])
+    unknown = np.concatenate([[False], ~known, [False]])
+    alone = np.flatnonzero(~known & ~unknown[:-2] & ~unknown[2:])
     bridged = times.copy()
     for frame in alone if len(times) > 2 else ():
         if 0 < frame < len(times) - 1:

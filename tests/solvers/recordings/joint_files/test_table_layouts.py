@@ -147,9 +147,9 @@ def test_joints_may_be_missing_in_the_first_frames(read_any, walk):
 
     recording = read_any(table_of_vectors(walk, spoil))
 
-    unseen = np.isnan(recording.tracks.positions).any(axis=2)
-    assert unseen.sum() == 20
-    assert unseen[:20].any(axis=1).all()
+    missing = np.isnan(recording.tracks.positions).any(axis=2)
+    assert missing.sum() == 20
+    assert missing[:20].any(axis=1).all()
 
 
 @pytest.mark.parametrize("cell", ["(1.0 2.0)", "0.5", "lost"])

@@ -35,7 +35,7 @@ def test_other_quantities_are_refused(read_any, pattern):
 
 
 @pytest.mark.parametrize("pattern", QUANTITIES)
-def test_other_quantities_beside_positions_are_left_out(read_any, pattern):
+def test_other_quantities_next_to_positions_are_left_out(read_any, pattern):
     both = titles("{name}_{axis}") + titles(pattern)
     content = table(both)
     alone = "\n".join(

@@ -13,9 +13,9 @@ NAMES = [f"Ball{number}m" for number in range(9)]
 def table(columns, n_frames=F):
     """Return a table with columns of times, by title, before those of points."""
     titles = [*columns, *(f"{name}_{axis}" for name in NAMES for axis in "xyz")]
-    places = np.random.default_rng(2).normal(size=(n_frames, 3 * len(NAMES)))
+    positions = np.random.default_rng(2).normal(size=(n_frames, 3 * len(NAMES)))
     rows = [[*(cell(k) for cell in columns.values()), *(f"{x:.4f}" for x in row)]
-            for k, row in enumerate(places)]  # fmt: skip
+            for k, row in enumerate(positions)]  # fmt: skip
     return "\n".join(";".join(row) for row in [titles, *rows]) + "\n"
 
 
