@@ -27,7 +27,14 @@ from ..conventions import (
     observed_body,
     recorded_seconds,
 )
-from ..point_bodies import TimeCells, TimeName, column_of_times, second_of_times, time_name
+from ..point_bodies import (
+    TimeCells,
+    TimeName,
+    column_of_times,
+    over_midnight,
+    second_of_times,
+    time_name,
+)
 from .point_table import ignored_columns, recording_of_points
 from .table_titles import MAX_TITLE_LINES, table_titles
 
@@ -130,7 +137,9 @@ def open_long_table(
     names, order = table.joints.in_order()
     points = _points(path, table, frames, order)
     if times is not None:
-        times = times * (columns.times.second or second_of_times(times, progress))
+        times = over_midnight(
+            times * (columns.times.second or second_of_times(times, progress))
+        )
     duration = len(points[0]) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
     listed = tuple(
         observed_body(

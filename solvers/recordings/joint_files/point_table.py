@@ -29,17 +29,19 @@ from ..point_bodies import (
     TimeName,
     body_of_named_points,
     body_of_points,
+    bridged_times,
     column_of_times,
     coordinate_of_title,
-    is_rotation,
     missing_limbs,
+    names_of_positions,
     numbered_axes,
+    over_midnight,
     read_body,
     second_of_times,
     stand_body,
     time_name,
 )
-from .table_titles import MAX_TITLE_LINES, MIN_POINTS, table_titles
+from .table_titles import MAX_TITLE_LINES, MIN_POINTS, N_SAMPLED_LINES, table_titles
 
 
 class _Columns(NamedTuple):
@@ -93,9 +95,9 @@ def open_point_table(
     check_scale(scale)
     reader = LineReader(path)
     reader.skip_blank_lines()
-    first = reader.peek(MAX_TITLE_LINES)
+    first = reader.peek(MAX_TITLE_LINES + N_SAMPLED_LINES)
     header = table_titles(first, _has_points)
-    columns = _columns(header.titles) if header else None
+    columns = _columns(header.titles, header.cells(first)) if header else None
     if header is None or columns is None:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
     reader.take(header.n_lines)
@@ -111,15 +113,10 @@ def open_point_table(
         },
         prepare=header.expand,
     )
-    times = None if columns.time is None else rows[:, columns.time]
-    if times is not None and np.isfinite(times).any():  # Lines such as of means may follow.
-        rows = rows[: np.flatnonzero(np.isfinite(times))[-1] + 1]
-        times = times[: len(rows)]
+    if columns.time is not None:  # Lines such as of means may follow.
+        rows = rows[: columns.times.n_frames(rows[:, columns.time])]
+    times = None if columns.time is None else _times(rows[:, columns.time], columns, progress)
     points = rows[:, columns.positions.astype(int)]
-    if times is None or not np.isfinite(times).all():
-        times = None
-    else:
-        times = times * (columns.times.second or second_of_times(times, progress))
     if times is None and header.rate is not None:
         times = np.arange(len(points)) / header.rate
     unit = columns.unit if scale is None else scale
@@ -143,6 +140,15 @@ def open_point_table(
         return recording_of_points(path, person.names, mine, times, unit, progress)
 
     return Bodies(str(path), listed, read)
+
+
+def _times(times: Array, columns: _Columns, progress: Progress) -> Array | None:
+    """Return the times of frames, seconds; None if several in a row are missing."""
+    if not np.isfinite(times).any():
+        return None
+    second = columns.times.second or second_of_times(times, progress)
+    times = bridged_times(over_midnight(times * second))
+    return times if np.isfinite(times).all() else None
 
 
 def ignored_columns(
@@ -233,7 +239,7 @@ def _has_points(titles: Sequence[str]) -> bool:
     return columns is not None and len(columns.names) >= MIN_POINTS
 
 
-def _columns(titles: Sequence[str]) -> _Columns | None:
+def _columns(titles: Sequence[str], cells: Sequence[Sequence[str]] = ()) -> _Columns | None:
     """Return the columns of points; None if none has all three coordinates."""
     found: dict[str, dict[str, int]] = {}
     units: set[str] = set()
@@ -242,15 +248,12 @@ def _columns(titles: Sequence[str]) -> _Columns | None:
         if coordinate is not None:
             found.setdefault(coordinate.name, {}).setdefault(coordinate.axis, column)
             units.add(coordinate.unit)
-    points = {
-        name: axes
-        for name, axes in found.items()
-        if len(axes) == 3 and not is_rotation(name, found)
-    }
+    complete = [name for name, axes in found.items() if len(axes) == 3]
+    points = {name: found[name] for name in names_of_positions(complete)}
     points = points or numbered_axes(titles)
     if not points:
         return None
-    time = column_of_times(titles)
+    time = column_of_times(titles, cells)
     times = TimeCells((time_name(titles[time]) if time is not None else None) or TimeName(None))
     unit = meters_from_unit_name(units.pop()) if len(units) == 1 else None
     positions = np.array([[axes[axis] for axis in "xyz"] for axes in points.values()])

@@ -6,26 +6,33 @@ from typing import NamedTuple
 
 from ..containers import SPACE, decode_text, find_separator, split_cells
 from ..conventions import meters_from_unit_name
+from ..point_bodies import is_quantity
 
 MAX_TITLE_LINES = 10
 """Lines above the frames. It bounds the search; tables of Motive have seven."""
+N_SAMPLED_LINES = 100
+"""Lines of frames by which columns are recognized. Chosen by hand: above 1 s of most rates."""
 MIN_POINTS = 8
 """Number of points of a table. It guards tables of something else, such as of one sensor."""
 AXIS = re.compile(r"(?P<axis>[xyz])\d*(\s*[(\[](?P<unit>\w+)[)\]])?", re.IGNORECASE)
-NUMBER = rb"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan)"
+NUMBER = rb"([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?|nan)"
 VECTOR = re.compile(
     rb"(?i)[\[({]?\s*(?:x\s*[=:]\s*)?" + NUMBER + rb"[\s,;]+(?:y\s*[=:]\s*)?" + NUMBER
     + rb"[\s,;]+(?:z\s*[=:]\s*)?" + NUMBER + rb"\s*[\])}]?"
 )  # fmt: skip
 """A cell with x, y and z, such as `(X=1.0,Y=2.0,Z=3.0)` of Unreal Engine or `[1.0 2.0 3.0]`."""
+MAX_VECTOR_BYTES = 120
+"""Bytes of such a cell. It bounds the search; three numbers of all digits have 75."""
+MISSING = {b"", b"nan", b"n/a", b"na", b"null", b"none", b"-"}
 BRACKETS = re.compile(rb"[\[({][^\[\](){}]*[\])}]")
 INSIDE_BRACKETS = b"\x01"
 """Replaces separators inside brackets while a line is split."""
 RATE = re.compile(
-    rb"(?i)(?:fps|frames?[ _]?rate|frequency|hz)\W{1,4}(\d{1,4}(?:\.\d+)?)"
-    rb"|\b(\d{1,4}(?:\.\d+)?) ?(?:fps|hz)\b"
+    rb"(?i)\b(?:capture[ _]?)?(?:fps|frames?[ _]?rate)[^\w,]{1,4}(\d{1,4}(?:[.,]\d+)?)"
+    rb"|\b(?:fps|frames?[ _]?rate)\W{1,4}(\d{1,4}(?:\.\d+)?)"
+    rb"|(?<![\d.,])(\d{1,4}(?:[.,]\d+)?) ?fps\b"
 )
-"""A rate in a comment above the titles."""
+"""A rate in a comment above the titles; after a comma, which may separate, it has none."""
 KIND = re.compile(r"(?i)pos(ition)?s?|loc(ation)?|translation|rot(ation)?|quat\w*|orientation")
 """What the coordinates below are, in tables that also hold rotations."""
 
@@ -42,15 +49,19 @@ class TableTitles(NamedTuple):
     vectors: frozenset[int] = frozenset()
     """Columns of the file whose cells hold x, y and z; these have a title each."""
 
+    def cells(self, lines: Sequence[bytes]) -> list[list[str]]:
+        """Return the cells of the frames among the first lines of the file."""
+        below = [line for line in lines[self.n_lines :] if line.strip()]
+        return [_cells(self.expand(line), self.separator) for line in below]
+
     def expand(self, line: bytes) -> bytes:
-        """Return a line whose cells have one number each."""
+        """Return a line whose cells have one number each; others remain, to be refused."""
         if not self.vectors:
             return line
         cells: list[bytes] = []
         for column, cell in enumerate(_bracketed(line, self.separator)):
-            match = VECTOR.fullmatch(cell)
             if column in self.vectors:
-                cells += match.groups() if match else [b""] * 3
+                cells += _coordinates(cell, self.separator)
             else:
                 cells.append(cell.replace(self.separator, SPACE))
         return self.separator.join(cells)
@@ -77,13 +88,18 @@ def table_titles(
     if joined is not None and fits(joined.titles):
         return joined
     for number, line in enumerate(lines[:MAX_TITLE_LINES]):
-        following = lines[number + 1] if number + 1 < len(lines) else b""
+        following = lines[number + 1 : number + 1 + N_SAMPLED_LINES]
         found = _titles_of_line(line, following)
         if fits(found.titles):
-            stated = RATE.search(b"\n".join(lines[:number]))
-            rate = float(stated[1] or stated[2]) if stated else None
-            return found._replace(n_lines=number + 1, rate=rate or None)
+            return found._replace(n_lines=number + 1, rate=_rate(b"\n".join(lines[:number])))
     return None
+
+
+def _rate(comment: bytes) -> float | None:
+    """Return the rate that a comment states; None without one, or with several."""
+    stated = {b"".join(groups).replace(b",", b".") for groups in RATE.findall(comment)}
+    rates = {float(each) for each in stated}
+    return (rates.pop() or None) if len(rates) == 1 else None
 
 
 def _joined_lines(lines: Sequence[bytes]) -> TableTitles | None:
@@ -106,13 +122,18 @@ def _joined_lines(lines: Sequence[bytes]) -> TableTitles | None:
     return None
 
 
-def _titles_of_line(line: bytes, following: bytes) -> TableTitles:
-    """Return the titles of one line; the first one may be blank, as that of an index."""
+def _titles_of_line(line: bytes, following: Sequence[bytes]) -> TableTitles:
+    """Return the titles of one line; the first one may be blank, as that of an index.
+
+    Cells of vectors may be blank in some of the lines that follow.
+    """
     separator = find_separator(line)
     titles = _cells(line.lstrip(b"# "), separator)
-    cells = _bracketed(following, separator)
-    vectors = {column for column, cell in enumerate(cells) if VECTOR.fullmatch(cell)}
-    if len(vectors) < MIN_POINTS or len(cells) != len(titles):
+    vectors: set[int] = set()
+    for cells in (_bracketed(each, separator) for each in following):
+        if len(cells) == len(titles):
+            vectors |= {column for column, cell in enumerate(cells) if _vector(cell)}
+    if len(vectors) < MIN_POINTS:
         return TableTitles(titles, 1, separator)
     expanded = [
         title if axis == "" else f"{title}_{axis}"
@@ -120,6 +141,18 @@ def _titles_of_line(line: bytes, following: bytes) -> TableTitles:
         for axis in ("xyz" if column in vectors else ("",))
     ]
     return TableTitles(expanded, 1, separator, vectors=frozenset(vectors))
+
+
+def _vector(cell: bytes) -> re.Match[bytes] | None:
+    return VECTOR.fullmatch(cell) if len(cell) <= MAX_VECTOR_BYTES else None
+
+
+def _coordinates(cell: bytes, separator: bytes) -> Sequence[bytes]:
+    """Return x, y and z of a cell, blank if it is; one that has none of them is the first."""
+    if match := _vector(cell):
+        return match.groups()
+    word = b"" if cell.lower() in MISSING else b"'" + cell.replace(separator, SPACE) + b"'"
+    return [word.replace(SPACE, b"__"), b"", b""]
 
 
 def _bracketed(line: bytes, separator: bytes) -> list[bytes]:
@@ -146,7 +179,7 @@ def _joined(
     for row in rows:
         spread = _spread(_padded(row, len(axes)), axes)
         found = {name for name, match in zip(spread, axes, strict=True) if match}
-        if all(KIND.fullmatch(name) for name in found):
+        if all(KIND.fullmatch(name) or is_quantity(name) for name in found):
             kinds = spread
         elif not names and sum(_is_name(name) for name in found) >= MIN_POINTS:
             names = spread

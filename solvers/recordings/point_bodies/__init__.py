@@ -16,11 +16,18 @@ from .point_arrays import (
     stand_body,
     without_undetected,
 )
-from .point_titles import coordinate_of_title, is_rotation, numbered_axes
+from .point_titles import (
+    coordinate_of_title,
+    is_quantity,
+    names_of_positions,
+    numbered_axes,
+)
 from .time_units import (
     TimeCells,
     TimeName,
+    bridged_times,
     column_of_times,
+    over_midnight,
     read_time,
     second_of_times,
     time_name,
@@ -35,14 +42,17 @@ __all__ = [
     "TimeName",
     "body_of_named_points",
     "body_of_points",
+    "bridged_times",
     "column_of_times",
     "coordinate_of_title",
     "has_layout",
-    "is_rotation",
+    "is_quantity",
     "is_world",
     "landmark_columns",
     "missing_limbs",
+    "names_of_positions",
     "numbered_axes",
+    "over_midnight",
     "points_of_array",
     "read_body",
     "read_time",

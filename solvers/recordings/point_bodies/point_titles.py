@@ -19,13 +19,23 @@ AXES_OF_NUMBERS = str.maketrans("012", "xyz")
 NUMBERED_AXIS = re.compile(r"(?P<name>.+?)[_.\-](?P<axis>[0-3])")
 """A title such as `nose_0`, where all points have the same three numbers."""
 NO_POSITION = re.compile(
-    r"(rotation|rotate|quat(ernion)?|euler|orientation|velocity|acceleration"
-    r"|(^|[\s_.:\-])(rot|orient|angles?|scale|vel|acc|gyro|mag|std|error))$",
+    r"(rotations?|rotate|quat(ernion)?|euler|orientation|velocit(y|ies)|accelerations?|torque"
+    r"|speed|angles?|winkel|drehung|geschwindigkeit|beschleunigung|vitesse|acc[ée]l[ée]ration"
+    r"|[áa]ngulo|rotaci[óo]n|orientaci[óo]n|velocidad|aceleraci[óo]n"
+    r"|(^|[\s_.:\-])(rot|orient|scale\w*|(ang|lin)?(vel|acc)|ang|omega|force|moment|gyro?|mag"
+    r"|std|error|deg(rees?)?|rad(ians?)?)"
+    r"|(?-i:(?<=[a-z\d])(Rot|Quat|Vel|Acc|Ang|Scale|Force)))$",
     re.IGNORECASE,
 )
-"""Ends of the names of columns that hold no positions."""
-ROTATION = re.compile(r"(?P<name>.+)[\s_.:\-][qr]", re.IGNORECASE)
-"""Name of the rotation of a point; without that point, it is one of the right side."""
+"""Ends of the names of columns that hold no positions, in English, German, French, Spanish."""
+NO_LENGTH = re.compile(
+    r"deg(rees?)?|grad|rad(ians?)?|px|pix(els?)?|n|newtons?|g|hz|mps|dps|percent", re.IGNORECASE
+)
+"""Units of other quantities than positions."""
+LETTER = re.compile(r"(?P<name>.+)[\s_.:\-](?P<letter>[a-z])", re.IGNORECASE)
+QUANTITIES = frozenset("qrvawp")
+"""Letters of quantities: quaternion, rotation, velocity, acceleration, turn rate, position.
+The right side, or one of points from A to Z, has the same letter."""
 
 
 class Coordinate(NamedTuple):
@@ -45,24 +55,44 @@ def coordinate_of_title(title: str) -> Coordinate | None:
             continue
         parts = match.groupdict()
         name = (parts.get("name") or parts.get("number") or "").strip(" _.:-|/[(")
-        if name and not NO_POSITION.search(name):
+        unit = parts.get("unit") or parts.get("ending") or ""
+        if name and not is_quantity(name) and not NO_LENGTH.fullmatch(unit):
             axis = match["axis"].lower().translate(AXES_OF_NUMBERS)
-            return Coordinate(name, axis, parts.get("unit") or parts.get("ending") or "")
+            return Coordinate(name, axis, unit)
     return None
 
 
-def is_rotation(name: str, names: Collection[str]) -> bool:
-    """Return whether a name is that of the rotation of another point, such as `Hips_r`."""
-    match = ROTATION.fullmatch(name)
-    return match is not None and match["name"] in names
+def is_quantity(name: str) -> bool:
+    """Return whether a name ends with a word for another quantity than a position."""
+    return NO_POSITION.search(name) is not None
+
+
+def names_of_positions(names: Collection[str]) -> list[str]:
+    """Return the names without those of other quantities of a point, such as `Hips_r`.
+
+    `hand_r` is the right hand if there is a `hand_l`.
+    """
+    letters: dict[str, set[str]] = {}
+    matches = {name: LETTER.fullmatch(name) for name in names}
+    for match in filter(None, matches.values()):
+        letters.setdefault(match["name"].lower(), set()).add(match["letter"].lower())
+
+    def is_position(match: re.Match[str] | None) -> bool:
+        letter = match["letter"].lower() if match else "p"
+        is_label = match is not None and not letters[match["name"].lower()] <= QUANTITIES
+        return letter not in QUANTITIES or letter == "p" or (is_label and letter != "q")
+
+    return [name for name, match in matches.items() if is_position(match)]
 
 
 def numbered_axes(titles: Sequence[str]) -> dict[str, dict[str, int]]:
     """Return the columns of points whose axes are numbers; else empty."""
     found: dict[str, dict[str, int]] = {}
     for column, title in enumerate(titles):
-        if match := NUMBERED_AXIS.fullmatch(title.strip()):
+        match = NUMBERED_AXIS.fullmatch(title.strip())
+        if match and not is_quantity(match["name"]):
             found.setdefault(match["name"], {})[match["axis"]] = column
+    found = {name: found[name] for name in names_of_positions(found)}
     numbers = {"".join(sorted(axes)) for axes in found.values()}
     if len(numbers) != 1 or not numbers <= {"012", "123"}:
         return {}

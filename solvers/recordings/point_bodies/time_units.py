@@ -31,6 +31,15 @@ WORD_OF_TIME = re.compile(
     r"|offset(?=.)|pts(?=.)|ts?)"
     r"(?:[\s_\-]*(?:in\s)?[\s_\-]*[(\[]?\s*(?P<unit>[a-z\u00b5\u03bc]+)\s*[)\]]?)?"
 )
+TIMECODE = re.compile(r"\d:\d+:\d+[:;]\d")
+"""Hours, minutes, seconds and the number of a frame, whose rate is not stated."""
+DAY_S = 86400.0
+"""Seconds of a day. By definition of the units."""
+CLOCK_UNITS = frozenset({"hour", "minute", "min", "h"})
+"""Titles, without the plural s, next to which seconds are those of a clock."""
+MAX_LINES_BELOW = 10
+"""Lines of words, such as of means, that may follow the frames. It guards damaged times."""
+MISSING = {"", "nan", "n/a", "na", "inf", "null", "none", "-"}
 MIN_UNIT_LETTERS = 3
 """Letters of a unit that names times by itself. It guards names of other values."""
 
@@ -87,6 +96,8 @@ def read_time(value: Any, second: float | None) -> tuple[float, float | None]:
 
 def _seconds_of_date(text: str, second: float | None) -> tuple[float, float | None]:
     """Return the seconds of a date, or of a time of day; NaN and `second` for other texts."""
+    if TIMECODE.search(text):
+        return np.nan, second
     for text_of_date in (text, f"1970-01-01T{text}"):
         try:
             moment = datetime.fromisoformat(text_of_date)
@@ -97,10 +108,77 @@ def _seconds_of_date(text: str, second: float | None) -> tuple[float, float | No
     return np.nan, second
 
 
-def column_of_times(titles: Sequence[str]) -> int | None:
-    """Return the column of times, those with a unit first; None without one."""
+def column_of_times(titles: Sequence[str], cells: Sequence[Sequence[str]] = ()) -> int | None:
+    """Return the column of times; None without one.
+
+    Those that increase from frame to frame come first, then those that say more than a unit,
+    and of these, those that state it. Units are no times next to an hour, or another unit.
+
+    Parameters
+    ----------
+    titles : sequence of str
+    cells : sequence of sequences of str
+        Cells of some frames in order, if they are known.
+    """
     names = {column: name for column, title in enumerate(titles) if (name := time_name(title))}
-    return min(names, key=lambda column: names[column].second is None, default=None)
+    units = {column for column in names if _singular(titles[column]) in SECONDS}
+    is_clock = any(_singular(title) in CLOCK_UNITS for title in titles)
+    if len(units) > 1 or is_clock:
+        names = {column: name for column, name in names.items() if column not in units}
+    return min(
+        names,
+        key=lambda column: (
+            not _increases(column, cells),
+            column in units,
+            names[column].second is None,
+        ),
+        default=None,
+    )
+
+
+def _increases(column: int, cells: Sequence[Sequence[str]]) -> bool:
+    """Return whether times never decrease, and increase in most frames."""
+    times = np.array([read_time(row[column], None)[0] for row in cells if column < len(row)])
+    steps = np.diff(times[np.isfinite(times)])
+    return len(steps) > 0 and bool((steps >= 0.0).all() and np.mean(steps > 0.0) > 0.5)
+
+
+def bridged_times(times: Array) -> Array:
+    """Return times in which frames that alone lack theirs have the mean of their neighbors.
+
+    At an end, the step next to them continues. Longer gaps stay NaN.
+
+    Parameters
+    ----------
+    times : shape (n_frames,)
+    """
+    known = np.isfinite(times)
+    unknown = np.concatenate([[False], ~known, [False]])
+    alone = np.flatnonzero(~known & ~unknown[:-2] & ~unknown[2:])
+    bridged = times.copy()
+    for frame in alone if len(times) > 2 else ():
+        if 0 < frame < len(times) - 1:
+            bridged[frame] = (times[frame - 1] + times[frame + 1]) / 2.0
+        else:
+            near, far = (1, 2) if frame == 0 else (-2, -3)
+            bridged[frame] = 2.0 * times[near] - times[far]
+    return bridged
+
+
+def over_midnight(seconds: Array) -> Array:
+    """Return times of day, in seconds, that continue where a day ends.
+
+    Parameters
+    ----------
+    seconds : shape (n_frames,)
+        Other times are returned as they are.
+    """
+    known = np.isfinite(seconds)
+    if not known.any() or seconds[known].min() < 0.0 or seconds[known].max() >= DAY_S:
+        return seconds
+    days = np.zeros(len(seconds))
+    days[known] = np.cumsum(np.diff(seconds[known], prepend=0.0) < -DAY_S / 2.0)
+    return seconds + DAY_S * days
 
 
 class TimeCells:
@@ -109,11 +187,42 @@ class TimeCells:
     def __init__(self, name: TimeName) -> None:
         self.second = name.second
         """Seconds per unit, known after the last cell; None if nothing states it."""
+        self._has_times = False
+        self._n_blank = 0  # since the last time, before the first word
+        self._words: list[bytes] = []
+
+    def n_frames(self, times: Array) -> int:
+        """Return the number of lines before those with words for times, such as `mean`.
+
+        Parameters
+        ----------
+        times : shape (n_lines,), as read from all cells
+        """
+        if not self._words:
+            return len(times)
+        return int(np.flatnonzero(np.isfinite(times))[-1]) + 1 + self._n_blank
 
     def __call__(self, cell: bytes) -> bytes:
-        """Return the number of a cell; blank for what is no time."""
-        time, self.second = read_time(cell.decode("latin-1").replace(",", "."), self.second)
-        return repr(time).encode() if isfinite(time) else b""
+        """Return the number of a cell, blank if it has none.
+
+        What is no time is returned as it is, to be refused. So is a word where another time
+        follows it, for the line of that time.
+        """
+        text = cell.decode("latin-1").strip()
+        if text.lower() in MISSING or text.lower().startswith("1.#"):
+            self._n_blank += not self._words
+            return b""
+        time, self.second = read_time(text.replace(",", "."), self.second)
+        if isfinite(time) and not self._words:
+            self._has_times, self._n_blank = True, 0
+            return repr(time).encode()
+        unreadable = text.encode("latin-1").replace(b" ", b"__")
+        if isfinite(time):
+            return self._words[0]
+        self._words.append(unreadable)
+        is_word = text.lstrip("#/ ")[:1].isalpha()
+        is_below = is_word and self._has_times and len(self._words) <= MAX_LINES_BELOW
+        return b"" if is_below else unreadable
 
 
 class TimeUnit(NamedTuple):

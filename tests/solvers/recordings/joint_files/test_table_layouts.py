@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from solvers.errors import InvalidFileError
 from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics
+from solvers.recordings.joint_files.table_titles import table_titles
 from solvers.samples import walking_gait
 
 F, RATE_HZ = 60, 25.0
@@ -101,6 +103,19 @@ def test_a_comment_may_state_the_rate(read_any, walk):
     assert_is(read_any("# frame rate: 25 Hz\n" + text), walk)
 
 
+@pytest.mark.parametrize("comment", [
+    "# cutoff 6 Hz, fps: 25\n", "# Frame Rate=25,0\n", "Frame Rate,25,Frames,60\n",
+    "# 25 fps\n", "# fps=25, frame rate 25.0\n",
+])  # fmt: skip
+def test_only_a_rate_of_frames_is_the_rate(read_any, walk, comment):
+    assert_is(read_any(comment + table(walk, time="number")), walk)
+
+
+@pytest.mark.parametrize("comment", ["# cutoff 6 Hz\n", "# video 25 fps, frame rate: 100\n"])
+def test_without_a_clear_rate_it_is_assumed(read_any, walk, comment):
+    assert read_any(comment + table(walk, time="number")).frame_rate == 30.0
+
+
 @pytest.mark.parametrize("cell", [
     '"(X={:.5f},Y={:.5f},Z={:.5f})"', "(X={:.5f} Y={:.5f} Z={:.5f})",
     '"[{:.5f}, {:.5f}, {:.5f}]"', "[{:.5f}  {:.5f} {:.5f}]",
@@ -116,6 +131,42 @@ def test_a_cell_may_hold_all_three_coordinates(read_any, walk, cell):
     gap = np.isnan(recording.tracks.positions).any(axis=(1, 2))
     assert np.flatnonzero(gap).tolist() == [5]
     assert recording.frame_rate == RATE_HZ
+
+
+def table_of_vectors(walk, spoil):
+    rows = [[f"{k / RATE_HZ}", *("({:.5f} {:.5f} {:.5f})".format(*place) for place in frame)]
+            for k, frame in enumerate(walk)]  # fmt: skip
+    spoil(rows)
+    return "\n".join(",".join(row) for row in [["time", *NAMES], *rows])
+
+
+def test_joints_may_be_missing_in_the_first_frames(read_any, walk):
+    def spoil(rows):
+        for row in rows[:20]:
+            row[3] = ""
+
+    recording = read_any(table_of_vectors(walk, spoil))
+
+    missing = np.isnan(recording.tracks.positions).any(axis=2)
+    assert missing.sum() == 20
+    assert missing[:20].any(axis=1).all()
+
+
+@pytest.mark.parametrize("cell", ["(1.0 2.0)", "0.5", "lost"])
+def test_a_cell_that_is_no_vector_is_refused(read_any, walk, cell):
+    def spoil(rows):
+        rows[7][3] = cell
+
+    with pytest.raises(InvalidFileError, match=r"line 9: .* is not a number"):
+        read_any(table_of_vectors(walk, spoil))
+
+
+def test_long_digits_are_no_vector():
+    """A search that tries each split of the digits would not end."""
+    digits = b"1" * 100_000
+    lines = [b",".join([digits, *(name.encode() for name in NAMES)])] * 3
+
+    assert table_titles(lines, lambda titles: not titles) is None
 
 
 @pytest.mark.parametrize("separator", [" ", "   ", "|", "\t", ";"])

@@ -1,0 +1,89 @@
+"""Columns of rotations, velocities and pixels are no positions, however they are called."""
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidFileError
+from solvers.motion import Tracks
+
+NAMES = [f"{part}{side}" for side in ("Left", "Right") for part in (
+    "UpperArm", "LowerArm", "Hand", "Thigh", "Calf", "Foot")]  # fmt: skip
+
+
+def table(titles, n_frames=5):
+    rows = np.random.default_rng(1).normal(size=(n_frames, len(titles)))
+    return "\n".join([",".join(titles), *(",".join(f"{x:.4f}" for x in row) for row in rows)])
+
+
+def titles(pattern, axes="xyz", names=NAMES):
+    return [pattern.format(name=name, axis=axis) for name in names for axis in axes]
+
+
+QUANTITIES = [
+    "{name}_r{axis}", "{name}_r_{axis}", "{name}_q_{axis}", "{name}_R{axis}", "{name}_v{axis}",
+    "{name}_v_{axis}", "{name}_a{axis}", "{name}_w{axis}", "{name}_speed_{axis}",
+    "{name}_angvel_{axis}", "{name}_force_{axis}", "{name}_deg_{axis}", "{name}Rot_{axis}",
+    "{name}_Winkel_{axis}", "{name}_vitesse_{axis}", "{name}_velocidad_{axis}",
+    "{name}_{axis} (deg)", "{name}_{axis} (px)", "{name}_Scale3D_{axis}",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("pattern", QUANTITIES)
+def test_other_quantities_are_refused(read_any, pattern):
+    with pytest.raises(InvalidFileError):
+        read_any(table(titles(pattern)))
+
+
+@pytest.mark.parametrize("pattern", QUANTITIES)
+def test_other_quantities_next_to_positions_are_left_out(read_any, pattern):
+    both = titles("{name}_{axis}") + titles(pattern)
+    content = table(both)
+    alone = "\n".join(
+        ",".join(line.split(",")[: 3 * len(NAMES)]) for line in content.split("\n")
+    )
+
+    recordings = [read_any(content), read_any(alone)]
+
+    assert np.array_equal(*(each.tracks.positions for each in recordings), equal_nan=True)
+
+
+def test_numbered_axes_of_rotations_are_refused(read_any):
+    with pytest.raises(InvalidFileError):
+        read_any(table(titles("{name}_rot_{axis}", "012")))
+
+
+def test_points_from_a_to_z_are_all_kept(read_any):
+    names = [f"Marker_{letter}" for letter in "ABCQRVW"] + ["Stick", "Ball"]
+
+    recording = read_any(table(titles("{name}_{axis}", names=names)))
+
+    assert isinstance(recording, Tracks)
+    assert set(recording.names) == {*names} - {"Marker_Q"}
+
+
+@pytest.mark.parametrize("kind", ["Velocity", "Angles"])
+def test_a_quantity_above_the_axes_is_left_out(read_any, kind):
+    rows = table(["x"] * 6 * len(NAMES)).split("\n")[1:]
+    above = [
+        ",".join(name for name in NAMES for _ in range(6)),
+        ",".join([kind, "", "", "Position", "", ""] * len(NAMES)),
+        ",".join("xyz" * 2 * len(NAMES)),
+    ]
+    kept = [column for column in range(6 * len(NAMES)) if column % 6 >= 3]
+    alone = [",".join(line.split(",")[column] for column in kept) for line in [*above, *rows]]
+
+    recordings = [read_any("\n".join(lines)) for lines in ([*above, *rows], alone)]
+
+    assert np.array_equal(*(each.tracks.positions for each in recordings), equal_nan=True)
+
+
+def test_a_quantity_above_all_axes_is_refused(read_any):
+    rows = table(["x"] * 3 * len(NAMES)).split("\n")[1:]
+    above = [
+        ",".join(name for name in NAMES for _ in range(3)),
+        ",".join(["Angles"] + [""] * (3 * len(NAMES) - 1)),
+        ",".join("xyz" * len(NAMES)),
+    ]
+
+    with pytest.raises(InvalidFileError):
+        read_any("\n".join([*above, *rows]))

@@ -1,0 +1,89 @@
+"""Times of tables are read or refused; no frame is lost, and none gets a time of its own."""
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidFileError
+from solvers.motion import Tracks
+
+F, RATE_HZ = 130, 50.0
+NAMES = [f"Ball{number}m" for number in range(9)]
+
+
+def table(columns, n_frames=F):
+    """Return a table with columns of times, by title, before those of points."""
+    titles = [*columns, *(f"{name}_{axis}" for name in NAMES for axis in "xyz")]
+    positions = np.random.default_rng(2).normal(size=(n_frames, 3 * len(NAMES)))
+    rows = [[*(cell(k) for cell in columns.values()), *(f"{x:.4f}" for x in row)]
+            for k, row in enumerate(positions)]  # fmt: skip
+    return "\n".join(";".join(row) for row in [titles, *rows]) + "\n"
+
+
+def seconds(frame):
+    return f"{frame / RATE_HZ:.3f}"
+
+
+def assert_has_all_frames(recording, rate=RATE_HZ, n_frames=F):
+    assert isinstance(recording, Tracks)
+    assert recording.frame_rate == pytest.approx(rate)
+    assert recording.n_frames == n_frames
+
+
+def test_frames_without_times_are_kept(read_any):
+    recording = read_any(table({"time": lambda k: seconds(k) if k < 10 else ""}))
+
+    assert_has_all_frames(recording, 30.0)
+
+
+@pytest.mark.parametrize("at", [0, 40, F - 1])
+def test_a_single_blank_time_is_bridged(read_any, at):
+    recording = read_any(table({"time": lambda k: "" if k == at else seconds(k)}))
+
+    assert_has_all_frames(recording)
+
+
+@pytest.mark.parametrize("cell", ["1,000.5", "mean", "01:00:00:12", "1 5"])
+def test_a_cell_that_is_no_time_is_refused(read_any, cell):
+    with pytest.raises(InvalidFileError, match=r"line 1[23]: .* is not a number"):
+        read_any(table({"time": lambda k: cell if k == 10 else seconds(k)}))
+
+
+def test_words_below_the_frames_are_no_frames(read_any):
+    below = "".join(f"{word};0.5\n" for word in ("mean", "std", "", "# end of file"))
+
+    assert_has_all_frames(read_any(table({"time": seconds}) + below))
+
+
+def test_a_short_line_below_words_is_no_frame(read_any):
+    content = table({"number": str, "time": seconds}) + ";mean;0.5\nEND\n"
+
+    assert_has_all_frames(read_any(content))
+
+
+def test_many_words_are_refused(read_any):
+    with pytest.raises(InvalidFileError, match="'lost' is not a number"):
+        read_any(table({"time": lambda k: "lost" if k > 100 else seconds(k)}))
+
+
+def test_timecode_is_refused(read_any):
+    with pytest.raises(InvalidFileError, match="line 2: '01:00:00:00' is not a number"):
+        read_any(table({"time": lambda k: f"01:00:{k // 25:02d}:{k % 25:02d}"}))
+
+
+def test_times_of_day_continue_after_midnight(read_any):
+    def clock(frame):
+        time = (86399.0 + frame / RATE_HZ) % 86400.0
+        return f"{time // 3600:02.0f}:{time // 60 % 60:02.0f}:{time % 60:06.3f}"
+
+    assert_has_all_frames(read_any(table({"time": clock})))
+
+
+@pytest.mark.parametrize(("columns", "rate"), [
+    ({"time": seconds, "seconds": lambda k: f"{k // 50}"}, RATE_HZ),
+    ({"hour": lambda k: "1", "minute": lambda k: "2", "second": lambda k: f"{k // 50}"}, 30.0),
+    ({"secs": lambda k: f"{k // 50}", "nsecs": lambda k: f"{k % 50 * 20000000}"}, 30.0),
+    ({"time (s)": lambda k: f"{k // 50}", "time (ms)": lambda k: f"{20 * k}"}, RATE_HZ),
+    ({"seconds": seconds}, RATE_HZ),
+])  # fmt: skip
+def test_times_increase_from_frame_to_frame(read_any, columns, rate):
+    assert_has_all_frames(read_any(table(columns)), rate)
