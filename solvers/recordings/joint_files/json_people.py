@@ -47,8 +47,9 @@ PART = re.compile(r"(left|right|l|r)?(hands?|fingers?|faces?|mano)|lh|rh")
 """Word in the key of a part of a person."""
 GEOMETRY = rb"[^\[]*\"(?:MultiLineString|(?:Multi)?Polygon)\""
 """Type of a geometry in GeoJSON, whose coordinates are nested like joints."""
-LIST = rb"\[\s*(?:(?:\[[\s\[\],]*\]|null)\s*,\s*)*"
-"""The begin of a list of frames, of which the first ones may have no people."""
+LIST = rb"\[\s*(?:(?:(?>\[[\s\[\],]*\])|null)\s*,\s*)*"
+"""The begin of a list of frames, of which the first ones may have no people. The group is
+atomic since empty lists can be split in very many ways."""
 ROW = rb"\[(?:\s*-?\d[^,\[\]]*,){23}"
 """Numbers of a body in a row; matrices of something else are shorter."""
 OBJECT = rb"(?:\[\s*)+\{\s*\"x\"\s*:"
@@ -78,6 +79,9 @@ JOINT = re.compile(
 )
 NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*(\[\s*){2,}[-\d]")
 """The first frame of those that are keyed by their number."""
+ONLY_EMPTY = re.compile(rb"\s*\[[\s\[\],nul]{1000,}")
+"""The begin of a list whose first 1000 bytes are empty frames. Chosen by hand: it guards short
+JSON of something else."""
 
 
 class JsonPerson(NamedTuple):
@@ -91,7 +95,7 @@ class JsonPerson(NamedTuple):
 
 def is_frames_json(head: bytes) -> bool:
     """Return whether a file lists joints, from its first bytes."""
-    if HEAD.match(head) or NUMBERED.match(head):
+    if HEAD.match(head) or NUMBERED.match(head) or ONLY_EMPTY.fullmatch(head):
         return True
     return head.lstrip()[:1] in {b"{", b"["} and JOINT.search(head) is not None
 
