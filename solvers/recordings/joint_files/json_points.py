@@ -29,6 +29,8 @@ NAME_KEYS = either_case("name", "joint", "joint_name", "jointName", "bone", "bon
 POSITION_KEYS = either_case("position", "pos", "translation", "location", "transform", "matrix")
 """Members with the position of a joint, or with the matrix of its pose."""
 CONFIDENCE_KEYS = ("visibility", "presence", "score", "confidence")
+MAX_CONFIDENCE = 100.0
+"""Confidence in percent, by definition; larger numbers are something else."""
 MIN_JOINTS = 8
 """Number of joints of a person. It guards JSON of something else."""
 MAX_ROUNDING = 1e-3
@@ -118,7 +120,7 @@ def _confidence_of(joint: Any) -> float:
         confidence = float(value) if _is_number(value) else np.nan
     except (ValueError, OverflowError):  # a decimal comma, or a number without bounds
         return np.nan
-    return confidence if abs(confidence) <= 1.0 else np.nan
+    return confidence if abs(confidence) <= MAX_CONFIDENCE else np.nan
 
 
 def _names_of(joints: list[Mapping[str, Any]]) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """Recognize the body in points of any program, by names, bones or the number of points."""
 
-from .landmark_recording import landmark_columns, recording_from_landmarks
+from .landmark_recording import as_fractions, landmark_columns, recording_from_landmarks
 from .mediapipe_landmarks import (
     HIPS,
     LANDMARK_JOINTS,
@@ -33,6 +33,7 @@ __all__ = [
     "N_POINTS",
     "TimeCells",
     "TimeName",
+    "as_fractions",
     "body_of_named_points",
     "body_of_points",
     "column_of_times",
