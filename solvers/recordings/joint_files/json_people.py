@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..point_bodies import read_time, time_name
+from ..point_bodies import NO_POSITION, read_time, time_name
 from .body_json import name_of_body
 from .json_points import (
     LANDMARK_KEYS,
@@ -142,6 +142,7 @@ def _person(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
 
 def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
     """Yield who has named positions of joints, or who is keyed by name or number."""
+    body = {key: value for key, value in body.items() if not is_no_position(str(key))}
     nested = {key: value for key, value in body.items() if isinstance(value, Mapping)}
     bodies = {key: value for key, value in nested.items() if not has_word(key, PART.fullmatch)}
     for name, joints in {identity: body, **(bodies or nested)}.items():
@@ -164,6 +165,12 @@ def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson
 def has_word(key: str, is_meant: Callable[[str], object]) -> bool:
     """Return whether a word of a key is meant."""
     return any(is_meant(word.lower()) for word in WORD.findall(key))
+
+
+def is_no_position(key: str) -> bool:
+    """Return whether a key, such as `rotations`, is that of what has no positions."""
+    singular = f"{key[:-3]}y" if key.endswith("ies") else key.removesuffix("s")
+    return any(NO_POSITION.search(each) is not None for each in (key, singular))
 
 
 def as_frame(value: Any) -> dict[str, Any]:

@@ -65,7 +65,7 @@ def points_of(joints: Any, key: str = "") -> Points | None:
     objects = [joint for joint in joints if isinstance(joint, Mapping)]
     if len(objects) == len(joints):
         names = names or _names_of(objects)
-    array = _array([position_of(joint) for joint in joints] if names or objects else joints)
+    array = _array(_places(joints) if names or objects else joints)
     if array is None:
         return None
     confidence = array[:, 3] if array.shape[1] == 4 else np.full(len(array), np.nan)
@@ -78,20 +78,31 @@ def points_of(joints: Any, key: str = "") -> Points | None:
     return Points(array, confidence, names)
 
 
+def _places(joints: list[Any]) -> list[Any]:
+    """Return the positions of joints: null for objects without any, if others have one."""
+    places = [position_of(joint) for joint in joints]
+    if all(isinstance(place, Mapping) or joint is None
+           for place, joint in zip(places, joints, strict=True)):  # fmt: skip
+        return []
+    return [[None] * 3 if isinstance(place, Mapping) else place for place in places]
+
+
 def members(values: Mapping[str, Any], keys: tuple[str, ...]) -> Iterator[Any]:
     """Yield those of the members that there are, in the order of the keys."""
     return (values[key] for key in keys if key in values)
 
 
 def position_of(joint: Any) -> Any:
-    """Return x, y, z of an object or a matrix of 4 x 4; other values as they are."""
+    """Return x, y, z of an object with them or a matrix of 4 x 4; other values as they are."""
     if joint is None:
         return [None] * 3
     if isinstance(joint, Mapping):
         inner = next(members(joint, POSITION_KEYS), joint)
         if isinstance(inner, Mapping):
             lower = {str(key).lower(): value for key, value in inner.items()}
-            return [lower.get(axis, lower.get(f"camera{axis}")) for axis in "xyz"]
+            axes = [f"{each}{axis}" for each in ("", "camera") for axis in "xyz"]
+            found = [lower[axis] for axis in axes if axis in lower]
+            return found[:3] if len(found) >= 3 else inner
         joint = inner
     if isinstance(joint, list) and len(joint) in {4, 16}:
         return _translation(joint)

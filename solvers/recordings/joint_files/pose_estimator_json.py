@@ -27,6 +27,7 @@ from ..point_bodies import (
     read_body,
     read_time,
     recording_from_landmarks,
+    refuse_pictures,
     second_of_times,
     stand_body,
     time_name,
@@ -261,6 +262,7 @@ def _recording(
             f"{path} has {points.shape[1]} points without names, which form no body in a"
             " known order. Store the joints as a joint CSV, which has names."
         )
+    refuse_pictures(path, found.positions)
     if times is None and rate is None:
         progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     return stand_body(

@@ -13,10 +13,11 @@ from .point_arrays import (
     body_of_points,
     points_of_array,
     read_body,
+    refuse_pictures,
     stand_body,
     without_undetected,
 )
-from .point_titles import coordinate_of_title, is_rotation, numbered_axes
+from .point_titles import NO_POSITION, coordinate_of_title, is_rotation, numbered_axes
 from .time_units import (
     TimeCells,
     TimeName,
@@ -30,6 +31,7 @@ from .unnamed_joints import has_layout
 __all__ = [
     "HIPS",
     "LANDMARK_JOINTS",
+    "NO_POSITION",
     "N_POINTS",
     "TimeCells",
     "TimeName",
@@ -48,6 +50,7 @@ __all__ = [
     "read_body",
     "read_time",
     "recording_from_landmarks",
+    "refuse_pictures",
     "second_of_times",
     "stand_body",
     "time_name",

@@ -7,7 +7,11 @@ import pytest
 from exports.camera_bodies import mediapipe
 from numpy.testing import assert_allclose
 
+from solvers.errors import InvalidFileError
+from solvers.motion.skeletons import BODY_POINTS
+from solvers.recordings import list_bodies
 from solvers.recordings.joint_files import is_frames_json
+from solvers.recordings.point_bodies import read_time
 
 N = 40
 POINTS = mediapipe(N)
@@ -50,3 +54,73 @@ def test_confidence_may_be_in_percent(read_any, scale, turn):
     expected = np.full((N, 2), 0.9)
     expected[3, 0], expected[5, 1] = 0.01, 1.0
     assert_allclose(found, expected)
+
+
+@pytest.mark.parametrize("n_points", [N, 33])
+def test_objects_without_a_position_are_no_points(read_any, n_points):
+    frames = [{"landmarks": [{"visibility": 0.5}] * n_points} for _ in range(N)]
+
+    with pytest.raises(InvalidFileError, match="no body"):
+        read_any(json.dumps(frames))
+
+
+def test_a_joint_without_a_position_is_not_observed(read_any):
+    frames = [{"landmarks": landmarks(k)} for k in range(N)]
+    frames[3]["landmarks"][15] = {"visibility": 0.0}
+
+    positions = read_any(json.dumps(frames)).tracks.positions
+
+    assert np.argwhere(np.isnan(positions[:, :33]).any(axis=2)).tolist() == [[3, 15]]
+
+
+def by_name(k):
+    return dict(zip(BODY_POINTS, POINTS[k, :, :3].tolist(), strict=True))
+
+
+def turning(k):
+    return {name: [0.0, 0.1 * k, at / 9] for at, name in enumerate(BODY_POINTS)}
+
+
+@pytest.mark.parametrize("nest", [
+    lambda k: {"velocity": turning(k), "position": by_name(k)},
+    lambda k: {"rotations": turning(k), "velocities": turning(k), "global": by_name(k)},
+    lambda k: by_name(k) | {f"{name}_velocity": at for name, at in turning(k).items()},
+])  # fmt: skip
+def test_velocities_and_rotations_are_no_positions(tmp_path, read_any, nest):
+    recording = read_any(json.dumps([nest(k) for k in range(N)]))
+
+    assert len(list_bodies(tmp_path / "take.dat")) == 0
+    nose, hip = (recording.names.index(name) for name in ("nose", "left_hip"))
+    found = recording.tracks.positions[:, nose] - recording.tracks.positions[:, hip]
+    expected = POINTS[:, 0, :3] - POINTS[:, 23, :3]
+    assert_allclose(np.linalg.norm(found, axis=1), np.linalg.norm(expected, axis=1))
+
+
+@pytest.mark.parametrize("key", ["rotations", "velocities", "Quaternion", "angles"])
+def test_rotations_alone_are_no_body(read_any, key):
+    with pytest.raises(InvalidFileError, match="no body"):
+        read_any(json.dumps([{key: turning(k)} for k in range(N)]))
+
+
+@pytest.mark.parametrize("text", ["inf", "-Infinity", "nan", "1e999"])
+def test_times_without_bounds_are_no_times(text):
+    time, second = read_time(text, 1e-3)
+
+    assert np.isnan(time)
+    assert second == 1e-3
+
+
+@pytest.mark.parametrize("third", [0.0, 0.9])
+def test_named_points_of_a_picture_are_refused(read_any, third):
+    frames = [
+        {"keypoints": {
+            name: [320 + 100 * x, 240 + 100 * y, third + 0.001 * k * third]
+            for name, (x, y, _) in by_name(k).items() if "hip" in name or not name.endswith("x")
+        }}
+        for k in range(N)
+    ]  # fmt: skip
+    for frame in frames:
+        frame["keypoints"].pop("nose")
+
+    with pytest.raises(InvalidFileError, match="2D points of images"):
+        read_any(json.dumps(frames))
