@@ -39,6 +39,9 @@ NUMBERS_KEYS = either_case("frame_ids", "frameIds", "frame_numbers", "frame_indi
 """Members with the numbers of all frames of a person."""
 START_KEYS = either_case("start_frame", "startFrame")
 """Members with the number of the first frame of a person."""
+SECOND_KEYS = ("sec", "secs", "seconds")
+NANOSECOND_KEYS = ("nanosec", "nsec", "nsecs", "nanos", "nanoseconds")
+"""Members with the rest of a time in ROS and Protocol Buffers, next to its whole seconds."""
 MAX_NUMBER = 1e300
 """Maximum number or time of a frame, or rate in hertz. It guards the conversion of whole
 numbers, which JSON does not limit."""
@@ -90,7 +93,7 @@ class JsonPerson(NamedTuple):
     identity: str
     points: Points
     is_identified: bool = True
-    """Whether the file says who it is; otherwise it is a place in a list of landmarks."""
+    """Whether the file says who it is; otherwise it is a place in a list."""
 
 
 def is_frames_json(head: bytes) -> bool:
@@ -121,11 +124,13 @@ def _listed_people(values: list[Any], key: str, identity: str) -> Iterator[JsonP
     for count, body in enumerate(values):
         if isinstance(body, Mapping):
             name = name_of_body(body, NAMES_OF_PEOPLE, count)
+            is_stated = name == name_of_body(body, NAMES_OF_PEOPLE, count + 1)
             people = [*_person(body, name)]
-            is_alone = len(people) == 1
-            yield from (each._replace(identity=name) if is_alone else each for each in people)
+            if len(people) == 1:
+                people = [people[0]._replace(identity=name, is_identified=is_stated)]
+            yield from people
         elif isinstance(body, list) and (points := points_of(body, key)):
-            yield JsonPerson(str(count), points, is_identified=key not in LANDMARK_KEYS)
+            yield JsonPerson(str(count), points, is_identified=False)
 
 
 def _person(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
@@ -182,16 +187,35 @@ def as_frame(value: Any) -> dict[str, Any]:
 
 
 def time_of_frame(frame: Mapping[str, Any]) -> tuple[float, float | None]:
-    """Return the time of a frame and its seconds per unit; NaN and None if it states none.
+    """Return the time of a frame and its seconds per unit; NaN and None if it states none."""
+    return next(iter(stamps_of_frame(frame).values()), (np.nan, None))
 
-    Names that state the unit come before others.
+
+def stamps_of_frame(frame: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
+    """Return all times that a frame states, and their seconds per unit, by their keys.
+
+    Whole seconds with nanoseconds next to them come first, without a key or below one, then
+    names that state the unit, then others.
     """
     names = {key: name for key in frame if (name := time_name(str(key))) is not None}
+    split = {"": _joined_seconds(frame)} | {
+        key: _joined_seconds(frame[key]) for key in names if isinstance(frame[key], Mapping)
+    }
+    stamps: dict[str, tuple[float, float | None]] = {
+        key: (time, 1.0) for key, time in split.items() if np.isfinite(time)
+    }
     for key in sorted(names, key=lambda key: names[key].second is None):
         time, second = read_time(frame[key], names[key].second)
         if np.isfinite(time):
-            return time, second
-    return np.nan, None
+            stamps[key] = time, second
+    return stamps
+
+
+def _joined_seconds(value: Mapping[str, Any]) -> float:
+    """Return a time of whole seconds and nanoseconds; NaN if one of them is missing."""
+    parts = (next(members(value, keys), None) for keys in (SECOND_KEYS, NANOSECOND_KEYS))
+    seconds, rest = (read_time(part, None)[0] for part in parts)
+    return seconds + 1e-9 * rest
 
 
 def is_number(value: Any) -> bool:

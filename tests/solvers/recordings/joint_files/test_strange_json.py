@@ -124,3 +124,62 @@ def test_named_points_of_a_picture_are_refused(read_any, third):
 
     with pytest.raises(InvalidFileError, match="2D points of images"):
         read_any(json.dumps(frames))
+
+
+def test_seconds_and_nanoseconds_are_one_time(read_any):
+    for wrap in (dict, lambda stamp: {"timestamp": stamp}):
+        frames = [
+            wrap({"sec": 1_700_000_000 + k // 50, "nanosec": k % 50 * 20_000_000})
+            | {"landmarks": landmarks(k)}
+            for k in range(N)
+        ]
+
+        assert read_any(json.dumps(frames)).frame_rate == 50
+
+
+def test_a_clock_that_stands_still_is_ignored(read_any):
+    frames = [{"time": k / 50, "timestamp_ms": 0, "landmarks": landmarks(k)} for k in range(N)]
+
+    assert read_any(json.dumps(frames)).frame_rate == 50
+
+
+@pytest.mark.parametrize("header", [{"meta": 1}, {"program": "x", "version": 2.5}])
+def test_a_header_line_is_no_frame(read_any, header):
+    lines = [header, *({"landmarks": landmarks(k)} for k in range(N))]
+
+    assert len(read_any("\n".join(map(json.dumps, lines))).tracks.positions) == N
+
+
+@pytest.mark.parametrize("first", [{"frame": 0}, {"t": 0.0}, {"landmarks": []}])
+def test_a_frame_without_a_person_is_no_header(read_any, first):
+    time = {"t": 0.02} if "t" in first else {}
+    lines = [first, *({key: k * step for key, step in time.items()}
+                      | {"landmarks": landmarks(k)} for k in range(1, N))]  # fmt: skip
+
+    positions = read_any("\n".join(map(json.dumps, lines))).tracks.positions
+
+    assert np.isfinite(positions).all(axis=(1, 2))[-N + 1 :].all()
+
+
+PLACES = {
+    "people": lambda pair: {"people": [{"joints": each} for each in pair]},
+    "lists": lambda pair: [[*each.values()] for each in pair],
+    "landmarks": lambda pair: {"landmarks": [[*each.values()] for each in pair]},
+}
+IDENTITIES = {
+    "id": lambda pair: {"people": [{"id": k, "joints": each} for k, each in enumerate(pair)]},
+    "name": lambda pair: {"people": [{"name": f"n{k}", "joints": each}
+                                     for k, each in enumerate(pair)]},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("nest", [*PLACES, *IDENTITIES])
+def test_people_who_may_be_swapped_are_reported(read_any, collected_messages, nest):
+    messages, progress = collected_messages
+    frames = [(PLACES | IDENTITIES)[nest]([by_name(k), by_name(k)]) for k in range(N)]
+
+    read_any(json.dumps(frames), body="0" if nest != "name" else "n0", progress=progress)
+
+    reported = [each for each in messages if "without an identity" in each]
+    assert len(reported) == (nest in PLACES)
+    assert all(each.startswith(f"{N} frames") for each in reported)
