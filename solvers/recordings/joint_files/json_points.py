@@ -65,7 +65,7 @@ def points_of(joints: Any, key: str = "") -> Points | None:
     objects = [joint for joint in joints if isinstance(joint, Mapping)]
     if len(objects) == len(joints):
         names = names or _names_of(objects)
-    array = _array(_places(joints) if names or objects else joints)
+    array = _array(_positions(joints) if names or objects else joints)
     if array is None:
         return None
     confidence = array[:, 3] if array.shape[1] == 4 else np.full(len(array), np.nan)
@@ -78,13 +78,13 @@ def points_of(joints: Any, key: str = "") -> Points | None:
     return Points(array, confidence, names)
 
 
-def _places(joints: list[Any]) -> list[Any]:
+def _positions(joints: list[Any]) -> list[Any]:
     """Return the positions of joints: null for objects without any, if others have one."""
-    places = [position_of(joint) for joint in joints]
+    positions = [position_of(joint) for joint in joints]
     if all(isinstance(place, Mapping) or joint is None
-           for place, joint in zip(places, joints, strict=True)):  # fmt: skip
+           for place, joint in zip(positions, joints, strict=True)):  # fmt: skip
         return []
-    return [[None] * 3 if isinstance(place, Mapping) else place for place in places]
+    return [[None] * 3 if isinstance(place, Mapping) else place for place in positions]
 
 
 def members(values: Mapping[str, Any], keys: tuple[str, ...]) -> Iterator[Any]:

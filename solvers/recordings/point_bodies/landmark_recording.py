@@ -35,6 +35,7 @@ UP_OF_WORLD: dict[AxisName, float] = {"-Y": 0.5, "Y": 0.0, "Z": 0.0}
 body that stands along another axis, 1, since a program turned it. By definition of MediaPipe Y
 is down."""
 PERCENT = 100.0
+"""Confidence of 1 in percent. By definition of percent."""
 MIN_PERCENT = 2.0
 """Largest confidence of a take, above which it is in percent. Chosen by hand: it guards scores
 from 0 to 1 that exceed 1 a little."""

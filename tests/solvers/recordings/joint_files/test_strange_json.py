@@ -161,7 +161,7 @@ def test_a_frame_without_a_person_is_no_header(read_any, first):
     assert np.isfinite(positions).all(axis=(1, 2))[-N + 1 :].all()
 
 
-PLACES = {
+UNIDENTIFIED = {
     "people": lambda pair: {"people": [{"joints": each} for each in pair]},
     "lists": lambda pair: [[*each.values()] for each in pair],
     "landmarks": lambda pair: {"landmarks": [[*each.values()] for each in pair]},
@@ -173,13 +173,13 @@ IDENTITIES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("nest", [*PLACES, *IDENTITIES])
+@pytest.mark.parametrize("nest", [*UNIDENTIFIED, *IDENTITIES])
 def test_people_who_may_be_swapped_are_reported(read_any, collected_messages, nest):
     messages, progress = collected_messages
-    frames = [(PLACES | IDENTITIES)[nest]([by_name(k), by_name(k)]) for k in range(N)]
+    frames = [(UNIDENTIFIED | IDENTITIES)[nest]([by_name(k), by_name(k)]) for k in range(N)]
 
     read_any(json.dumps(frames), body="0" if nest != "name" else "n0", progress=progress)
 
     reported = [each for each in messages if "without an identity" in each]
-    assert len(reported) == (nest in PLACES)
+    assert len(reported) == (nest in UNIDENTIFIED)
     assert all(each.startswith(f"{N} frames") for each in reported)
