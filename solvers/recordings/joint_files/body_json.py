@@ -12,8 +12,7 @@ from ...motion import JointRecording
 from ...progress import Progress
 from ..containers import array_from_json, json_members
 from ..conventions import DEFAULT_FRAME_RATE, Bodies, bodies_of_frames, recorded_seconds
-
-MAX_CONFIDENCE = 100.0
+from ..point_bodies import as_fractions
 
 
 class BodyJoints(NamedTuple):
@@ -118,11 +117,7 @@ def stacked(body: str, frames: list[BodiesFrame]) -> tuple[Array, Array | None]:
     )
     positions = np.stack([(each or gap).positions for each in found])
     confidence = np.stack([(each or gap).confidence for each in found])
-    if np.isnan(confidence).all():
-        return positions, None
-    if np.nanmax(confidence) > 1.0:
-        confidence = confidence / MAX_CONFIDENCE
-    return positions, np.clip(np.nan_to_num(confidence), 0.0, 1.0)
+    return positions, as_fractions(confidence, positions)
 
 
 def name_of_body(body: Mapping[str, Any], keys: tuple[str, ...], count: int) -> str:

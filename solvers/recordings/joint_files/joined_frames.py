@@ -1,17 +1,19 @@
 """Join what a file of JSON holds of each person, or in each row, to the frames of a take."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import groupby, pairwise
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain, groupby, islice, pairwise
 from math import isnan
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...errors import InvalidFileError
+from ..containers import JsonMember
+from ..point_bodies import time_name
 from .body_json import BodiesFrame, BodyJoints
-from .json_people import PART, PEOPLE_KEYS, POINT_KEYS, has_word
+from .json_people import NUMBER_KEYS, PART, PEOPLE_KEYS, POINT_KEYS, has_word
 
 MAX_MISSING_FRAMES = 100_000
 """Missing numbers, frames, that a file may have. It bounds the memory of damaged files."""
@@ -43,6 +45,37 @@ class NumberedFrame(NamedTuple):
     number: float
     """The number of the frame that it states; NaN if it states none."""
     frame: BodiesFrame
+
+
+def without_header(members: Iterable[JsonMember]) -> Iterator[JsonMember]:
+    """Yield members without a header: a first value that has nothing in common with the second.
+
+    A header has only texts and numbers, and neither a time nor the number of a frame.
+    """
+    rest = iter(members)
+    begin = [*islice(rest, 2)]
+    values = [member.value for member in begin]
+    if len(begin) == 2 and begin[0].key == begin[1].key and _is_header(*values):
+        begin = begin[1:]
+    yield from chain(begin, rest)
+
+
+def _is_header(first: Any, second: Any) -> bool:
+    if not isinstance(first, Mapping) or not isinstance(second, Mapping) or not first:
+        return False
+    is_timed = any(key in NUMBER_KEYS or time_name(key) is not None for key in first)
+    is_flat = all(isinstance(value, str | int | float) for value in first.values())
+    return is_flat and not is_timed and first.keys().isdisjoint(second)
+
+
+def frozen_clocks(stamps: Iterable[Mapping[str, tuple[float, Any]]]) -> set[str]:
+    """Return the keys of times that are the same in all frames, if those of others are not."""
+    times: dict[str, set[float]] = {}
+    for each in stamps:
+        for key, (time, _) in each.items():
+            times.setdefault(key, set()).add(time)
+    frozen = {key for key, found in times.items() if len(found) == 1}
+    return set() if len(frozen) == len(times) else frozen
 
 
 def joined_frames(

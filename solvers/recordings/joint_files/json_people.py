@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..point_bodies import read_time, time_name
+from ..point_bodies import NO_POSITION, read_time, time_name
 from .body_json import name_of_body
 from .json_points import (
     LANDMARK_KEYS,
@@ -39,6 +39,9 @@ NUMBERS_KEYS = either_case("frame_ids", "frameIds", "frame_numbers", "frame_indi
 """Members with the numbers of all frames of a person."""
 START_KEYS = either_case("start_frame", "startFrame")
 """Members with the number of the first frame of a person."""
+SECOND_KEYS = ("sec", "secs", "seconds")
+NANOSECOND_KEYS = ("nanosec", "nsec", "nsecs", "nanos", "nanoseconds")
+"""Members with the rest of a time in ROS and Protocol Buffers, next to its whole seconds."""
 MAX_NUMBER = 1e300
 """Maximum number or time of a frame, or rate in hertz. It guards the conversion of whole
 numbers, which JSON does not limit."""
@@ -47,8 +50,9 @@ PART = re.compile(r"(left|right|l|r)?(hands?|fingers?|faces?|mano)|lh|rh")
 """Word in the key of a part of a person."""
 GEOMETRY = rb"[^\[]*\"(?:MultiLineString|(?:Multi)?Polygon)\""
 """Type of a geometry in GeoJSON, whose coordinates are nested like joints."""
-LIST = rb"\[\s*(?:(?:\[[\s\[\],]*\]|null)\s*,\s*)*"
-"""The begin of a list of frames, of which the first ones may have no people."""
+LIST = rb"\[\s*(?:(?:(?>\[[\s\[\],]*\])|null)\s*,\s*)*"
+"""The begin of a list of frames, of which the first ones may have no people. The group is
+atomic since empty lists can be split in very many ways."""
 ROW = rb"\[(?:\s*-?\d[^,\[\]]*,){23}"
 """Numbers of a body in a row; matrices of something else are shorter."""
 OBJECT = rb"(?:\[\s*)+\{\s*\"x\"\s*:"
@@ -78,6 +82,9 @@ JOINT = re.compile(
 )
 NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*(\[\s*){2,}[-\d]")
 """The first frame of those that are keyed by their number."""
+ONLY_EMPTY = re.compile(rb"\s*\[[\s\[\],nul]{1000,}")
+"""The begin of a list whose first 1000 bytes are empty frames. Chosen by hand: it guards short
+JSON of something else."""
 
 
 class JsonPerson(NamedTuple):
@@ -86,12 +93,12 @@ class JsonPerson(NamedTuple):
     identity: str
     points: Points
     is_identified: bool = True
-    """Whether the file says who it is; otherwise it is a place in a list of landmarks."""
+    """Whether the file says who it is; otherwise it is a place in a list."""
 
 
 def is_frames_json(head: bytes) -> bool:
     """Return whether a file lists joints, from its first bytes."""
-    if HEAD.match(head) or NUMBERED.match(head):
+    if HEAD.match(head) or NUMBERED.match(head) or ONLY_EMPTY.fullmatch(head):
         return True
     return head.lstrip()[:1] in {b"{", b"["} and JOINT.search(head) is not None
 
@@ -117,11 +124,13 @@ def _listed_people(values: list[Any], key: str, identity: str) -> Iterator[JsonP
     for count, body in enumerate(values):
         if isinstance(body, Mapping):
             name = name_of_body(body, NAMES_OF_PEOPLE, count)
+            is_stated = name == name_of_body(body, NAMES_OF_PEOPLE, count + 1)
             people = [*_person(body, name)]
-            is_alone = len(people) == 1
-            yield from (each._replace(identity=name) if is_alone else each for each in people)
+            if len(people) == 1:
+                people = [people[0]._replace(identity=name, is_identified=is_stated)]
+            yield from people
         elif isinstance(body, list) and (points := points_of(body, key)):
-            yield JsonPerson(str(count), points, is_identified=key not in LANDMARK_KEYS)
+            yield JsonPerson(str(count), points, is_identified=False)
 
 
 def _person(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
@@ -138,6 +147,7 @@ def _person(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
 
 def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
     """Yield who has named positions of joints, or who is keyed by name or number."""
+    body = {key: value for key, value in body.items() if not is_no_position(str(key))}
     nested = {key: value for key, value in body.items() if isinstance(value, Mapping)}
     bodies = {key: value for key, value in nested.items() if not has_word(key, PART.fullmatch)}
     for name, joints in {identity: body, **(bodies or nested)}.items():
@@ -162,6 +172,12 @@ def has_word(key: str, is_meant: Callable[[str], object]) -> bool:
     return any(is_meant(word.lower()) for word in WORD.findall(key))
 
 
+def is_no_position(key: str) -> bool:
+    """Return whether a key, such as `rotations`, is that of what has no positions."""
+    singular = f"{key[:-3]}y" if key.endswith("ies") else key.removesuffix("s")
+    return any(NO_POSITION.search(each) is not None for each in (key, singular))
+
+
 def as_frame(value: Any) -> dict[str, Any]:
     """Return a frame as an object: a list is one of points or of people."""
     if isinstance(value, Mapping):
@@ -171,16 +187,35 @@ def as_frame(value: Any) -> dict[str, Any]:
 
 
 def time_of_frame(frame: Mapping[str, Any]) -> tuple[float, float | None]:
-    """Return the time of a frame and its seconds per unit; NaN and None if it states none.
+    """Return the time of a frame and its seconds per unit; NaN and None if it states none."""
+    return next(iter(stamps_of_frame(frame).values()), (np.nan, None))
 
-    Names that state the unit come before others.
+
+def stamps_of_frame(frame: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
+    """Return all times that a frame states, and their seconds per unit, by their keys.
+
+    Whole seconds with nanoseconds next to them come first, without a key or below one, then
+    names that state the unit, then others.
     """
     names = {key: name for key in frame if (name := time_name(str(key))) is not None}
+    split = {"": _joined_seconds(frame)} | {
+        key: _joined_seconds(frame[key]) for key in names if isinstance(frame[key], Mapping)
+    }
+    stamps: dict[str, tuple[float, float | None]] = {
+        key: (time, 1.0) for key, time in split.items() if np.isfinite(time)
+    }
     for key in sorted(names, key=lambda key: names[key].second is None):
         time, second = read_time(frame[key], names[key].second)
         if np.isfinite(time):
-            return time, second
-    return np.nan, None
+            stamps[key] = time, second
+    return stamps
+
+
+def _joined_seconds(value: Mapping[str, Any]) -> float:
+    """Return a time of whole seconds and nanoseconds; NaN if one of them is missing."""
+    parts = (next(members(value, keys), None) for keys in (SECOND_KEYS, NANOSECOND_KEYS))
+    seconds, rest = (read_time(part, None)[0] for part in parts)
+    return seconds + 1e-9 * rest
 
 
 def is_number(value: Any) -> bool:

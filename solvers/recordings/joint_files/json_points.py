@@ -29,6 +29,8 @@ NAME_KEYS = either_case("name", "joint", "joint_name", "jointName", "bone", "bon
 POSITION_KEYS = either_case("position", "pos", "translation", "location", "transform", "matrix")
 """Members with the position of a joint, or with the matrix of its pose."""
 CONFIDENCE_KEYS = ("visibility", "presence", "score", "confidence")
+MAX_CONFIDENCE = 100.0
+"""Confidence in percent, by definition; larger numbers are something else."""
 MIN_JOINTS = 8
 """Number of joints of a person. It guards JSON of something else."""
 MAX_ROUNDING = 1e-3
@@ -63,7 +65,7 @@ def points_of(joints: Any, key: str = "") -> Points | None:
     objects = [joint for joint in joints if isinstance(joint, Mapping)]
     if len(objects) == len(joints):
         names = names or _names_of(objects)
-    array = _array([position_of(joint) for joint in joints] if names or objects else joints)
+    array = _array(_positions(joints) if names or objects else joints)
     if array is None:
         return None
     confidence = array[:, 3] if array.shape[1] == 4 else np.full(len(array), np.nan)
@@ -76,20 +78,31 @@ def points_of(joints: Any, key: str = "") -> Points | None:
     return Points(array, confidence, names)
 
 
+def _positions(joints: list[Any]) -> list[Any]:
+    """Return the positions of joints: null for objects without any, if others have one."""
+    positions = [position_of(joint) for joint in joints]
+    if all(isinstance(place, Mapping) or joint is None
+           for place, joint in zip(positions, joints, strict=True)):  # fmt: skip
+        return []
+    return [[None] * 3 if isinstance(place, Mapping) else place for place in positions]
+
+
 def members(values: Mapping[str, Any], keys: tuple[str, ...]) -> Iterator[Any]:
     """Yield those of the members that there are, in the order of the keys."""
     return (values[key] for key in keys if key in values)
 
 
 def position_of(joint: Any) -> Any:
-    """Return x, y, z of an object or a matrix of 4 x 4; other values as they are."""
+    """Return x, y, z of an object with them or a matrix of 4 x 4; other values as they are."""
     if joint is None:
         return [None] * 3
     if isinstance(joint, Mapping):
         inner = next(members(joint, POSITION_KEYS), joint)
         if isinstance(inner, Mapping):
             lower = {str(key).lower(): value for key, value in inner.items()}
-            return [lower.get(axis, lower.get(f"camera{axis}")) for axis in "xyz"]
+            axes = [f"{each}{axis}" for each in ("", "camera") for axis in "xyz"]
+            found = [lower[axis] for axis in axes if axis in lower]
+            return found[:3] if len(found) >= 3 else inner
         joint = inner
     if isinstance(joint, list) and len(joint) in {4, 16}:
         return _translation(joint)
@@ -118,7 +131,7 @@ def _confidence_of(joint: Any) -> float:
         confidence = float(value) if _is_number(value) else np.nan
     except (ValueError, OverflowError):  # a decimal comma, or a number without bounds
         return np.nan
-    return confidence if abs(confidence) <= 1.0 else np.nan
+    return confidence if abs(confidence) <= MAX_CONFIDENCE else np.nan
 
 
 def _names_of(joints: list[Mapping[str, Any]]) -> tuple[str, ...]:

@@ -20,6 +20,7 @@ from .json_people import (
     START_KEYS,
     as_frame,
     have_identities,
+    is_no_position,
     is_number,
     is_position,
     listed_numbers,
@@ -169,7 +170,8 @@ def _people_of(values: Mapping[str, Any], path: Path | str) -> dict[str, Take]:
 
     Of numbered ones, more are frames: no one records more people than frames.
     """
-    found = {key: take for key, value in values.items() if (take := _take_of(value, path))}
+    kept = {key: value for key, value in values.items() if not is_no_position(key)}
+    found = {key: take for key, value in kept.items() if (take := _take_of(value, path))}
     is_numbered = all(map(FRAME_KEY.fullmatch, values))
     n_frames = max(map(len, found.values()), default=0)
     if not found.keys().isdisjoint(POINT_KEYS) or (is_numbered and len(values) >= n_frames):
@@ -202,7 +204,8 @@ def _take_of(value: Any, path: Path | str, depth: int = MAX_DEPTH) -> Take:
     if keyed := _keyed(value, path):
         return _stamped(keyed, value)
     inner = {key: value[key] for key in POINT_KEYS if key in value}
-    inner = inner or {key: each for key, each in value.items() if key not in PEOPLE_KEYS}
+    others = {*PEOPLE_KEYS, *filter(is_no_position, value)}
+    inner = inner or {key: each for key, each in value.items() if key not in others}
     takes = [take for each in inner.values() if (take := _take_of(each, path, depth - 1))]
     return _stamped(takes[0], value) if len(takes) == 1 else Take()
 

@@ -27,18 +27,25 @@ from ..point_bodies import (
     read_body,
     read_time,
     recording_from_landmarks,
+    refuse_pictures,
     second_of_times,
     stand_body,
     time_name,
 )
 from .body_json import BodiesFrame, BodyJoints, open_frames, stacked
-from .joined_frames import MAX_PEOPLE, NumberedFrame, joined_frames
+from .joined_frames import (
+    MAX_PEOPLE,
+    NumberedFrame,
+    frozen_clocks,
+    joined_frames,
+    without_header,
+)
 from .json_people import (
     NUMBER_KEYS,
     RATE_KEYS,
     is_number,
     people_of_frame,
-    time_of_frame,
+    stamps_of_frame,
 )
 from .keyed_frames import json_by_frame
 
@@ -50,6 +57,8 @@ of files whose names differ between frames."""
 MAX_FEW_COLUMNS = 1 << 22
 """Columns of named joints in all frames that any file may have. It bounds the memory:
 130 MB."""
+_Row = tuple[str, dict[str, tuple[float, float | None]], NumberedFrame]
+"""Key of a member, the times that it states by their keys, and its frame."""
 
 
 class _Content(NamedTuple):
@@ -144,42 +153,56 @@ def _read_content(
     path: Path | str, members: Iterable[JsonMember], progress: Progress
 ) -> _Content:
     """Return the frames in the members of a file, or in the files of a take."""
-    by_key: dict[str, list[NumberedFrame]] = {}
+    rows: list[_Row] = []
     rate: float | None = None
     second: float | None = None
     names: list[str] = []
     times: list[float] = []
     n_several = 0
-    for member in json_by_frame(members, path):
+    for member in json_by_frame(without_header(members), path):
         value = member.value
         if member.key in RATE_KEYS and is_number(value):
             rate = float(value)
         if member.key in LIST_OF_NAMES and isinstance(value, str):
             names.append(value)
-        number = time = np.nan
-        if isinstance(value, dict):
-            number = _number_of(value)
-            time, stated = time_of_frame(value)
-            second = second if np.isnan(time) else stated
-        elif name := time_name(member.key):
+        is_object = isinstance(value, dict)
+        if not is_object and (name := time_name(member.key)):
             time, second = read_time(value, name.second)
             times.append(time)
             continue
         people = [*people_of_frame(value, member.key)]
         n_several += sum(not person.is_identified for person in people) > 1
         found = {person.identity: BodyJoints(*person.points) for person in people}
-        frame = BodiesFrame(time, found, member.done)
-        by_key.setdefault(member.key, []).append(NumberedFrame(number, frame))
+        stamps = stamps_of_frame(value) if is_object else {}
+        number = _number_of(value) if is_object else np.nan
+        frame = BodiesFrame(np.nan, found, member.done)
+        rows.append((member.key, stamps, NumberedFrame(number, frame)))
         progress(0.8 * member.done, "Reading")
     if n_several:
-        progress(
-            0.8,
-            Remark(
-                f"{n_several} frames have more than one person; the first of each is read, who"
-                " may change. Use a tracker that identifies people"
-            ),
-        )
+        progress(0.8, _remark_of_unidentified(n_several))
+    by_key, second = _by_key(rows, second)
     return _Content(_timed(joined_frames(by_key, path), times), rate, second, tuple(names))
+
+
+def _by_key(
+    rows: list[_Row], second: float | None
+) -> tuple[dict[str, list[NumberedFrame]], float | None]:
+    """Return frames by the keys of their members, with their times, and seconds per unit."""
+    frozen = frozen_clocks(stamps for _, stamps, _ in rows)
+    by_key: dict[str, list[NumberedFrame]] = {}
+    for key, stamps, row in rows:
+        moving = [stamp for clock, stamp in stamps.items() if clock not in frozen]
+        time, second = moving[0] if moving else (np.nan, second)
+        placed = row._replace(frame=row.frame._replace(time=time))
+        by_key.setdefault(key, []).append(placed)
+    return by_key, second
+
+
+def _remark_of_unidentified(n_several: int) -> Remark:
+    return Remark(
+        f"{n_several} frames have more than one person without an identity; they may be"
+        " swapped. Use a tracker that identifies people"
+    )
 
 
 def _timed(frames: list[BodiesFrame], times: list[float]) -> list[BodiesFrame]:
@@ -261,6 +284,7 @@ def _recording(
             f"{path} has {points.shape[1]} points without names, which form no body in a"
             " known order. Store the joints as a joint CSV, which has names."
         )
+    refuse_pictures(path, found.positions)
     if times is None and rate is None:
         progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     return stand_body(

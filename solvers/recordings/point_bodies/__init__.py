@@ -1,6 +1,6 @@
 """Recognize the body in points of any program, by names, bones or the number of points."""
 
-from .landmark_recording import landmark_columns, recording_from_landmarks
+from .landmark_recording import as_fractions, landmark_columns, recording_from_landmarks
 from .mediapipe_landmarks import (
     HIPS,
     LANDMARK_JOINTS,
@@ -13,10 +13,12 @@ from .point_arrays import (
     body_of_points,
     points_of_array,
     read_body,
+    refuse_pictures,
     stand_body,
     without_undetected,
 )
 from .point_titles import (
+    NO_POSITION,
     coordinate_of_title,
     is_quantity,
     names_of_positions,
@@ -37,9 +39,11 @@ from .unnamed_joints import has_layout
 __all__ = [
     "HIPS",
     "LANDMARK_JOINTS",
+    "NO_POSITION",
     "N_POINTS",
     "TimeCells",
     "TimeName",
+    "as_fractions",
     "body_of_named_points",
     "body_of_points",
     "bridged_times",
@@ -57,6 +61,7 @@ __all__ = [
     "read_body",
     "read_time",
     "recording_from_landmarks",
+    "refuse_pictures",
     "second_of_times",
     "stand_body",
     "time_name",

@@ -34,6 +34,11 @@ UP_OF_WORLD: dict[AxisName, float] = {"-Y": 0.5, "Y": 0.0, "Z": 0.0}
 """Weight of the evidence of each axis, 0 to 1, in world landmarks. Chosen by hand: half of a
 body that stands along another axis, 1, since a program turned it. By definition of MediaPipe Y
 is down."""
+PERCENT = 100.0
+"""Confidence of 1 in percent. By definition of percent."""
+MIN_PERCENT = 2.0
+"""Largest confidence of a take, above which it is in percent. Chosen by hand: it guards scores
+from 0 to 1 that exceed 1 a little."""
 WORD_START = re.compile(r"[ \-]|(?<=[a-z])(?=[A-Z])")
 
 
@@ -64,7 +69,7 @@ def recording_from_landmarks(
     path : Path or str
         For error messages.
     landmarks : shape (n_frames, 33, 4)
-        x, y and z, NaN where not observed; visibility from 0 to 1, or NaN.
+        x, y and z, NaN where not observed; visibility from 0 to 1 or in percent, or NaN.
     times : seconds, shape (n_frames,), or None
     frame_rate : hertz, or None
     scale : meters per unit of the file, or None
@@ -75,7 +80,8 @@ def recording_from_landmarks(
     InvalidFileError
         The landmarks are those of a picture, or none is observed.
     """
-    points, visibility = landmarks[..., :3], np.clip(landmarks[..., 3], 0.0, 1.0)
+    points = landmarks[..., :3]
+    visibility = as_fractions(landmarks[..., 3], points)
     if np.isnan(points).all():
         raise InvalidFileError(f"{path} has {len(points)} frames but no body in any of them.")
     is_centered = is_world(points)
@@ -99,17 +105,31 @@ def recording_from_landmarks(
         LANDMARK_JOINTS,
         with_computed_joints(from_azure_space(points)),
         Sensor.MEDIAPIPE,
-        confidence=(
-            None
-            if np.isnan(visibility).all()
-            else with_computed_joints(np.nan_to_num(visibility))
-        ),
+        confidence=(None if visibility is None else with_computed_joints(visibility)),
         times=times,
         frame_rate=frame_rate or DEFAULT_FRAME_RATE,
         nan_only=True,
         scale=scale,
         progress=progress,
     )
+
+
+def as_fractions(confidence: Array, points: Array) -> Array | None:
+    """Return confidence from 0 to 1, which may be stated in percent; None if none is stated.
+
+    Points that are observed without a confidence have 1, others 0.
+
+    Parameters
+    ----------
+    confidence : shape (n_frames, n_points), NaN where it is not stated
+    points : shape (n_frames, n_points, 3), NaN where not observed
+    """
+    if np.isnan(confidence).all():
+        return None
+    is_percent = MIN_PERCENT < np.nanmax(confidence) <= PERCENT
+    fractions = confidence / PERCENT if is_percent else confidence
+    observed = np.isfinite(points).all(axis=-1)
+    return np.clip(np.where(np.isnan(fractions), observed, fractions), 0.0, 1.0)
 
 
 def _estimate_up(points: Array) -> UpAxis:
@@ -123,7 +143,7 @@ def _estimate_up(points: Array) -> UpAxis:
 def _converted(
     path: Path | str,
     points: Array,
-    visibility: Array,
+    visibility: Array | None,
     times: Array | None,
     frame_rate: float | None,
     scale: float | None,
@@ -139,14 +159,13 @@ def _converted(
         )
     _say_missing_rate(times, frame_rate, progress)
     joints = [LANDMARK_JOINTS.index(name) for name in body.names if name in LANDMARK_JOINTS]
-    certain = with_computed_joints(np.nan_to_num(visibility))[:, joints]
     return stand_body(
         path,
         body.names,
         body.positions,
         rate=frame_rate or DEFAULT_FRAME_RATE,
         times=times,
-        confidence=None if np.isnan(visibility).all() else certain,
+        confidence=None if visibility is None else with_computed_joints(visibility)[:, joints],
         scale=scale,
         progress=progress,
     )

@@ -61,7 +61,8 @@ def body_of_points(path: Path | str, points: NDArray[np.float64]) -> NamedJoints
     InvalidFileError
         The points lie in a picture.
     """
-    _refuse_pictures(path, points)
+    if has_layout(points.shape[1]):
+        refuse_pictures(path, points)
     if points.shape[1] == N_POINTS and np.isfinite(points).any() and is_normalized(points):
         raise _flat(path)
     return name_joints(points) if has_layout(points.shape[1]) else None
@@ -260,10 +261,21 @@ def _front(joints: Mapping[str, Array]) -> Array:
     return np.where((front != 0.0).any(axis=1, keepdims=True), front, np.nan)
 
 
-def _refuse_pictures(path: Path | str, points: Array) -> None:
-    """Refuse 2D points with a score, or nothing, as the third coordinate."""
+def refuse_pictures(path: Path | str, points: Array) -> None:
+    """Refuse 2D points of a body with a score, or nothing, as the third coordinate.
+
+    Parameters
+    ----------
+    path : Path or str
+    points : shape (n_frames, n_points, 3), NaN where not observed
+
+    Raises
+    ------
+    InvalidFileError
+        The points lie in a picture.
+    """
     observed = points[np.isfinite(points).all(axis=2).any(axis=1)]
-    if not len(observed) or not has_layout(points.shape[1]):
+    if not len(observed):
         return
     third = observed[..., 2][np.isfinite(observed[..., 2])]
     extents = np.nanmax(observed[..., :2], axis=1) - np.nanmin(observed[..., :2], axis=1)

@@ -81,10 +81,9 @@ def read_time(value: Any, second: float | None) -> tuple[float, float | None]:
     """
     if isinstance(value, str):
         try:
-            return float(value), second
+            value = float(value)
         except ValueError:
-            pass
-        return _seconds_of_date(value.strip(), second)
+            return _seconds_of_date(value.strip(), second)
     if isinstance(value, bool) or not isinstance(value, int | float):
         return np.nan, second
     try:
