@@ -57,7 +57,6 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "recordings/conventions/axes.ACCLAIM_UNIT",
         "recordings/conventions/body_unit.UNITS",
         "recordings/depth_files/layouts.TUM_UNIT",
-        "recordings/point_bodies/landmark_recording.PERCENT",
     ),
     "index, state, flag or error code": (
         "depth_tracking/body/ray_capsules.NO_SEGMENT",

@@ -45,6 +45,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "motion/skeletons/file_conventions.UNIT_NAMES",
         "recordings/conventions/axes.*",
         "recordings/conventions/points.METERS",
+        "recordings/point_bodies/landmark_recording.PERCENT",
         "recordings/point_bodies/time_units.SECONDS",
         "recordings/reading_settings.METRES",
         "recordings/skeleton_files/bvh_channels.IMPERIAL",
