@@ -37,8 +37,8 @@ is down."""
 PERCENT = 100.0
 """Confidence of 1 in percent. By definition of percent."""
 MIN_PERCENT = 2.0
-"""Largest confidence of a take, a ratio, above which it is in percent. Chosen by hand: it guards
-scores from 0 to 1 that exceed 1 a little."""
+"""Largest confidence of a take, a ratio, above which it is in percent. Chosen by hand: it
+guards scores from 0 to 1 that exceed 1 a little."""
 WORD_START = re.compile(r"[ \-]|(?<=[a-z])(?=[A-Z])")
 
 
