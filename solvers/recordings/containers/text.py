@@ -27,6 +27,15 @@ BODY_LETTERS = frozenset(
 MISSING = {b"nan", b"n/a", b"na", b"-nan", b"inf", b"-inf", b"null", b"none", b"-"}
 
 
+def is_missing(cell: bytes) -> bool:
+    """Return whether a cell is blank or says that it has no number, as `NaN` and `1.#QNAN` do.
+
+    The latter is what the old Windows runtime wrote.
+    """
+    word = cell.strip().lower()
+    return not word or word in MISSING or b".#" in word
+
+
 def decode_text(line: bytes) -> str:
     """Decode a line of UTF-8 or, failing that, of Latin-1, which any bytes are.
 
@@ -184,8 +193,7 @@ def read_number(word: bytes, location: str) -> float:
     InvalidFileError
         It is not a number; the message begins with the location.
     """
-    # The old Windows runtime wrote 1.#QNAN.
-    if not word or word.lower() in MISSING or b"#" in word:
+    if is_missing(word):
         return np.nan
     try:
         return float(word.replace(b",", b"."))

@@ -3,12 +3,13 @@
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import InvalidSettingError
+from ...errors import InvalidFileError, InvalidSettingError
 from ...progress import READING, Progress, Remark, within
 from ..containers import shown
 
@@ -21,6 +22,13 @@ MIN_FRACTION = 0.05
 it is 1.5 s of a take of 30 s, and trackers see people in furniture for a moment."""
 MAX_LISTED = 4
 """Bodies that a sentence lists."""
+
+
+def no_body_error(path: Path | str) -> InvalidFileError:
+    """Return the refusal of a recording in which no frame has a body."""
+    return InvalidFileError(
+        f"{path} has no body in any frame. Record it again with the actor in view."
+    )
 
 
 @dataclass(frozen=True)

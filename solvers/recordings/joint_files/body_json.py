@@ -11,7 +11,13 @@ from ...errors import InvalidFileError
 from ...motion import JointRecording
 from ...progress import Progress
 from ..containers import array_from_json, json_members
-from ..conventions import DEFAULT_FRAME_RATE, Bodies, bodies_of_frames, recorded_seconds
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    Bodies,
+    bodies_of_frames,
+    no_body_error,
+    recorded_seconds,
+)
 from ..point_bodies import as_fractions
 
 
@@ -71,7 +77,7 @@ def open_frames(
     """
     found = [frame.bodies for frame in frames]
     if not any(found):
-        raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
+        raise no_body_error(path)
     stamps = second * np.array([frame.time for frame in frames])
     times = None if np.isnan(stamps).all() else stamps
     duration = len(frames) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(stamps)

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..point_bodies import NO_POSITION, read_time, time_name
+from ..point_bodies import is_quantity, read_time, time_name
 from .body_json import name_of_body
 from .json_points import (
     LANDMARK_KEYS,
@@ -175,7 +175,7 @@ def has_word(key: str, is_meant: Callable[[str], object]) -> bool:
 def is_no_position(key: str) -> bool:
     """Return whether a key, such as `rotations`, is that of what has no positions."""
     singular = f"{key[:-3]}y" if key.endswith("ies") else key.removesuffix("s")
-    return any(NO_POSITION.search(each) is not None for each in (key, singular))
+    return is_quantity(key) or is_quantity(singular)
 
 
 def as_frame(value: Any) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from ..conventions import (
     check_scale,
     from_kinect_space,
     joint_recording,
+    no_body_error,
     stack_body_frames,
 )
 from .kinect_csv import checked_states
@@ -79,7 +80,7 @@ def open_ntu_skeleton(
     line_indices = [index for index, line in enumerate(lines) if line.strip()]
     frames = _find_bodies(lines, line_indices, path)
     if not any(frames):
-        raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
+        raise no_body_error(path)
     keys, bodies = bodies_of_frames(
         frames, len(frames) / DEFAULT_FRAME_RATE, lambda number, key: str(number)
     )

@@ -29,8 +29,8 @@ from ..point_bodies import (
     TimeName,
     body_of_named_points,
     body_of_points,
-    bridged_times,
     column_of_times,
+    completed_times,
     coordinate_of_title,
     missing_limbs,
     names_of_positions,
@@ -143,12 +143,9 @@ def open_point_table(
 
 
 def _times(times: Array, columns: _Columns, progress: Progress) -> Array | None:
-    """Return the times of frames, seconds; None if several in a row are missing."""
-    if not np.isfinite(times).any():
-        return None
+    """Return the times of frames, seconds; None if there are hardly any."""
     second = columns.times.second or second_of_times(times, progress)
-    times = bridged_times(over_midnight(times * second))
-    return times if np.isfinite(times).all() else None
+    return completed_times(over_midnight(times * second), progress)
 
 
 def ignored_columns(

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from ..containers import SPACE, decode_text, find_separator, split_cells
+from ..containers import SPACE, decode_text, find_separator, is_missing, split_cells
 from ..conventions import meters_from_unit_name
 from ..point_bodies import is_quantity
 
@@ -23,7 +23,6 @@ VECTOR = re.compile(
 """A cell with x, y and z, such as `(X=1.0,Y=2.0,Z=3.0)` of Unreal Engine or `[1.0 2.0 3.0]`."""
 MAX_VECTOR_BYTES = 120
 """Bytes of such a cell. It bounds the search; three numbers of all digits have 75."""
-MISSING = {b"", b"nan", b"n/a", b"na", b"null", b"none", b"-"}
 BRACKETS = re.compile(rb"[\[({][^\[\](){}]*[\])}]")
 INSIDE_BRACKETS = b"\x01"
 """Replaces separators inside brackets while a line is split."""
@@ -151,7 +150,7 @@ def _coordinates(cell: bytes, separator: bytes) -> Sequence[bytes]:
     """Return x, y and z of a cell, blank if it is; one that has none of them is the first."""
     if match := _vector(cell):
         return match.groups()
-    word = b"" if cell.lower() in MISSING else b"'" + cell.replace(separator, SPACE) + b"'"
+    word = b"" if is_missing(cell) else b"'" + cell.replace(separator, SPACE) + b"'"
     return [word.replace(SPACE, b"__"), b"", b""]
 
 

@@ -18,7 +18,6 @@ from .point_arrays import (
     without_undetected,
 )
 from .point_titles import (
-    NO_POSITION,
     coordinate_of_title,
     is_quantity,
     names_of_positions,
@@ -27,8 +26,8 @@ from .point_titles import (
 from .time_units import (
     TimeCells,
     TimeName,
-    bridged_times,
     column_of_times,
+    completed_times,
     over_midnight,
     read_time,
     second_of_times,
@@ -39,15 +38,14 @@ from .unnamed_joints import has_layout
 __all__ = [
     "HIPS",
     "LANDMARK_JOINTS",
-    "NO_POSITION",
     "N_POINTS",
     "TimeCells",
     "TimeName",
     "as_fractions",
     "body_of_named_points",
     "body_of_points",
-    "bridged_times",
     "column_of_times",
+    "completed_times",
     "coordinate_of_title",
     "has_layout",
     "is_quantity",

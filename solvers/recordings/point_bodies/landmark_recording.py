@@ -18,6 +18,7 @@ from ..conventions import (
     estimate_up_of_joints,
     from_azure_space,
     joint_recording,
+    no_body_error,
     z_up_from_y_up,
 )
 from .mediapipe_landmarks import (
@@ -83,7 +84,7 @@ def recording_from_landmarks(
     points = landmarks[..., :3]
     visibility = as_fractions(landmarks[..., 3], points)
     if np.isnan(points).all():
-        raise InvalidFileError(f"{path} has {len(points)} frames but no body in any of them.")
+        raise no_body_error(path)
     is_centered = is_world(points)
     if is_centered:
         progress(

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...progress import Progress, Remark
+from ..containers import is_missing
 
 MAX_STEP_S = 1.0
 """Median step between frames, seconds, above which times without a unit are milliseconds. It
@@ -39,7 +40,6 @@ CLOCK_UNITS = frozenset({"hour", "minute", "min", "h"})
 """Titles, without the plural s, next to which seconds are those of a clock."""
 MAX_LINES_BELOW = 10
 """Lines of words, such as of means, that may follow the frames. It guards damaged times."""
-MISSING = {"", "nan", "n/a", "na", "inf", "null", "none", "-"}
 MIN_UNIT_LETTERS = 3
 """Letters of a unit that names times by itself. It guards names of other values."""
 
@@ -142,26 +142,29 @@ def _increases(column: int, cells: Sequence[Sequence[str]]) -> bool:
     return len(steps) > 0 and bool((steps >= 0.0).all() and np.mean(steps > 0.0) > 0.5)
 
 
-def bridged_times(times: Array) -> Array:
-    """Return times in which frames that alone lack theirs have the mean of their neighbors.
+def completed_times(times: Array, progress: Progress) -> Array | None:
+    """Return times without gaps; None if fewer than two are known.
 
-    At an end, the step next to them continues. Longer gaps stay NaN.
+    Between known times they are interpolated, and the median step continues at the ends.
 
     Parameters
     ----------
-    times : shape (n_frames,)
+    times : shape (n_frames,), seconds
+    progress : Progress
+        Is given a message if times are missing.
     """
-    known = np.isfinite(times)
-    unknown = np.concatenate([[False], ~known, [False]])
-    alone = np.flatnonzero(~known & ~unknown[:-2] & ~unknown[2:])
-    bridged = times.copy()
-    for frame in alone if len(times) > 2 else ():
-        if 0 < frame < len(times) - 1:
-            bridged[frame] = (times[frame - 1] + times[frame + 1]) / 2.0
-        else:
-            near, far = (1, 2) if frame == 0 else (-2, -3)
-            bridged[frame] = 2.0 * times[near] - times[far]
-    return bridged
+    frames, known = np.arange(len(times)), np.flatnonzero(np.isfinite(times))
+    if len(known) < 2:
+        return None
+    n_missing = len(times) - len(known)
+    if not n_missing:
+        return times
+    progress(
+        0.8, Remark(f"Frames without a time: {n_missing}; theirs follow from the other frames")
+    )
+    step = np.median(np.diff(times[known]) / np.diff(known))
+    outside = np.minimum(frames - known[0], 0) + np.maximum(frames - known[-1], 0)
+    return np.asarray(np.interp(frames, known, times[known]) + step * outside)
 
 
 def over_midnight(seconds: Array) -> Array:
@@ -208,7 +211,7 @@ class TimeCells:
         follows it, for the line of that time.
         """
         text = cell.decode("latin-1").strip()
-        if text.lower() in MISSING or text.lower().startswith("1.#"):
+        if is_missing(cell):
             self._n_blank += not self._words
             return b""
         time, self.second = read_time(text.replace(",", "."), self.second)

@@ -86,7 +86,7 @@ def test_json_without_times(write, values):
             "frame 1: a list of bodies",
         ),
         (lambda text: text.replace('usec": 0', 'usec": "noon"'), "frame 1, timestamp_usec"),
-        (lambda text: '{"bone_list": [], "frames": []}', "0 frames but no body"),
+        (lambda text: '{"bone_list": [], "frames": []}', "no body in any frame"),
         (lambda text: "[" * 100_000, "damaged or cut short"),
         (lambda text: '{"frames": ' + "[" * 100_000, "damaged or cut short"),
         (lambda text: text.replace('"frames"', '"frames'), "damaged or cut short"),

@@ -85,7 +85,7 @@ def test_ntu_recognized_when_it_begins_with_empty_frames(write):
         (lambda text: text.replace("\r\n1\r\n", "\r\n7\r\n", 1), "line 2: .*number of bodies"),
         (lambda text: text.replace(" 2\r\n", " 5\r\n"), "states other than 0, 1 and 2"),
         (lambda text: text.replace("278.3", "x", 1), "line 5: 'x' is not a number"),
-        (lambda text: "3\r\n0\r\n0\r\n0\r\n", "3 frames but no body"),
+        (lambda text: "3\r\n0\r\n0\r\n0\r\n", "no body in any frame"),
         (
             lambda text: text.replace(" 0.02 -0.3 2", "", 1),
             "line 3: found .* words instead of a body's id",

@@ -29,14 +29,22 @@ def assert_has_all_frames(recording, rate=RATE_HZ, n_frames=F):
     assert recording.n_frames == n_frames
 
 
-def test_frames_without_times_are_kept(read_any):
-    recording = read_any(table({"time": lambda k: seconds(k) if k < 10 else ""}))
+@pytest.mark.parametrize("known", [range(10), range(20, 30), {*range(5), F - 1}])
+def test_frames_without_times_are_kept(read_any, known):
+    """Their times follow from the others: the rate is the same, not an assumed one."""
+    recording = read_any(table({"time": lambda k: seconds(k) if k in known else ""}))
+
+    assert_has_all_frames(recording)
+
+
+def test_one_time_is_no_rate(read_any):
+    recording = read_any(table({"time": lambda k: seconds(k) if k == 3 else ""}))
 
     assert_has_all_frames(recording, 30.0)
 
 
 @pytest.mark.parametrize("at", [0, 40, F - 1])
-def test_a_single_blank_time_is_bridged(read_any, at):
+def test_a_blank_time_is_between_its_neighbors(read_any, at):
     recording = read_any(table({"time": lambda k: "" if k == at else seconds(k)}))
 
     assert_has_all_frames(recording)
