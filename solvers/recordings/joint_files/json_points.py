@@ -81,10 +81,10 @@ def points_of(joints: Any, key: str = "") -> Points | None:
 def _positions(joints: list[Any]) -> list[Any]:
     """Return the positions of joints: null for objects without any, if others have one."""
     positions = [position_of(joint) for joint in joints]
-    if all(isinstance(place, Mapping) or joint is None
-           for place, joint in zip(positions, joints, strict=True)):  # fmt: skip
+    if all(isinstance(position, Mapping) or joint is None
+           for position, joint in zip(positions, joints, strict=True)):  # fmt: skip
         return []
-    return [[None] * 3 if isinstance(place, Mapping) else place for place in positions]
+    return [[None] * 3 if isinstance(each, Mapping) else each for each in positions]
 
 
 def members(values: Mapping[str, Any], keys: tuple[str, ...]) -> Iterator[Any]:

@@ -31,7 +31,8 @@ RATE = re.compile(
     rb"|\b(?:fps|frames?[ _]?rate)\W{1,4}(\d{1,4}(?:\.\d+)?)"
     rb"|(?<![\d.,])(\d{1,4}(?:[.,]\d+)?) ?fps\b"
 )
-"""A rate in a comment above the titles; after a comma, which may separate, it has none."""
+"""A rate in a comment above the titles. It may have a decimal comma, unless a comma separates
+it from its name."""
 KIND = re.compile(r"(?i)pos(ition)?s?|loc(ation)?|translation|rot(ation)?|quat\w*|orientation")
 """What the coordinates below are, in tables that also hold rotations."""
 
