@@ -37,7 +37,7 @@ LABELED = {
     "mocap_assist/check/held_operator.py": {"HELD_TEXT", "CLICKED_TEXT"},
     "mocap_assist/clean/feet_panel.py": {"LABELS"},
     "mocap_assist/clean/report.py": {"clean_report"},
-    "mocap_assist/overlays/strip_ranges.py": {"StripRow", "Mark"},
+    "mocap_assist/overlays/marked_ranges.py": {"StripRow", "Mark"},
     "mocap_assist/exporting/export_menu.py": {"ENTRY"},
     "mocap_assist/fix/fixing.py": {"SUMMARY"},
     "mocap_assist/fix/panel.py": {"CONTINUE", "_draw_card"},

@@ -9,7 +9,7 @@ FRAMES = (1, 17, 60)
 
 @pytest.fixture
 def overlay(load):
-    found = load("mocap_assist.overlays.overlay")
+    found = load("mocap_assist.overlays.comparison.figures")
     found.forget()
     return found
 
@@ -142,7 +142,7 @@ def test_loading_another_file_clears_the_cache(blank, overlay, actor):
 
 
 def test_edited_keys_are_read_again_after_a_pause(blank, load, overlay, actor):
-    refresh = load("mocap_assist.overlays.overlay_drawing").refresh
+    refresh = load("mocap_assist.overlays.comparison.drawing").refresh
     old = overlay.figures_at(actor, source_of(actor), 17)
     bone = actor.pose.bones["LeftArm"]
     bone.rotation_quaternion = (0.0, 1.0, 0.0, 0.0)

@@ -6,11 +6,11 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ...solvers.arrays import Array, Single
-from ..actions.curves import Channel
-from ..blender import compat
-from ..scene import history
-from .strip_ranges import MAX_STEPS_BETWEEN
+from ....solvers.arrays import Array, Single
+from ...actions.curves import Channel
+from ...blender import compat
+from ...scene import history
+from ..marked_ranges import MAX_STEPS_BETWEEN
 
 MAX_CURVES = 64
 """Number of curves with a recorded one behind them. It bounds the time of a drawing."""

@@ -8,7 +8,7 @@ import pytest
 
 @pytest.fixture
 def drag(load):
-    return load("mocap_assist.overlays.strip_drag")
+    return load("mocap_assist.overlays.strip.drag")
 
 
 @pytest.fixture
@@ -17,7 +17,7 @@ def editor(blank, load, actor):
     contacts = np.ones((60, 2), bool)
     contacts[:, 0] = False
     action, slot = actor.animation_data.action, actor.animation_data.action_slot
-    load("mocap_assist.overlays.strip_reading").forget()
+    load("mocap_assist.overlays.strip.reading").forget()
     load("mocap_assist.actions.contact_keys").write_contacts(
         actor, action, slot, np.arange(1.0, 61.0), contacts
     )

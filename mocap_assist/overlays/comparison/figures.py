@@ -7,14 +7,14 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solvers.arrays import Array
-from ...solvers.rotations import inverse, multiply, rotate
-from ..actions.bone_channels import read_bone
-from ..actions.take import BoneChannels
-from ..blender import compat
-from ..blender.compat import Source
-from ..scene import history
-from ..scene.rig import Rig, read_rig
+from ....solvers.arrays import Array
+from ....solvers.rotations import inverse, multiply, rotate
+from ...actions.bone_channels import read_bone
+from ...actions.take import BoneChannels
+from ...blender import compat
+from ...blender.compat import Source
+from ...scene import history
+from ...scene.rig import Rig, read_rig
 from .key_store import Keys, curves_near, read_keys
 
 BLOCK_POSES = 2**13

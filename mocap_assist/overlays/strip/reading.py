@@ -6,17 +6,17 @@ from typing import Any, NamedTuple
 import bpy
 import numpy as np
 
-from ...solvers.arrays import Array, Flags
-from ...solvers.errors import InvalidMotionError
-from ..actions.bone_channels import bone_path
-from ..actions.contact_keys import contact_keys
-from ..actions.curves import GENERATED, Channel, types_of
-from ..actions.reliability_curves import reliability_path
-from ..blender import compat
-from ..blender.compat import Source
-from ..scene import history
-from .confidence_colors import reliability_source
-from .strip_ranges import (
+from ....solvers.arrays import Array, Flags
+from ....solvers.errors import InvalidMotionError
+from ...actions.bone_channels import bone_path
+from ...actions.contact_keys import contact_keys
+from ...actions.curves import GENERATED, Channel, types_of
+from ...actions.reliability_curves import reliability_path
+from ...blender import compat
+from ...blender.compat import Source
+from ...scene import history
+from ..confidence_colors import reliability_source
+from ..marked_ranges import (
     CONTACT_ROWS,
     Mark,
     Range,

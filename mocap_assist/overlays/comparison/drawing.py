@@ -1,4 +1,4 @@
-"""Draw stick figures or markers over the 3D View; the scene is not changed."""
+"""Draw the recorded take and its result over the 3D View; the scene is not changed."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -8,15 +8,13 @@ import gpu
 import numpy as np
 from bpy.app import handlers
 from mathutils import Matrix
-from numpy.typing import NDArray
 
-from ..actions.markers import holder_of
-from ..blender.redrawing import redraw
-from . import marker_overlay, onion_skin, overlay, raw_curves_switch, strip_drawing
-from .view_drawing import ViewDrawing, draw_in_front, visible_active
+from ...actions.markers import holder_of
+from ...blender.redrawing import redraw
+from ..strip import drawing as strip
+from ..view_drawing import Color, ViewDrawing, draw_in_front, draw_lines, visible_active
+from . import figures, markers, onion_skin, raw_curves_switch
 from .wipe import clipped, draw_wipe_line
-
-Color = tuple[float, float, float, float]
 
 EDIT_PAUSE_S = 0.3
 """Seconds without an edit after which keys are read again. It bounds the work while a key is
@@ -59,11 +57,11 @@ def stop() -> None:
 
 def forget() -> None:
     """Clear the caches, so that the next drawing reads the actions again."""
-    overlay.forget()
+    figures.forget()
     onion_skin.forget()
-    marker_overlay.forget()
+    markers.forget()
     raw_curves_switch.forget()
-    strip_drawing.forget()
+    strip.forget()
 
 
 def draw(context: bpy.types.Context, look: Look) -> None:
@@ -73,10 +71,10 @@ def draw(context: bpy.types.Context, look: Look) -> None:
     if active is not None and active.type == "ARMATURE":
         _draw_figures(active, context.scene.frame_current_final, look)
     elif holder is not None and look.has_poses:
-        played = marker_overlay.raw_and_clean(holder)
+        played = markers.raw_and_clean(holder)
         for each, color, is_raw in zip(played, look.colors, (True, False), strict=True):
             with clipped(look.wipe, left=is_raw):
-                lines = marker_overlay.lines_at(each, context.scene)
+                lines = markers.lines_at(each, context.scene)
                 draw_lines(lines, Matrix.Identity(4), color, look.width)
     else:
         return
@@ -85,7 +83,7 @@ def draw(context: bpy.types.Context, look: Look) -> None:
 
 
 def _draw_figures(armature: bpy.types.Object, frame: float, look: Look) -> None:
-    sources = overlay.raw_and_clean(armature)
+    sources = figures.raw_and_clean(armature)
     for source, color, is_raw in zip(sources, look.colors, (True, False), strict=True):
         if source is None:
             continue
@@ -94,7 +92,7 @@ def _draw_figures(armature: bpy.types.Object, frame: float, look: Look) -> None:
                 faded = onion_skin.onion_at(armature, source, frame, look.onion)
                 draw_faded(faded, armature.matrix_world, color, look.width)
             if look.has_poses:
-                lines = overlay.figures_at(armature, source, frame).segments(frame)
+                lines = figures.figures_at(armature, source, frame).segments(frame)
                 draw_lines(lines, armature.matrix_world, color, look.width)
 
 
@@ -108,17 +106,6 @@ def draw_faded(faded: onion_skin.FadedLines, matrix: Any, color: Color, width: f
     shader = gpu.shader.from_builtin("POLYLINE_SMOOTH_COLOR")
     content = {"pos": faded.lines.reshape(-1, 3), "color": colors.reshape(-1, 4)}
     draw_in_front(shader, content, matrix, width)
-
-
-def draw_lines(
-    lines: NDArray[np.floating[Any]], matrix: Any, color: Color, width: float
-) -> None:
-    """Draw lines of shape (n_lines, 2, 3) in the space of `matrix`, in front of all objects."""
-    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
-    points = np.ascontiguousarray(lines.reshape(-1, 3), dtype=np.float32)
-    shader.bind()
-    shader.uniform_float("color", color)
-    draw_in_front(shader, {"pos": points}, matrix, width)
 
 
 @handlers.persistent
@@ -135,7 +122,7 @@ def _changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 def refresh() -> None:
     """Read again, and redraw every editor of motion."""
     forget()
-    for editor in ("VIEW_3D", *strip_drawing.EDITORS):
+    for editor in ("VIEW_3D", *strip.EDITORS):
         redraw(bpy.context, editor)
 
 

@@ -7,12 +7,12 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solvers.arrays import Array
-from ..actions.bone_channels import animated_curves, curves_of, gaps_of, sampled
-from ..actions.markers import PATH, markers_of, source_of
-from ..blender.compat import Source
-from ..scene import history
-from ..scene.units import unit_of
+from ....solvers.arrays import Array
+from ...actions.bone_channels import animated_curves, curves_of, gaps_of, sampled
+from ...actions.markers import PATH, markers_of, source_of
+from ...blender.compat import Source
+from ...scene import history
+from ...scene.units import unit_of
 
 TRAIL_S = 0.2
 """Length of a trail before and after the current frame."""

@@ -5,12 +5,12 @@ from typing import Any
 import bpy
 from bpy.types import SpaceDopeSheetEditor, SpaceGraphEditor
 
-from ..blender.redrawing import redraw
-from ..panel_parts.panel_layout import draw_sentence
-from .color_icons import draw_marks
-from .strip_drawing import EDITORS, draw_strip
-from .strip_ranges import MARKS, StripRow
-from .strip_reading import strip_of
+from ...blender.redrawing import redraw
+from ...panel_parts.panel_layout import draw_sentence
+from ..color_icons import draw_marks
+from ..marked_ranges import MARKS, StripRow
+from .drawing import EDITORS, draw_strip
+from .reading import strip_of
 
 SWITCH = "mocap_assist_strip"
 SPACES = (SpaceDopeSheetEditor, SpaceGraphEditor)

@@ -7,13 +7,13 @@ from numpy.testing import assert_allclose
 
 @pytest.fixture
 def onion_skin(load):
-    load("mocap_assist.overlays.overlay_drawing").forget()
-    return load("mocap_assist.overlays.onion_skin")
+    load("mocap_assist.overlays.comparison.drawing").forget()
+    return load("mocap_assist.overlays.comparison.onion_skin")
 
 
 @pytest.fixture
 def overlay(load):
-    return load("mocap_assist.overlays.overlay")
+    return load("mocap_assist.overlays.comparison.figures")
 
 
 def source_of(armature):
@@ -74,14 +74,14 @@ def test_edited_action_is_read_again(load, onion_skin, actor):
     onion = onion_skin.Onion(n_ghosts=1, step=1)
     found = onion_skin.onion_at(actor, source_of(actor), 30, onion)
 
-    load("mocap_assist.overlays.overlay_drawing").refresh()
+    load("mocap_assist.overlays.comparison.drawing").refresh()
 
     assert onion_skin.onion_at(actor, source_of(actor), 30, onion) is not found
 
 
 @pytest.mark.parametrize("position", [0.0, 0.3, 1.0])
 def test_halves_of_a_wipe_cover_the_view_once(load, position):
-    half_of = load("mocap_assist.overlays.wipe").half_of
+    half_of = load("mocap_assist.overlays.comparison.wipe").half_of
 
     left, right = (half_of((10, 20, 301, 200), position, left=each) for each in (True, False))
 
@@ -103,7 +103,7 @@ def test_settings_and_colors_are_shown_while_a_switch_is_on(blank, draw, load, m
     manager.mocap_assist_onion = manager.mocap_assist_wipe = True
     try:
         shown = draw("MOCAP_PT_compare")
-        look = load("mocap_assist.overlays.overlay_switch").current_look(manager)
+        look = load("mocap_assist.overlays.comparison.switches").current_look(manager)
     finally:
         manager.mocap_assist_onion = manager.mocap_assist_wipe = False
 

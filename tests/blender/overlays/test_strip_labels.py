@@ -27,7 +27,7 @@ def target(load, monkeypatch):
 
     gpu.types.GPUOffScreen.return_value.bind = binding("window")
     gpu.types.GPUFrameBuffer.return_value.bind = binding(None)
-    module = load("mocap_assist.overlays.strip_labels")
+    module = load("mocap_assist.overlays.strip.labels")
     monkeypatch.setattr(module, "gpu", gpu)
     monkeypatch.setattr(module, "blf", MagicMock(dimensions=lambda *_: (50.0, 10.0)))
     monkeypatch.setattr(module.blf, "draw", lambda *_: target.drawn.append(target.name))
@@ -38,7 +38,7 @@ def target(load, monkeypatch):
 
 
 def test_first_drawing_is_in_the_region_too(load, target):
-    module = load("mocap_assist.overlays.strip_labels")
+    module = load("mocap_assist.overlays.strip.labels")
     labels = module.Labels(("Left Foot", "Right Foot"), 13.0, 1.0)
 
     module.draw_labels(labels, 20.0)

@@ -1,4 +1,4 @@
-"""Ranges of frames of the strip below the keys, as plain arrays."""
+"""Ranges of frames that the strip below the keys marks, and the colors of marks."""
 
 from collections.abc import Iterable, Mapping
 from enum import Enum
@@ -8,8 +8,7 @@ import numpy as np
 
 from ...solvers.arrays import Array
 from .confidence_colors import COLORS as CONFIDENCE_COLORS
-
-Color = tuple[float, float, float, float]
+from .view_drawing import Color
 
 MAX_STEPS_BETWEEN = 1.5
 """Frames from one key to the next, relative to the frames between samples, that belong to one

@@ -7,9 +7,9 @@ import bpy
 import gpu
 from bpy.types import SpaceGraphEditor
 
-from ...solvers.errors import InvalidMotionError
-from ..blender.redrawing import redraw
-from ..panel_parts.preference_values import preferred
+from ....solvers.errors import InvalidMotionError
+from ...blender.redrawing import redraw
+from ...panel_parts.preference_values import preferred
 from .raw_curves import CurvePair, curve_lines, displayed_values, shown_pairs
 
 SWITCH = "mocap_assist_raw_curves"

@@ -4,12 +4,12 @@ from typing import ClassVar, NamedTuple
 
 import bpy
 
-from ..actions.frames import FrameRange
-from ..blender.act_operator import ActOperator
-from ..blender.redrawing import redraw
-from .strip_drawing import EDITORS, MODES, strip_height, visible_frames
-from .strip_reading import strip_of
-from .strip_switch import SWITCH
+from ...actions.frames import FrameRange
+from ...blender.act_operator import ActOperator
+from ...blender.redrawing import redraw
+from .drawing import EDITORS, MODES, strip_height, visible_frames
+from .reading import strip_of
+from .switch import SWITCH
 
 GROUPS = ("clean", "reconstruct")
 """Settings of the buttons that change the frames of a range only."""

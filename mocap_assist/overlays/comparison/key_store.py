@@ -5,10 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solvers.arrays import Array
-from ..actions.bone_channels import Curves, animated_curves
-from ..actions.curves import ON_FRAME
-from ..blender.compat import Source
+from ....solvers.arrays import Array
+from ...actions.bone_channels import Curves, animated_curves
+from ...actions.curves import ON_FRAME
+from ...blender.compat import Source
 
 Keys = Mapping[tuple[str, int], NDArray[np.float32]]
 N_ADJACENT = 16

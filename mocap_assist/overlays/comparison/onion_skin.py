@@ -5,11 +5,11 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ...solvers.arrays import Array, Single
-from ...solvers.errors import InvalidMotionError
-from ..blender.compat import Source
-from ..rigs.target_read import find_roles
-from .overlay import Figures, figures_at
+from ....solvers.arrays import Array, Single
+from ....solvers.errors import InvalidMotionError
+from ...blender.compat import Source
+from ...rigs.target_read import find_roles
+from .figures import Figures, figures_at
 
 TRAILED = ("leftHand", "rightHand", "leftFoot", "rightFoot")
 NEAR_ALPHA, FAR_ALPHA = 0.6, 0.1

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 @pytest.fixture
 def raw_curves(load):
-    return load("mocap_assist.overlays.raw_curves")
+    return load("mocap_assist.overlays.comparison.raw_curves")
 
 
 def curves_of(action):
@@ -82,7 +82,7 @@ def test_angles_are_shown_in_degrees_and_normalized_curves_from_minus_one(
 @pytest.fixture
 def drawn(blank, load, monkeypatch):
     """Draw in a Graph Editor that shows all curves of an object; return the values drawn."""
-    switch, blends = load("mocap_assist.overlays.raw_curves_switch"), []
+    switch, blends = load("mocap_assist.overlays.comparison.raw_curves_switch"), []
     shader = SimpleNamespace(bind=lambda: None, uniform_float=lambda *_: None)
     lines = []
 

@@ -7,11 +7,11 @@ import bpy
 import gpu
 import numpy as np
 
-from ...solvers.arrays import Single
-from ..languages import translated
-from . import strip_labels, strip_reading
-from .strip_ranges import COLORS, Range, StripRow
-from .strip_reading import Strip
+from ....solvers.arrays import Single
+from ...languages import translated
+from ..marked_ranges import COLORS, Range, StripRow
+from . import labels, reading
+from .reading import Strip
 
 EDITORS = ("DOPESHEET_EDITOR", "GRAPH_EDITOR")
 MODES = {"TIMELINE", "DOPESHEET", "ACTION", "SHAPEKEY", "FCURVES"}
@@ -35,8 +35,8 @@ _batches: dict[tuple[int, float], tuple[Strip, Any]] = {}
 
 def forget() -> None:
     """Clear the caches, so that the next drawing reads again."""
-    strip_reading.forget()
-    strip_labels.forget()
+    reading.forget()
+    labels.forget()
     _batches.clear()
 
 
@@ -44,7 +44,7 @@ def draw_strip(context: bpy.types.Context) -> None:
     """Draw the rows of the active armature where the editor shows their frames."""
     if context.space_data.mode not in MODES:
         return
-    strip = strip_reading.strip_of(context)
+    strip = reading.strip_of(context)
     if strip is None:
         return
     scale = context.preferences.system.ui_scale
@@ -55,7 +55,7 @@ def draw_strip(context: bpy.types.Context) -> None:
     _draw_batch(batch, (-first * pixels_per_frame, bottom), (pixels_per_frame, height))
     if height >= MIN_LABELED_PX * scale:
         texts = tuple(translated(row.value) for row in strip.rows)
-        strip_labels.draw_labels(strip_labels.Labels(texts, height, scale), bottom)
+        labels.draw_labels(labels.Labels(texts, height, scale), bottom)
 
 
 def min_width(pixels_per_frame: float, step: float) -> float:
@@ -112,7 +112,7 @@ def _batch_of(strip: Strip, width: float) -> Any:
     key = id(strip), width
     known = _batches.get(key)
     if known is None or known[0] is not strip:
-        if len(_batches) >= strip_reading.MAX_CACHED:
+        if len(_batches) >= reading.MAX_CACHED:
             del _batches[next(iter(_batches))]
         known = _batches[key] = strip, _make_batch(strip, width)
     return known[1]

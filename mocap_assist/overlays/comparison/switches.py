@@ -2,9 +2,9 @@
 
 import bpy
 
-from ..blender.redrawing import redraw_views
-from ..panel_parts.preference_values import preferences, preferred
-from . import overlay_drawing
+from ...blender.redrawing import redraw_views
+from ...panel_parts.preference_values import preferences, preferred
+from . import drawing
 from .onion_skin import Onion
 from .raw_curves_switch import SWITCH as RAW_CURVES
 
@@ -44,14 +44,14 @@ def _draw_colors(column: bpy.types.UILayout) -> None:
 
 
 def _refresh_drawing(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    overlay_drawing.refresh()
+    drawing.refresh()
 
 
-def current_look(manager: bpy.types.WindowManager) -> overlay_drawing.Look:
+def current_look(manager: bpy.types.WindowManager) -> drawing.Look:
     """Return the look that the switches and preferences choose."""
     onion = Onion(manager.mocap_assist_onion_ghosts, manager.mocap_assist_onion_step)
     is_wiped = manager.mocap_assist_wipe
-    return overlay_drawing.Look(
+    return drawing.Look(
         colors=(tuple(preferred("raw_color")), tuple(preferred("clean_color"))),
         width=preferred("line_width"),
         has_poses=manager.mocap_assist_overlay or is_wiped,
@@ -63,7 +63,7 @@ def current_look(manager: bpy.types.WindowManager) -> overlay_drawing.Look:
 def _draw(context: bpy.types.Context) -> None:
     look = current_look(context.window_manager)
     if look.has_poses or look.onion is not None:
-        overlay_drawing.draw(context, look)
+        drawing.draw(context, look)
 
 
 PROPERTIES = {
@@ -117,11 +117,11 @@ def register() -> None:
     """Add the switches, which start off."""
     for name, described in PROPERTIES.items():
         setattr(bpy.types.WindowManager, PREFIX + name, described)
-    overlay_drawing.start(_draw)
+    drawing.start(_draw)
 
 
 def unregister() -> None:
     """Remove the switches and the drawing."""
-    overlay_drawing.stop()
+    drawing.stop()
     for name in PROPERTIES:
         delattr(bpy.types.WindowManager, PREFIX + name)

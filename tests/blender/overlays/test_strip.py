@@ -6,12 +6,12 @@ import pytest
 
 @pytest.fixture
 def ranges(load):
-    return load("mocap_assist.overlays.strip_ranges")
+    return load("mocap_assist.overlays.marked_ranges")
 
 
 @pytest.fixture
 def reading(load):
-    found = load("mocap_assist.overlays.strip_reading")
+    found = load("mocap_assist.overlays.strip.reading")
     found.forget()
     return found
 
@@ -153,7 +153,7 @@ def test_issues_are_those_that_check_listed_for_this_action(blank, reading, acto
     assert strip["SPIKES"] == spikes
     assert sum(map(len, strip.values())) == len(issues)
     issues[0].kind = "of a later version"
-    load("mocap_assist.overlays.overlay_drawing").refresh()
+    load("mocap_assist.overlays.comparison.drawing").refresh()
     strip = shown(reading.strip_of(blank.context))
     assert sum(map(len, strip.values())) == len(issues) - 1
 
@@ -168,7 +168,7 @@ def test_nothing_is_shown_without_an_animated_armature(blank, reading, make_arma
 
 
 def test_action_is_read_once_until_it_is_edited(blank, reading, load, stepping, monkeypatch):
-    load("mocap_assist.overlays.overlay_drawing").refresh()
+    load("mocap_assist.overlays.comparison.drawing").refresh()
     read, read_action = [], reading.read_action
     monkeypatch.setattr(
         reading, "read_action", lambda *given: read.append(given) or read_action(*given)
@@ -179,7 +179,7 @@ def test_action_is_read_once_until_it_is_edited(blank, reading, load, stepping, 
     assert reading.strip_of(blank.context) is first
     assert len(read) == 1
 
-    load("mocap_assist.overlays.overlay_drawing").refresh()
+    load("mocap_assist.overlays.comparison.drawing").refresh()
     assert shown(reading.strip_of(blank.context)) == shown(first)
     assert len(read) == 2
 
@@ -195,7 +195,7 @@ def test_cache_has_no_blender_data(blank, reading, stepping):
 
 
 def test_rectangles_cover_the_last_frame_of_a_range(load, ranges, reading):
-    drawing = load("mocap_assist.overlays.strip_drawing")
+    drawing = load("mocap_assist.overlays.strip.drawing")
     rows = {
         ranges.StripRow.SPIKES: (ranges.Range(5.0, 5.0, ranges.Mark.ISSUE),),
         ranges.StripRow.FILLED: (ranges.Range(8.0, 9.0, ranges.Mark.FILLED),),
@@ -211,7 +211,7 @@ def test_rectangles_cover_the_last_frame_of_a_range(load, ranges, reading):
 
 
 def test_range_of_one_frame_is_visible_in_a_long_take(load, ranges, reading):
-    drawing = load("mocap_assist.overlays.strip_drawing")
+    drawing = load("mocap_assist.overlays.strip.drawing")
     rows = {ranges.StripRow.SPIKES: (ranges.Range(500.0, 500.0, ranges.Mark.ISSUE),)}
     strip = reading.Strip(1.0, 10_000.0, 1.0, rows)
     pixels_per_frame = 0.1
@@ -242,7 +242,7 @@ def test_panel_has_the_switch_and_names_the_colors(blank, draw, stepping):
 
 
 def test_drawing_ends_with_the_extension(extension, load):
-    switch = load("mocap_assist.overlays.strip_switch")
+    switch = load("mocap_assist.overlays.strip.switch")
     assert len(switch._handles) == 2
     extension.unregister()
     assert not switch._handles
