@@ -23,10 +23,10 @@ from .live_body import BodyDisplay, LiveBody
 from .low_confidence import list_low_confidence
 from .solve_retracking import Correction, TrackedActor, retrack_recording
 from .solve_tracking import LowConfidenceRange, low_confidence_ranges, mean_cm
-from .tracked_body import TrackedBody, armature_from_motion, is_tracked
-from .tracked_checks import check_in_time
-from .tracked_curves import update_reliability, write_residual
-from .tracked_take import TrackedTake, read_tracked_take
+from .tracked_armature.body import TrackedBody, armature_from_motion, is_tracked
+from .tracked_armature.checks import check_in_time
+from .tracked_armature.curves import update_reliability, write_residual
+from .tracked_armature.take import TrackedTake, read_tracked_take
 from .tracking import WatchChoices
 
 OPERATION = "retrack"

@@ -3,10 +3,10 @@
 from .. import languages
 from ..check import issue_views, key_map, renewing
 from ..clean import example_list
-from ..exporting import export_menu
+from ..exporting import menu as export_menu
 from ..find_similar import match_grid, source_list
 from ..find_similar import panel as library_panel
-from ..importing import import_menu
+from ..importing import menu as import_menu
 from ..overlays import color_icons, confidence_switch
 from ..overlays.comparison import raw_curves_switch
 from ..overlays.comparison import switches as overlay_switch

@@ -219,7 +219,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "mocap_assist/clean/example_list.MAX_MENU_ENTRIES",
         "mocap_assist/retarget/panel.MAX_LISTED",
         "mocap_assist/track/low_confidence.MAX_LISTED",
-        "mocap_assist/track/tracked_checks.MAX_NAMED",
+        "mocap_assist/track/tracked_armature/checks.MAX_NAMED",
     ),
     "guards against damaged files": (
         "reconstruction/pose_library/posture_library.MAX_LENGTH_ERROR",

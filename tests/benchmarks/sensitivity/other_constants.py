@@ -64,7 +64,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "command_line/batches/screen.MIN_STEP",
         "recordings/read_recording.OPENING_FRACTION",
         "mocap_assist/exporting/write_file.*",
-        "mocap_assist/importing/import_transaction.READING_FRACTION",
+        "mocap_assist/importing/transaction.READING_FRACTION",
     ),
     "choices that the user sees, with a reason each": ("presets.PRESETS",),
 }

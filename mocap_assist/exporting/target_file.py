@@ -13,7 +13,7 @@ from ..blender.path_properties import absolute
 from ..scene import history
 from ..scene.origin import origin_of
 from .button_settings import ExportChoices
-from .export_formats import FileFormat
+from .file_formats import FileFormat
 
 ENDINGS = {each.ending: each for each in FileFormat}
 

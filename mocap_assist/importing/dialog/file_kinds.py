@@ -3,9 +3,9 @@
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
-from ...solvers.faults import Failure, attempt
-from ...solvers.recordings import detect_format, is_scene_file
-from .depth_folders import is_take
+from ....solvers.faults import Failure, attempt
+from ....solvers.recordings import detect_format, is_scene_file
+from ..depth_folders import is_take
 
 DEPTH, SKELETON, JOINTS, MARKERS, SMPL = "depth", "skeleton", "joints", "markers", "smpl"
 SCENE = "scene"

@@ -7,20 +7,20 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ...solvers.arrays import Array
-from ...solvers.depth_tracking.body import JOINTS, SEGMENTS, body_skeleton
-from ...solvers.errors import InvalidMotionError
-from ...solvers.motion import Motion
-from ..actions.bone_channels import animated_curves, read_bone, rotation_curves
-from ..actions.curves import Channel
-from ..actions.frames import MAX_GRID_OFFSET_STEPS, Grid
-from ..actions.take import ArmatureTake, BoneChannels, TakePart, part_of
-from ..blender.block_references import BlockReference, SourceReference
-from ..blender.compat import Source
-from ..blender.time_slices import Sliced, Steps, should_yield
-from ..scene.rig import Placement, Rig, placement_of, read_rig
-from .tracked_body import TrackedBody, armature_from_motion, bones_of
-from .tracked_checks import check_keyed, check_posed
+from ....solvers.arrays import Array
+from ....solvers.depth_tracking.body import JOINTS, SEGMENTS, body_skeleton
+from ....solvers.errors import InvalidMotionError
+from ....solvers.motion import Motion
+from ...actions.bone_channels import animated_curves, read_bone, rotation_curves
+from ...actions.curves import Channel
+from ...actions.frames import MAX_GRID_OFFSET_STEPS, Grid
+from ...actions.take import ArmatureTake, BoneChannels, TakePart, part_of
+from ...blender.block_references import BlockReference, SourceReference
+from ...blender.compat import Source
+from ...blender.time_slices import Sliced, Steps, should_yield
+from ...scene.rig import Placement, Rig, placement_of, read_rig
+from .body import TrackedBody, armature_from_motion, bones_of
+from .checks import check_keyed, check_posed
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 

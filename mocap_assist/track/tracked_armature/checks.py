@@ -5,21 +5,15 @@ from collections.abc import Mapping
 import bpy
 import numpy as np
 
-from ...solvers.depth_tracking.body import SEGMENTS, motion_frames, scene_from_camera
-from ...solvers.errors import InvalidMotionError
-from ...solvers.motion import Motion
-from ..actions.bone_channels import Curves, location_curves, rotation_curves
-from ..actions.curves import Channel
-from ..actions.rotation_modes import rotation_property
-from ..blender.compat import Source
-from ..scene.history import playing_strips, source_of
-from .tracked_body import (
-    REST_TOLERANCE_M,
-    TrackedBody,
-    armature_from_motion,
-    bones_of,
-    posed_frames,
-)
+from ....solvers.depth_tracking.body import SEGMENTS, motion_frames, scene_from_camera
+from ....solvers.errors import InvalidMotionError
+from ....solvers.motion import Motion
+from ...actions.bone_channels import Curves, location_curves, rotation_curves
+from ...actions.curves import Channel
+from ...actions.rotation_modes import rotation_property
+from ...blender.compat import Source
+from ...scene.history import playing_strips, source_of
+from .body import REST_TOLERANCE_M, TrackedBody, armature_from_motion, bones_of, posed_frames
 
 MAX_STRIP_OFFSET = 0.05
 """Frames by which a strip may shift an action. It guards strips that move the action off the

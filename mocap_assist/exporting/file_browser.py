@@ -11,8 +11,8 @@ from ...solvers.errors import InvalidMotionError
 from ..blender.path_properties import HIDDEN, absolute, path_property
 from ..runtime.selection import played_source, selected_armature
 from ..runtime.solver_operator import SolverOperator, in_background
-from .export_formats import FileFormat
-from .export_target import ENDINGS, with_ending
+from .file_formats import FileFormat
+from .target_file import ENDINGS, with_ending
 
 FORBIDDEN = re.compile(r'[\\/:*?"<>|\x00-\x1f]')
 """Characters that file names cannot have on some system."""

@@ -10,9 +10,9 @@ from ...solvers.errors import InvalidFileError, MocapAssistError
 from ..jobs.job import Job
 from .button_settings import ImportChoices
 from .depth_folders import readable
-from .import_transaction import ImportTransaction
 from .recording_objects import conversion_from_choices
 from .solve_reading import Read, read_files
+from .transaction import ImportTransaction
 
 Reading = Generator[tuple[float, str], None, list[Read]]
 

@@ -6,17 +6,17 @@ from pathlib import Path
 
 import bpy
 
-from ...solvers.errors import InvalidFileError, MocapAssistError, OutOfMemoryError
-from ...solvers.faults import Failure, attempt
-from ..jobs.batches import batches_by_size
-from ..jobs.job import Job, ProcessDied
-from ..runtime.watch import Watch
-from .button_settings import ImportChoices
-from .depth_folders import readable
-from .import_transaction import READING_FRACTION, ImportTransaction
-from .recent_files import State, reading_of, remember, state_of
-from .recording_objects import conversion_from_choices
-from .solve_reading import Read, read_files
+from ....solvers.errors import InvalidFileError, MocapAssistError, OutOfMemoryError
+from ....solvers.faults import Failure, attempt
+from ...jobs.batches import batches_by_size
+from ...jobs.job import Job, ProcessDied
+from ...runtime.watch import Watch
+from ..button_settings import ImportChoices
+from ..depth_folders import readable
+from ..recent_files import State, reading_of, remember, state_of
+from ..recording_objects import conversion_from_choices
+from ..solve_reading import Read, read_files
+from ..transaction import READING_FRACTION, ImportTransaction
 
 BYTES_AT_ONCE = 64_000_000
 """Bytes of files that are read before their content is added to the scene."""

@@ -3,11 +3,11 @@
 import bpy
 import numpy as np
 
-from ...solvers.arrays import Array
-from ..actions.curves import write_first, write_values
-from ..actions.reliability_curves import reliability_path, write_reliability
-from ..blender import compat
-from ..blender.compat import Source
+from ....solvers.arrays import Array
+from ...actions.curves import write_first, write_values
+from ...actions.reliability_curves import reliability_path, write_reliability
+from ...blender import compat
+from ...blender.compat import Source
 
 RESIDUAL = "mocap_residual"
 """Keyed custom property of the armature: distance of body and points in meters."""

@@ -7,14 +7,14 @@ from functools import lru_cache
 import bpy
 import numpy as np
 
-from ...solvers.arrays import Array
-from ...solvers.depth_scene import FloorPlane, ForegroundMethod, ForegroundSettings
-from ...solvers.depth_tracking.body import CAPSULES, LENGTHS, SEGMENTS, BodyModel, rest_frames
-from ...solvers.errors import InvalidMotionError, MocapAssistError
-from ...solvers.rotations import fit_similarity
-from ...solvers.settings import with_present_names
-from ..blender.stored_json import parse_stored, store_json
-from ..depth.depth_preview import Shown
+from ....solvers.arrays import Array
+from ....solvers.depth_scene import FloorPlane, ForegroundMethod, ForegroundSettings
+from ....solvers.depth_tracking.body import CAPSULES, LENGTHS, SEGMENTS, BodyModel, rest_frames
+from ....solvers.errors import InvalidMotionError, MocapAssistError
+from ....solvers.rotations import fit_similarity
+from ....solvers.settings import with_present_names
+from ...blender.stored_json import parse_stored, store_json
+from ...depth.depth_preview import Shown
 
 KEY = "mocap_assist_tracked"
 """Custom property of an armature's data: body and recording, as JSON."""

@@ -5,21 +5,21 @@ from typing import Any
 import bpy
 from bpy.props import CollectionProperty, EnumProperty, StringProperty
 
-from ...solvers.errors import MocapAssistError
-from ..blender.last_press import note_press, noted_errors
-from ..blender.mixins import SettingsMixin
-from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
-from ..languages import translated
-from ..panel_parts.panel_layout import draw_lines
-from ..runtime.navigation import is_in_status_bar
-from ..runtime.solver_operator import in_background
-from ..runtime.watch import why_busy
+from ....solvers.errors import MocapAssistError
+from ...blender.last_press import note_press, noted_errors
+from ...blender.mixins import SettingsMixin
+from ...blender.path_properties import FILE, FOLDER, HIDDEN, path_property
+from ...languages import translated
+from ...panel_parts.panel_layout import draw_lines
+from ...runtime.navigation import is_in_status_bar
+from ...runtime.solver_operator import in_background
+from ...runtime.watch import why_busy
+from ..importing import chosen_paths, import_files, shown_paths
+from ..show_actor import show_actor
+from ..transaction import Imported
 from .body_choice import bodies_to_choose, body_items, number_of, text_of
 from .file_kinds import DEPTH, FOR_KINDS, MOVING, fitting, kinds_of
-from .import_job import ImportJob
-from .import_transaction import Imported
-from .importing import chosen_paths, import_files, shown_paths
-from .show_actor import show_actor
+from .job import ImportJob
 
 DIALOG_WIDTH_PX = 400  # pixels at scale 1
 NOTE_WIDTH_PX = 300  # of Adjust Last Operation; Blender chooses its width

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from ...solvers.recordings import ALL_BODIES, Body
-from .recent_files import bodies_of
+from ....solvers.recordings import ALL_BODIES, Body
+from ..recent_files import bodies_of
 
 Item = tuple[str, str, str, str, int]
 BEST = "Most Frames", "Import the person who is in most frames"
