@@ -48,7 +48,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "recordings/point_bodies/landmark_recording.PERCENT",
         "recordings/point_bodies/time_units.SECONDS",
         "recordings/reading_settings.METRES",
-        "recordings/skeleton_files/bvh_channels.IMPERIAL",
+        "recordings/skeleton_files/bvh/channels.IMPERIAL",
         "recordings/streams/protocols/rokoko.HALF",
         "rotations/representations.FULL_TURN_RAD",
         "workflows/standard_joints.UNITS",
@@ -57,7 +57,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "motion/skeletons/*_POSE",
         "motion/skeletons/mediapipe._THUMB",
         "reconstruction/joint_rotations/other_joints.TRUNK",
-        "recordings/skeleton_files/smpl_body.*",
+        "recordings/skeleton_files/smpl_bodies/joints.*",
     ),
     "priors of a marker set, whose numbers have names": ("markers/body_tables.SIDE*",),
     "fraction of a bar of progress": (

@@ -8,7 +8,7 @@ bones here are those of an adult of 1.75 m by Drillis and Contini (1966), scaled
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion.humanoid import ADULT_STATURE_M
+from ....motion.humanoid import ADULT_STATURE_M
 
 FINGERS = ("index", "middle", "pinky", "ring", "thumb")
 

@@ -6,7 +6,7 @@ import pytest
 from solvers.motion import Motion, Skeleton, find_humanoid_map, world_poses
 from solvers.recordings import read_bvh
 from solvers.recordings.conventions.axes import rotation_to_z_up
-from solvers.recordings.skeleton_files.bvh_writing import write_bvh
+from solvers.recordings.skeleton_files.bvh.writing import write_bvh
 from solvers.rotations import inverse, multiply, rotate
 
 AXES = ("X", "Y", "Z", "-X", "-Y", "-Z")

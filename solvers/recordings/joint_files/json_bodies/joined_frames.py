@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...errors import InvalidFileError
-from ..containers import JsonMember
-from ..point_bodies import time_name
-from .body_json import BodiesFrame, BodyJoints
-from .json_people import NUMBER_KEYS, PART, PEOPLE_KEYS, POINT_KEYS, has_word
+from ....errors import InvalidFileError
+from ...containers import JsonMember
+from ...point_bodies import time_name
+from .bodies import BodiesFrame, BodyJoints
+from .people import NUMBER_KEYS, PART, PEOPLE_KEYS, POINT_KEYS, has_word
 
 MAX_MISSING_FRAMES = 100_000
 """Missing numbers, frames, that a file may have. It bounds the memory of damaged files."""

@@ -4,8 +4,8 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from ...arrays import Array, Flags
-from ...rotations import quaternion_from_matrix, rotation_vector_from_quaternion
+from ....arrays import Array, Flags
+from ....rotations import quaternion_from_matrix, rotation_vector_from_quaternion
 
 MAX_DEVIATION = 1e-2
 """Difference from 1 and 0 of the products of a matrix's rows, a ratio. It guards arrays of

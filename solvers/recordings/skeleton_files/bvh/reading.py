@@ -7,17 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import InvalidFileError
-from ...motion import Motion
-from ...progress import Progress, Remark, unwatched, within
-from ..containers import (
-    LineReader,
-    UniqueNames,
-    check_n_joints,
-    check_n_poses,
-    stream_rows,
-)
-from ..conventions import (
+from ....errors import InvalidFileError
+from ....motion import Motion
+from ....progress import Progress, Remark, unwatched, within
+from ...containers import LineReader, UniqueNames, check_n_joints, check_n_poses, stream_rows
+from ...conventions import (
     MIN_BODY_JOINTS,
     Bodies,
     UpAxisName,
@@ -28,8 +22,8 @@ from ..conventions import (
     rotate_to_z_up,
     stand_upright,
 )
-from .bvh_channels import BvhChannels, motion_from_poses
-from .bvh_hierarchy import read_hierarchies
+from .channels import BvhChannels, motion_from_poses
+from .hierarchy import read_hierarchies
 
 COMMON_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 23.976, 29.97, 59.94, 119.88)
 DEFAULT_RATE_HZ = 30.0

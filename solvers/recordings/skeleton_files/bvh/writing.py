@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import InvalidMotionError, InvalidSettingError
-from ...files import write_atomically
-from ...motion import Motion, Skeleton
-from ...progress import Progress, unwatched
-from ...rotations import euler_from_quaternion, unwrap_euler
-from ..conventions import CENTIMETER, rotations_y_up_from_z_up, y_up_from_z_up
+from ....errors import InvalidMotionError, InvalidSettingError
+from ....files import write_atomically
+from ....motion import Motion, Skeleton
+from ....progress import Progress, unwatched
+from ....rotations import euler_from_quaternion, unwrap_euler
+from ...conventions import CENTIMETER, rotations_y_up_from_z_up, y_up_from_z_up
 
 ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 FRAMES_AT_ONCE = 500

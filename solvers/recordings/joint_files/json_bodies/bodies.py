@@ -6,19 +6,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import InvalidFileError
-from ...motion import JointRecording
-from ...progress import Progress
-from ..containers import array_from_json, json_members
-from ..conventions import (
+from ....arrays import Array
+from ....errors import InvalidFileError
+from ....motion import JointRecording
+from ....progress import Progress
+from ...containers import array_from_json, json_members
+from ...conventions import (
     DEFAULT_FRAME_RATE,
     Bodies,
     bodies_of_frames,
     no_body_error,
     recorded_seconds,
 )
-from ..point_bodies import as_fractions
+from ...point_bodies import as_fractions
 
 
 class BodyJoints(NamedTuple):

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solvers.motion import Motion
 from solvers.recordings import list_bodies, read_bvh, read_recording
-from solvers.recordings.skeleton_files.bvh_writing import write_bvh
+from solvers.recordings.skeleton_files.bvh.writing import write_bvh
 from solvers.rotations import multiply, rotate
 
 SWORD = """ROOT sword

@@ -1,4 +1,4 @@
-"""Where Blender's own importer puts the joints of a BVH file: run by test_bvh_in_blender.py.
+"""Where Blender's own importer puts the joints of a BVH file: run by test_in_blender.py.
 
 `python import_in_blender.py TAKE.bvh OUT.npz STEP`: every STEP-th frame, Blender's units.
 """

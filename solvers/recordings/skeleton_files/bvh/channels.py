@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion import Motion, Skeleton
-from ...progress import Progress, Remark
-from ...rotations import inverse, multiply, quaternion_from_euler, rotate, rotation_between
-from ..conventions import (
+from ....motion import Motion, Skeleton
+from ....progress import Progress, Remark
+from ....rotations import inverse, multiply, quaternion_from_euler, rotate, rotation_between
+from ...conventions import (
     ACCLAIM_UNIT,
     ADULT_REACH_M,
     CENTIMETER,
@@ -24,7 +24,7 @@ from ..conventions import (
     rotations_z_up_from_y_up,
     z_up_from_y_up,
 )
-from .bvh_hierarchy import BvhJoint
+from .hierarchy import BvhJoint
 
 FRAMES_AT_ONCE = 2000
 MIN_REACH_M = 0.5

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import InvalidFileError
-from ...motion import JointRecording
-from ...progress import Progress, Remark, unwatched
-from ..containers import (
+from ....arrays import Array
+from ....errors import InvalidFileError
+from ....motion import JointRecording
+from ....progress import Progress, Remark, unwatched
+from ...containers import (
     JsonMember,
     describe_frame_files,
     frame_files,
@@ -19,20 +19,14 @@ from ..containers import (
     json_frame_files,
     json_members,
 )
-from ..conventions import DEFAULT_FRAME_RATE, Bodies, check_scale
-from ..point_bodies import (
-    body_of_named_points,
-    body_of_points,
-    landmark_columns,
-    read_body,
+from ...conventions import Bodies, check_scale
+from ...point_bodies import (
     read_time,
-    recording_from_landmarks,
-    refuse_pictures,
     second_of_times,
-    stand_body,
     time_name,
 )
-from .body_json import BodiesFrame, BodyJoints, open_frames, stacked
+from .bodies import BodiesFrame, BodyJoints, open_frames
+from .body_recording import in_columns, recording_of_body
 from .joined_frames import (
     MAX_PEOPLE,
     NumberedFrame,
@@ -40,23 +34,11 @@ from .joined_frames import (
     joined_frames,
     without_header,
 )
-from .json_people import (
-    NUMBER_KEYS,
-    RATE_KEYS,
-    is_number,
-    people_of_frame,
-    stamps_of_frame,
-)
 from .keyed_frames import json_by_frame
+from .people import NUMBER_KEYS, RATE_KEYS, is_number, people_of_frame, stamps_of_frame
 
 LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
 """Members with the names of joints, where these stand apart."""
-MAX_SPREAD = 20
-"""Columns of named joints in all frames for each point in them, a ratio. It bounds the memory
-of files whose names differ between frames."""
-MAX_FEW_COLUMNS = 1 << 22
-"""Columns of named joints in all frames that any file may have. It bounds the memory:
-130 MB."""
 _Row = tuple[str, dict[str, tuple[float, float | None]], NumberedFrame]
 """Key of a member, the times that it states by their keys, and its frame."""
 
@@ -129,8 +111,8 @@ def open_frames_json(
         second = second_of_times(np.array([frame.time for frame in frames]), progress)
 
     def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
-        names, placed = _in_columns(path, body, frames)
-        return _recording(
+        names, placed = in_columns(path, body, frames)
+        return recording_of_body(
             path, names or listed_names, body, placed, times, rate, scale, progress
         )
 
@@ -216,83 +198,3 @@ def _number_of(frame: Mapping[str, Any]) -> float:
     """Return the number that a frame states; NaN if there is none."""
     values = (frame[key] for key in NUMBER_KEYS if is_number(frame.get(key)))
     return float(next(values, np.nan))
-
-
-def _in_columns(
-    path: Path | str, body: str, frames: list[BodiesFrame]
-) -> tuple[tuple[str, ...], list[BodiesFrame]]:
-    """Return the frames of one body with each named joint in its own column, and the names.
-
-    Raises InvalidFileError if the names differ so much that this would need much memory.
-    """
-    own = [frame.bodies.get(body) for frame in frames]
-    columns = {
-        name: column
-        for column, name in enumerate(dict.fromkeys(
-            name for joints in own if joints is not None for name in joints.names
-        ))
-    }  # fmt: skip
-    n_points = sum(len(joints.positions) for joints in own if joints is not None)
-    if len(columns) * len(own) > max(MAX_FEW_COLUMNS, MAX_SPREAD * n_points):
-        raise InvalidFileError(
-            f"{path} has joints with other names in each frame. Export it again."
-        )
-    placed = []
-    for frame, joints in zip(frames, own, strict=True):
-        if joints is not None and joints.names:
-            at = [columns[name] for name in joints.names]
-            positions = np.full((len(columns), 3), np.nan)
-            confidence = np.full(len(columns), np.nan)
-            positions[at], confidence[at] = joints.positions, joints.confidence
-            joints = BodyJoints(positions, confidence)
-        placed.append(frame._replace(bodies={} if joints is None else {body: joints}))
-    return tuple(columns), placed
-
-
-def _recording(
-    path: Path | str,
-    names: tuple[str, ...],
-    body: str,
-    frames: list[BodiesFrame],
-    times: Array | None,
-    rate: float | None,
-    scale: float | None,
-    progress: Progress,
-) -> JointRecording:
-    try:
-        points, confidence = stacked(body, frames)
-    except ValueError:
-        raise InvalidFileError(
-            f"{path}: the number of joints of body {body} changes. Export it again."
-        ) from None
-    is_named = len(names) == points.shape[1]
-    if is_named and (landmarks := landmark_columns(names)) is not None:
-        visibility = np.full(points.shape[:2], np.nan) if confidence is None else confidence
-        marks = np.dstack([points, visibility])[:, landmarks]
-        return recording_from_landmarks(path, marks, times, rate, scale, progress)
-    found = body_of_named_points(names, points) if is_named else None
-    if found is None:
-        unnamed = body_of_points(path, points)
-        if unnamed is not None:
-            return read_body(path, unnamed, scale, progress, times, rate)
-        if is_named:
-            raise InvalidFileError(
-                f"{path} has joints called {', '.join(names[:3])} ..., which are no body. Store"
-                " them as a joint CSV."
-            )
-        raise InvalidFileError(
-            f"{path} has {points.shape[1]} points without names, which form no body in a"
-            " known order. Store the joints as a joint CSV, which has names."
-        )
-    refuse_pictures(path, found.positions)
-    if times is None and rate is None:
-        progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
-    return stand_body(
-        path,
-        found.names,
-        found.positions,
-        times=times,
-        rate=rate or DEFAULT_FRAME_RATE,
-        scale=scale,
-        progress=progress,
-    )

@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...motion.skeletons import BODY_POINTS
-from ..containers import NUMBER
-from ..point_bodies import N_POINTS, has_layout, without_undetected
+from ....arrays import Array
+from ....motion.skeletons import BODY_POINTS
+from ...containers import NUMBER
+from ...point_bodies import N_POINTS, has_layout, without_undetected
 
 
 def either_case(*keys: str) -> tuple[str, ...]:

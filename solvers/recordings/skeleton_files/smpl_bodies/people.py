@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from ...arrays import Array
+from ....arrays import Array
 
 MAX_PEOPLE = 1000
 

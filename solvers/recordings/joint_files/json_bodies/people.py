@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..point_bodies import is_quantity, read_time, time_name
-from .body_json import name_of_body
-from .json_points import (
+from ...point_bodies import is_quantity, read_time, time_name
+from .bodies import name_of_body
+from .points import (
     LANDMARK_KEYS,
     MIN_JOINTS,
     Points,

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
-from ...errors import InvalidFileError
-from ..containers import MAX_NAME_LENGTH, UniqueNames, decode_text, printable, shown
+from ....errors import InvalidFileError
+from ...containers import MAX_NAME_LENGTH, UniqueNames, decode_text, printable, shown
 
 CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
 
