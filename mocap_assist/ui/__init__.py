@@ -4,9 +4,10 @@ from .. import languages
 from ..check import issue_views, key_map, renewing
 from ..clean import example_list
 from ..exporting import menu as export_menu
-from ..find_similar import match_grid, source_list
+from ..find_similar import match_grid
 from ..find_similar import panel as library_panel
 from ..importing import menu as import_menu
+from ..library import source_list
 from ..overlays import color_icons, confidence_switch
 from ..overlays.comparison import raw_curves_switch
 from ..overlays.comparison import switches as overlay_switch

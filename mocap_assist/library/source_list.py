@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..blender.name_lists import split_names
+from ..blender.name_lists import CHANGES_A_LIST, split_names
 from ..blender.path_properties import (
     HIDDEN,
     ChoosesFiles,
@@ -13,9 +13,8 @@ from ..blender.path_properties import (
     absolute,
     chosen_files,
 )
-from ..clean.example_list import CHANGES_A_LIST
-from ..library.auto_update_list import change_sources
-from ..library.sources import asset_folders
+from .auto_update_list import change_sources
+from .sources import asset_folders
 
 ADD_FOLDER, ADD_FILES = "mocap_assist.add_source_folder", "mocap_assist.add_source_files"
 REMOVE_OPERATOR = "mocap_assist.remove_source"
