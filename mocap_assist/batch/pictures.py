@@ -8,7 +8,7 @@ from ...solvers.errors import MocapAssistError
 from ...solvers.motion import Motion, Tracks
 from ...solvers.pictures import StickFigureSettings, draw_stick_figures
 from ..actions.armature_read import read_take
-from ..actions.marker_take import read_markers
+from ..actions.markers.take import read_markers
 from ..runtime.selection import played_source
 from ..scene import history
 

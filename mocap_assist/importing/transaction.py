@@ -14,7 +14,7 @@ from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import recording_figures
 from ...solvers.recordings.conventions import conventions_of
-from ..actions.markers import markers_of
+from ..actions.markers.holders import markers_of
 from ..scene.origin import note_origin, origin_of_file
 from ..scene.other_animation import is_animated
 from ..scene.scene_objects import Numbers, choose, in_object_mode, remove, undo_on_error

@@ -9,7 +9,7 @@ import numpy as np
 from bpy.app import handlers
 from mathutils import Matrix
 
-from ...actions.markers import holder_of
+from ...actions.markers.holders import holder_of
 from ...blender.redrawing import redraw
 from ..strip import drawing as strip
 from ..view_drawing import Color, ViewDrawing, draw_in_front, draw_lines, visible_active

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ....solvers.arrays import Array
 from ...actions.bone_channels import animated_curves, curves_of, gaps_of, sampled
-from ...actions.markers import PATH, markers_of, source_of
+from ...actions.markers.holders import PATH, markers_of, source_of
 from ...blender.compat import Source
 from ...scene import history
 from ...scene.units import unit_of

@@ -66,7 +66,7 @@ BOUNDS: dict[str, tuple[str, ...]] = {
 """Patterns of keys, by reason."""
 DRAWN: tuple[str, ...] = (
     "markers/stick_sets.MIN_LABELS",
-    "mocap_assist/actions/empties_build.*",
+    "mocap_assist/actions/markers/empties.*",
     "mocap_assist/overlays/body_drawing.EDGE_BRIGHTNESS",
     "mocap_assist/overlays/confidence_switch.WIDTH_FACTOR",
     "mocap_assist/overlays/live_figure.*",

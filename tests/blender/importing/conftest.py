@@ -27,7 +27,7 @@ def bring(blank):
 @pytest.fixture
 def markers_of(load):
     """The markers below an object."""
-    return load("mocap_assist.actions.markers").markers_of
+    return load("mocap_assist.actions.markers.holders").markers_of
 
 
 @pytest.fixture

@@ -2,11 +2,11 @@
 
 import bpy
 
-from ...solvers.errors import InvalidMotionError
-from ..blender import compat
-from ..blender.compat import Source
-from ..scene import history
-from .empties_build import POINT
+from ....solvers.errors import InvalidMotionError
+from ...blender import compat
+from ...blender.compat import Source
+from ...scene import history
+from .empties import POINT
 
 PATH = "location"
 STICKS = "mocap_assist_sticks"

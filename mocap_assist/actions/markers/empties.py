@@ -2,13 +2,13 @@
 
 import bpy
 
-from ...solvers.arrays import Array
-from ...solvers.motion import Tracks
-from ...solvers.progress import Progress, unwatched
-from ..blender import compat
-from ..blender.data_names import fitting_name
-from ..scene.scene_objects import add_object, add_unselected, in_object_mode
-from .new_action import write_channels
+from ....solvers.arrays import Array
+from ....solvers.motion import Tracks
+from ....solvers.progress import Progress, unwatched
+from ...blender import compat
+from ...blender.data_names import fitting_name
+from ...scene.scene_objects import add_object, add_unselected, in_object_mode
+from ..new_action import write_channels
 
 POINT = "mocap_assist_point"
 """Custom property of an empty: the name of its point, which Blender may have to change."""

@@ -9,21 +9,21 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solvers.arrays import Array
-from ...solvers.errors import InvalidMotionError
-from ...solvers.motion import Motion, Tracks
-from ..blender.block_references import BlockReference, SourceReference, removed_on_failure
-from ..blender.compat import Source
-from ..blender.time_slices import Sliced, Steps, should_yield
-from ..scene import history
-from ..scene.rig import Placement, check_finite, placement_of
-from ..scene.units import unit_of
-from .armature_write import copy_of, same_slot
-from .bone_channels import Curves, animated_curves, curves_of, gaps_of, sampled
-from .curves import write_values
-from .frames import FrameRange, Grid, key_grid, range_bounds
-from .markers import PATH, markers_of, point_names, source_of
-from .sensor_notes import CONFIDENCE
+from ....solvers.arrays import Array
+from ....solvers.errors import InvalidMotionError
+from ....solvers.motion import Motion, Tracks
+from ...blender.block_references import BlockReference, SourceReference, removed_on_failure
+from ...blender.compat import Source
+from ...blender.time_slices import Sliced, Steps, should_yield
+from ...scene import history
+from ...scene.rig import Placement, check_finite, placement_of
+from ...scene.units import unit_of
+from ..armature_write import copy_of, same_slot
+from ..bone_channels import Curves, animated_curves, curves_of, gaps_of, sampled
+from ..curves import write_values
+from ..frames import FrameRange, Grid, key_grid, range_bounds
+from ..sensor_notes import CONFIDENCE
+from .holders import PATH, markers_of, point_names, source_of
 
 
 @dataclass(frozen=True, eq=False)
