@@ -16,8 +16,8 @@ from .measure import Quality, measure_quality
 LONG_GAP_S = 0.25
 """Seconds that an animator can still bridge by eye: severity 1, by definition."""
 CUT_SEVERITY = 10.0
-"""Severity of a cut, chosen by hand: joined recordings should be split before any other
-edit."""
+"""Severity of a cut, chosen by hand: joined recordings should be split before any other edit.
+It decides the order of a list only."""
 SEVERE_EXCESS = np.radians(10.0)
 """Radians beyond a joint limit with severity 1, by definition; a fifth of it is not
 reported."""

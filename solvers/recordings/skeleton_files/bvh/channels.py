@@ -29,7 +29,7 @@ from .hierarchy import BvhJoint
 FRAMES_AT_ONCE = 2000
 MIN_REACH_M = 0.5
 """Meters from hand to foot of a small child. Chosen by hand: a file of 0.5 to 1.1 m in
-centimeters may as well be in another unit."""
+centimeters may as well be in another unit. It decides a sentence of the report only."""
 
 
 IMPERIAL = (0.0254, ACCLAIM_UNIT)

@@ -30,10 +30,12 @@ DEFAULT_RATE_HZ = 30.0
 MIN_TYPICAL_RATE_HZ, MAX_POSES = 10.0, 20
 """Frames per second below which the rate of a file is unusual, and the most frames of a list of
 poses, which has any rate. Chosen by hand: no capture software records less; programs that write
-a frame time of 1 s, as examples of research do, were seen."""
+a frame time of 1 s, as examples of research do, were seen. They decide a sentence of the report
+only."""
 MIN_FRAMES_FRACTION = 0.9
 """Rows relative to the number in the header below which the file may be cut short. Chosen by
-hand: some programs count one frame more than they write."""
+hand: some programs count one frame more than they write. It decides a sentence of the report
+only."""
 MAX_BLANK_LINES = 4096
 MAX_HIERARCHY_BYTES = 1 << 24
 """Maximum length of the hierarchy, bytes."""
