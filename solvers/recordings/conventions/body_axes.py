@@ -61,7 +61,8 @@ CLEAR_FLOOR_LEAD = 0.3
 those takes, and 0.09 in `bvh_test3.bvh`, which is near zero on both axes."""
 MIN_LYING_FLOOR = 0.8
 """Evidence of the floor along another axis, a ratio, from which the body may lie there rather
-than stand. Chosen by hand: joints of who lies are up to 8 % of the stature above the floor."""
+than stand. Chosen by hand: joints of an actor who lies are up to 8 % of the stature above the
+floor."""
 MIN_REST_STANDING = 0.7
 """Evidence, a ratio, from which the rest pose has an axis of its own. Chosen by hand: x2 fails
 `test_any_axis_may_be_up`."""

@@ -51,7 +51,7 @@ PART = re.compile(r"(left|right|l|r)?(hands?|fingers?|faces?|mano)|lh|rh")
 GEOMETRY = rb"[^\[]*\"(?:MultiLineString|(?:Multi)?Polygon)\""
 """Type of a geometry in GeoJSON, whose coordinates are nested like joints."""
 LIST = rb"\[\s*(?:(?:(?>\[[\s\[\],]*\])|null)\s*,\s*)*"
-"""The begin of a list of frames, of which the first ones may have no people. The group is
+"""The beginning of a list of frames; the first ones may have no people. The group is
 atomic since empty lists can be split in very many ways."""
 ROW = rb"\[(?:\s*-?\d[^,\[\]]*,){23}"
 """Numbers of a body in a row; matrices of something else are shorter."""
