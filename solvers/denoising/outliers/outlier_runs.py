@@ -14,7 +14,7 @@ from scipy.ndimage import median_filter
 
 from ...arrays import Array
 from ...signals import fill_channel_gaps, find_runs
-from ..motion_model import MotionMixture, estimate_channel_noise
+from ..motion_model import MotionMixture, estimate_channel_noise, principal_axes
 from ..window_priors import Windows
 from .predictive_density import PredictiveDensity, RunDensity, with_rare_movement
 from .single_outliers import OUTLIER_DENSITY
@@ -193,8 +193,9 @@ def _select(
         is_valid = is_observed & ~suspected[:, joint]
         samples = np.where(is_observed, noisy[:, joint], complete[:, joint])
         centered = samples - complete[:, joint].mean(axis=0)
+        axes = principal_axes(complete[:, None, joint])[0]
         predictive, predictive_of_runs = (
-            PredictiveDensity(centered, noise[joint], windows, each)
+            PredictiveDensity(centered, noise[joint], windows, each, axes)
             for each in (mixture, with_rare_movement(mixture))
         )
         for run in candidates(joint):

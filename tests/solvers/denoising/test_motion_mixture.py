@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.fft import idct
+from scipy.linalg import block_diag
+from scipy.spatial.transform import Rotation
 from scipy.stats import multivariate_normal
 
 from solvers.denoising.motion_model import (
@@ -20,23 +22,32 @@ from solvers.errors import InvalidFileError, InvalidMotionError
 WINDOW = 8
 
 
+AXES = Rotation.from_rotvec([0.5, -0.8, 0.3]).as_matrix()
+"""Principal axes of a joint, as columns."""
+
+
 @pytest.fixture
 def mixture(rng):
-    """Two components, slow and fast, with correlated channels."""
-    decay = np.tile(10.0 / (1.0 + np.arange(WINDOW)) ** 2, 3)
-    mixing = rng.normal(size=(24, 24)) / 5.0 + np.eye(24)
-    covariance = mixing @ np.diag(decay**2) @ mixing.T
-    return MotionMixture(np.array([0.7, 0.3]), np.stack([0.05 * covariance, covariance]), 30.0)
+    """Two components, slow and fast, with correlated coefficients."""
+    decay = 10.0 / (1.0 + np.arange(WINDOW)) ** 2
+    mixing = rng.normal(size=(3, WINDOW, WINDOW)) / 5.0 + np.eye(WINDOW)
+    covariances = mixing @ np.diag(decay**2) @ mixing.transpose(0, 2, 1)
+    covariances *= np.array([4.0, 1.0, 0.25])[:, None, None]
+    return MotionMixture(
+        np.array([0.7, 0.3]), np.stack([0.05 * covariances, covariances]), 30.0
+    )
 
 
 def basis() -> np.ndarray:
     return idct(np.eye(WINDOW), axis=0, norm="ortho")
 
 
-def frame_covariance(mixture: MotionMixture, component: int, noise: float) -> np.ndarray:
+def frame_covariance(
+    mixture: MotionMixture, component: int, noise: float, axes: np.ndarray
+) -> np.ndarray:
     """Covariance of the samples of a window, channels outermost."""
-    to_frames = np.kron(np.eye(3), basis())
-    covariance = to_frames @ mixture.covariances[component] @ to_frames.T
+    to_frames = np.kron(axes, basis())
+    covariance = to_frames @ block_diag(*mixture.covariances[component]) @ to_frames.T
     return covariance + noise**2 * np.eye(len(covariance))
 
 
@@ -46,7 +57,7 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
     run, tested = slice(3, 5), np.array([True, False, True])
     valid[run] |= tested
     predictive = PredictiveDensity(
-        samples, np.full(3, noise), Windows(WINDOW, WINDOW, 1.0), mixture
+        samples, np.full(3, noise), Windows(WINDOW, WINDOW, 1.0), mixture, AXES
     )
 
     density = predictive.of_run(run, tested, valid)
@@ -63,7 +74,7 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
         chosen = known.T.ravel()
         total = []
         for component in range(len(mixture.weights)):
-            covariance = frame_covariance(mixture, component, noise) + extra
+            covariance = frame_covariance(mixture, component, noise, AXES) + extra
             total.append(
                 multivariate_normal.pdf(
                     samples.T.ravel()[chosen], cov=covariance[np.ix_(chosen, chosen)]
@@ -86,13 +97,14 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
 def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng):
     samples, noise = 5.0 * rng.normal(size=(WINDOW, 3)), 0.7
     samples -= samples.mean(axis=0)
+    _, axes = np.linalg.eigh(samples.T @ samples)
 
     smoothed = MixtureSmoother(np.full(3, noise), 30.0, mixture)(samples)
 
     assert smoothed is not None
     flat, densities, means, leverages = samples.T.ravel(), [], [], []
     for component, weight in enumerate(mixture.weights):
-        covariance = frame_covariance(mixture, component, noise)
+        covariance = frame_covariance(mixture, component, noise, axes[:, ::-1])
         densities.append(weight * multivariate_normal.pdf(flat, cov=covariance))
         means.append(flat - noise**2 * np.linalg.solve(covariance, flat))
         leverages.append(1.0 - noise**2 * np.diag(np.linalg.inv(covariance)))
@@ -100,6 +112,19 @@ def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng):
     assert_allclose(smoothed.values, expected, atol=1e-8)
     leverage = np.average(leverages, axis=0, weights=densities).reshape(3, WINDOW).T
     assert_allclose(smoothed.variance, noise**2 * leverage, rtol=1e-8)
+
+
+def test_axes_of_a_rigs_joints_change_nothing(mixture, rng):
+    """Neither does it matter what the other joints do."""
+    samples, other = np.cumsum(rng.normal(size=(2, 4 * WINDOW, 3)), axis=1)
+    smooth = MixtureSmoother(np.full(3, 0.7), 30.0, mixture)
+    smooth_two = MixtureSmoother(np.full(6, 0.7), 30.0, mixture)
+
+    smoothed, both = smooth(samples), smooth_two(np.hstack([other, samples @ AXES]))
+
+    assert smoothed is not None
+    assert both is not None
+    assert_allclose(both.values[:, 3:], smoothed.values @ AXES, atol=1e-9)
 
 
 @pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 120.0])

@@ -120,7 +120,7 @@ def test_kick_of_a_joint_that_is_often_wrong_is_cleared(rng):
 
 
 def test_second_error_of_a_take_need_not_be_as_likely_as_the_first(rng):
-    fast_kick = out_of_stillness(1.33 * KICK, rng)
+    fast_kick = out_of_stillness(3.0 * KICK, rng)
     samples = np.hstack([fast_kick, 0.1 * rng.normal(size=fast_kick.shape)])
     suspected = np.tile(abs(TIME)[:, None] < 0.1, 6)
     suspected[:, 3:] = False
@@ -141,7 +141,8 @@ def test_density_of_the_others_needs_no_factorization_of_its_own(tested, rng):
     )
     valid[8] = True
     windows = Windows(16, MIXTURE.window, 1.0)
-    predictive = PredictiveDensity(samples, np.array([2.0, 2.5, 3.0]), windows, MIXTURE)
+    noise, axes = np.array([2.0, 2.5, 3.0]), np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    predictive = PredictiveDensity(samples, noise, windows, MIXTURE, axes)
 
     density = predictive.of_run(slice(8, 9), np.array(tested), valid)
     others = density.valid & ~density.tested
