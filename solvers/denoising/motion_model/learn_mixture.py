@@ -34,11 +34,9 @@ used in training only, so that no sweep varies it."""
 PRIOR_WINDOWS = 5.0
 """Number of windows without movement that every component has in addition to its own. Guards
 components that few windows belong to."""
-
-
 MIN_RESPONSIBILITY = 1e-4
-"""Probability of a component below which a window does not count for it. It bounds the run
-time, which is a tenth of that with all windows."""
+"""Probability of a component below which a window does not count for its covariances. It bounds
+the run time, which is a tenth of that with all windows."""
 
 
 def extract_windows(motions: Sequence[Motion]) -> Array:
@@ -58,7 +56,8 @@ def extract_windows(motions: Sequence[Motion]) -> Array:
         values = encode(motion, None).values
         values = values[:, values.std(axis=0).max(axis=-1) > MIN_MOVEMENT]
         centered = values - values.mean(axis=0)
-        along_axes = np.einsum("tjc,jca->tja", centered, principal_axes(centered))
+        axes = principal_axes(centered, np.ones(centered.shape[1:]))
+        along_axes = np.einsum("tjc,jac->tja", centered, axes.from_channels)
         starts = np.arange(0, len(values) - WINDOW_FRAMES + 1, HOP_FRAMES)
         windows = np.stack([along_axes[start : start + WINDOW_FRAMES] for start in starts])
         coefficients = dct(windows, axis=1, norm="ortho").transpose(0, 2, 3, 1)
@@ -115,7 +114,7 @@ def _covariances(windows: Array, responsibility: Array) -> Array:
     counts = np.flatnonzero(responsibility > MIN_RESPONSIBILITY)
     own = windows[counts].transpose(1, 0, 2)
     products = (own * responsibility[counts, None]).transpose(0, 2, 1) @ own
-    covariances = products / (responsibility.sum() + PRIOR_WINDOWS)
+    covariances = products / (responsibility[counts].sum() + PRIOR_WINDOWS)
     return np.asarray(covariances + RECORDING_NOISE**2 * np.eye(windows.shape[-1]))
 
 

@@ -71,7 +71,7 @@ class MotionMixture:
 
     @property
     def window(self) -> int:
-        """Frames of a window, and coefficients of a channel."""
+        """Frames of a window, and coefficients of an axis."""
         return self.covariances.shape[-1]
 
     @lru_cache(maxsize=4)  # noqa: B019 - few mixtures live, and each as long as the program

@@ -1,5 +1,6 @@
 """Smooth every joint of a complete take by the mixture of windows."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -81,33 +82,52 @@ class MixtureSmoother:
         """
         if len(samples) < self._length:
             return None
+        average, shape = samples.mean(axis=0), (len(samples), -1, N_CHANNELS)
+        centered = (samples - average).reshape(shape)
+        axes = principal_axes(centered, self.noise.reshape(-1, N_CHANNELS))
+        along_axes = np.einsum("tjc,jac->tja", centered, axes.from_channels)
+        filters = [self._build_filters(variance / self._density) for variance in axes.variance]
+        smoothed, leverage = (
+            each.reshape(shape)
+            for each in self._average_windows(along_axes.reshape(samples.shape), filters)
+        )
+        values = np.einsum("tja,jca->tjc", smoothed, axes.to_channels).reshape(samples.shape)
+        values += average
+        products = axes.to_channels * axes.from_channels.transpose(0, 2, 1)
+        leverage = np.einsum("tja,jca->tjc", leverage, products).reshape(samples.shape)
+        leverage = np.minimum(leverage, MAX_LEVERAGE)
+        return Smoothed(values, (samples - values) / (1.0 - leverage), leverage * self.noise**2)
+
+    def _average_windows(
+        self, samples: Array, filters: Sequence[_JointFilters]
+    ) -> tuple[Array, Array]:
+        """Return the smoothed samples and their leverage, means over overlapping windows.
+
+        Parameters
+        ----------
+        samples : shape (n_frames, 3 n_joints)
+            Along the principal axes.
+        filters : sequence of _JointFilters, length n_joints
+        """
         windows = Windows(len(samples), self._length, self._density, N_OVERLAPS)
         total, leverage = np.zeros_like(samples), np.zeros_like(samples)
-        weight, average = np.zeros((len(samples), 1)), samples.mean(axis=0)
-        shape = (len(samples), -1, N_CHANNELS)
-        centered = (samples - average).reshape(shape)
-        axes = principal_axes(centered)
-        moved = np.einsum("tjc,jca->tja", centered, axes).reshape(samples.shape)
-        filters = self._build_filters(axes)
+        weight = np.zeros((len(samples), 1))
         windows.add(weight, np.ones((windows.length, 1)), windows.starts)
         for first in range(0, len(windows.starts), MAX_BLOCK_WINDOWS):
             starts = windows.starts[first : first + MAX_BLOCK_WINDOWS]
-            frames = windows.extract(moved, starts).transpose(0, 2, 1)
+            frames = windows.extract(samples, starts).transpose(0, 2, 1)
             coefficients = frames @ self._cosines / self._density
             leverages = np.empty_like(frames)
             for joint, own in enumerate(filters):
                 channels = slice(N_CHANNELS * joint, N_CHANNELS * (joint + 1))
-                smoothed, responsibility = self._smooth(coefficients[:, channels], own)
-                coefficients[:, channels] = smoothed
+                coefficients[:, channels], responsibility = self._smooth(
+                    coefficients[:, channels], own
+                )
                 leverages[:, channels] = np.tensordot(responsibility, own.leverage, 1)
             smoothed = coefficients @ self._cosines.T
             windows.add(total, smoothed.transpose(0, 2, 1), starts)
             windows.add(leverage, leverages.transpose(0, 2, 1), starts)
-        total, leverage = (total / weight).reshape(shape), (leverage / weight).reshape(shape)
-        values = average + np.einsum("tja,jca->tjc", total, axes).reshape(samples.shape)
-        leverage = np.einsum("tja,jca->tjc", leverage, axes**2).reshape(samples.shape)
-        leverage = np.minimum(leverage, MAX_LEVERAGE)
-        return Smoothed(values, (samples - values) / (1.0 - leverage), leverage * self.noise**2)
+        return total / weight, leverage / weight
 
     @property
     def _density(self) -> float:
@@ -133,16 +153,8 @@ class MixtureSmoother:
         by_coefficient = by_coefficient.reshape(*by_coefficient.shape[:2], -1)
         return _Basis(by_coefficient, variances, np.square(frames).transpose(0, 1, 3, 2))
 
-    def _build_filters(self, axes: Array) -> list[_JointFilters]:
-        """Return the filters of each joint, for its noise along these axes.
-
-        Noise that differs between channels is correlated between the axes; this is left out.
-        """
-        variance = np.square(self.noise).reshape(-1, N_CHANNELS) / self._density
-        along_axes = np.einsum("jc,jca->ja", variance, axes**2)
-        return [self._build_filters_of(variance) for variance in along_axes]
-
-    def _build_filters_of(self, variance: Array) -> _JointFilters:
+    def _build_filters(self, variance: Array) -> _JointFilters:
+        """Return a joint's filters for this noise of the coefficients of each axis."""
         basis = self._basis
         total = basis.variances + variance[:, None, None]
         gains = basis.variances / total
