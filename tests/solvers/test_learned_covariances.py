@@ -30,8 +30,7 @@ def test_matrix_that_is_no_covariance_is_refused(tmp_path, kind, name, change):
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        ("weights", [0.5, 0.4]), ("weights", [1.0, 0.0]), ("n_coefficients", 2),
-        ("frame_rate", 0.0),
+        ("weights", [0.5, 0.4]), ("weights", [1.0, 0.0]), ("frame_rate", 0.0),
     ],
 )  # fmt: skip
 def test_mixture_of_other_numbers_is_refused(tmp_path, name, value):

@@ -3,6 +3,7 @@
 from .channel_noise import MAX_CONSTANT_RANGE, estimate_channel_noise
 from .learn_mixture import learn_motion_mixture
 from .motion_mixture import N_CHANNELS, SHIPPED, MotionMixture, load_motion_mixture
+from .principal_axes import principal_axes
 from .smooth_joints import MAX_LEVERAGE, MixtureSmoother
 
 __all__ = [
@@ -15,4 +16,5 @@ __all__ = [
     "estimate_channel_noise",
     "learn_motion_mixture",
     "load_motion_mixture",
+    "principal_axes",
 ]

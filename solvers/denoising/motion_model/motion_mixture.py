@@ -8,7 +8,7 @@ import numpy as np
 
 from ...archives import ArchiveLayout
 from ...arrays import Array
-from ...npz_members import covariances, integers, numbers, words
+from ...npz_members import covariances, numbers, words
 
 MAX_COVARIANCE = 180.0**2 * 1000.0
 """Square degrees: of coefficients of a window of a thousand frames. By definition: a rotation
@@ -16,29 +16,29 @@ vector is at most 180 degrees long."""
 MIN_EIGENVALUE_RATIO = 1e-9
 """Fraction of the largest element, so that a covariance can be inverted. By definition of
 double precision; learned ones have 3e-7."""
+N_CHANNELS = 3
+"""Channels of a joint: its rotation vector. By definition."""
 LAYOUT = ArchiveLayout(
     "motion mixture",
-    1,
+    2,
     {
         "weights": numbers("components", minimum=np.finfo(float).tiny, maximum=1.0),
         "covariances": covariances(
             "components",
-            "3*coefficients",
-            "3*coefficients",
+            N_CHANNELS,
+            "coefficients",
+            "coefficients",
             minimum=-MAX_COVARIANCE,
             maximum=MAX_COVARIANCE,
             least_eigenvalue=MIN_EIGENVALUE_RATIO,
         ),
         "frame_rate": numbers(minimum=1.0, maximum=1000.0),
-        "n_coefficients": integers(minimum=1, maximum=1000),
         "trained_on": words(),
     },
     holds="a damaged motion mixture",
     remedy="Learn it again.",
 )
 SHIPPED = Path(__file__).parent / "motions.npz"
-N_CHANNELS = 3
-"""Channels of a joint: its rotation vector. By definition."""
 MAX_MISSING_WEIGHT = 1e-4
 """Difference of the sum of all weights from 1. By definition: rounding in single precision."""
 
@@ -47,12 +47,17 @@ MAX_MISSING_WEIGHT = 1e-4
 class MotionMixture:
     """A mixture of zero-mean Gaussians over the DCT coefficients of a joint's window.
 
+    The coefficients are those of a joint's movement along its principal axes, which in each
+    component are independent of each other. The mixture is therefore the same for any axes of
+    a rig's joints.
+
     Attributes
     ----------
     weights : shape (n_components,)
         Fraction of the windows of each component.
-    covariances : shape (n_components, 3 * window, 3 * window), square degrees
-        Channels outermost; a window has as many frames as coefficients.
+    covariances : shape (n_components, 3, window, window), square degrees
+        Of each axis, that of the largest movement first; a window has as many frames as
+        coefficients.
     frame_rate : float, Hz
         Of these windows.
     trained_on : str
@@ -66,19 +71,17 @@ class MotionMixture:
 
     @property
     def window(self) -> int:
-        """Frames of a window, and coefficients of a channel."""
-        return self.covariances.shape[1] // N_CHANNELS
+        """Frames of a window, and coefficients of an axis."""
+        return self.covariances.shape[-1]
 
     @lru_cache(maxsize=4)  # noqa: B019 - few mixtures live, and each as long as the program
     def truncated(self, n_coefficients: int) -> "MotionMixture":
         """Return the mixture of windows of at most this many frames, as of 24 Hz."""
         if n_coefficients >= self.window:
             return self
-        shape = (-1, N_CHANNELS, self.window, N_CHANNELS, self.window)
-        blocks = self.covariances.reshape(shape)
-        kept = blocks[:, :, :n_coefficients, :, :n_coefficients]
-        size = N_CHANNELS * n_coefficients
-        return replace(self, covariances=kept.reshape(-1, size, size))
+        return replace(
+            self, covariances=self.covariances[..., :n_coefficients, :n_coefficients]
+        )
 
     def save(self, path: Path | str) -> None:
         """Write an archive that `load_motion_mixture` reads."""
@@ -88,7 +91,6 @@ class MotionMixture:
                 "weights": self.weights,
                 "covariances": self.covariances.astype(np.float32),
                 "frame_rate": np.array(self.frame_rate),
-                "n_coefficients": np.array(self.window),
                 "trained_on": np.array(self.trained_on),
             },
         )
@@ -104,8 +106,6 @@ def load_motion_mixture(path: Path | str = SHIPPED) -> MotionMixture:
         The file is missing, damaged, or holds something else.
     """
     arrays = LAYOUT.read(path)
-    if arrays["covariances"].shape[1] != N_CHANNELS * int(arrays["n_coefficients"]):
-        raise LAYOUT.damaged(path, "the covariances are not those of the coefficients")
     if not np.isclose(arrays["weights"].sum(), 1.0, atol=MAX_MISSING_WEIGHT):
         raise LAYOUT.damaged(path, "the weights do not add up to 1")
     return MotionMixture(

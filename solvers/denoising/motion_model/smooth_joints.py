@@ -1,16 +1,17 @@
 """Smooth every joint of a complete take by the mixture of windows."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dpotrf, dpotri
 
 from ...arrays import Array
 from ..channels import Smoothed
 from ..window_priors import Windows
 from .motion_mixture import N_CHANNELS, MotionMixture
+from .principal_axes import principal_axes
 
 MAX_LEVERAGE = 1.0 - 1e-9
 """Largest weight of a sample in its own estimate. Guards a division."""
@@ -21,15 +22,28 @@ MAX_BLOCK_WINDOWS = 64
 """Windows processed at a time: this bounds the memory, however long the take."""
 
 
+class _Basis(NamedTuple):
+    """The eigenvectors of all covariances of a mixture: each component is diagonal in them."""
+
+    vectors: Array
+    """Of each axis, shape (3, n_coefficients, n_components * n_coefficients)."""
+    variances: Array
+    """Square degrees along them, shape (3, n_components, n_coefficients)."""
+    squares: Array
+    """Of their frames, shape (3, n_components, n_coefficients, length)."""
+
+
 class _JointFilters(NamedTuple):
     """The filters of one joint, one for each component."""
 
-    inverse: Array
-    """Of the covariance with noise, shape (n_components, size, size)."""
+    total: Array
+    """Variance of movement and noise along each eigenvector, like `_Basis.variances`."""
+    gains: Array
+    """Fraction of it that is movement."""
     log_density: Array
     """At zero, without constants, with the component's weight, shape (n_components,)."""
     leverage: Array
-    """Weight of each sample in its own estimate, shape (n_components, 3 * length)."""
+    """Weight of each sample in its own estimate, shape (n_components, 3, length)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +52,8 @@ class MixtureSmoother:
 
     The estimate of a window is the posterior mean under the mixture [1]_; overlapping windows
     are averaged. The mixture distinguishes a fast moment from a still one, so that the first is
-    smoothed less than the second. The filters follow from the noise alone: several takes of the
-    same noise share them.
+    smoothed less than the second. Each joint is smoothed along the principal axes of its
+    movement, where every component is a product of filters of one axis.
 
     Attributes
     ----------
@@ -68,31 +82,52 @@ class MixtureSmoother:
         """
         if len(samples) < self._length:
             return None
+        average, shape = samples.mean(axis=0), (len(samples), -1, N_CHANNELS)
+        centered = (samples - average).reshape(shape)
+        axes = principal_axes(centered, self.noise.reshape(-1, N_CHANNELS))
+        along_axes = np.einsum("tjc,jac->tja", centered, axes.from_channels)
+        filters = [self._build_filters(variance / self._density) for variance in axes.variance]
+        smoothed, leverage = (
+            each.reshape(shape)
+            for each in self._average_windows(along_axes.reshape(samples.shape), filters)
+        )
+        values = np.einsum("tja,jca->tjc", smoothed, axes.to_channels).reshape(samples.shape)
+        values += average
+        products = axes.to_channels * axes.from_channels.transpose(0, 2, 1)
+        leverage = np.einsum("tja,jca->tjc", leverage, products).reshape(samples.shape)
+        leverage = np.minimum(leverage, MAX_LEVERAGE)
+        return Smoothed(values, (samples - values) / (1.0 - leverage), leverage * self.noise**2)
+
+    def _average_windows(
+        self, samples: Array, filters: Sequence[_JointFilters]
+    ) -> tuple[Array, Array]:
+        """Return the smoothed samples and their leverage, means over overlapping windows.
+
+        Parameters
+        ----------
+        samples : shape (n_frames, 3 n_joints)
+            Along the principal axes.
+        filters : sequence of _JointFilters, length n_joints
+        """
         windows = Windows(len(samples), self._length, self._density, N_OVERLAPS)
         total, leverage = np.zeros_like(samples), np.zeros_like(samples)
-        weight, average = np.zeros((len(samples), 1)), samples.mean(axis=0)
-        centered = samples - average
+        weight = np.zeros((len(samples), 1))
         windows.add(weight, np.ones((windows.length, 1)), windows.starts)
         for first in range(0, len(windows.starts), MAX_BLOCK_WINDOWS):
             starts = windows.starts[first : first + MAX_BLOCK_WINDOWS]
-            frames = windows.extract(centered, starts).transpose(0, 2, 1)
-            coefficients = frames @ self._basis / self._density
-            joints = coefficients.reshape(len(starts), len(self._filters), -1)
+            frames = windows.extract(samples, starts).transpose(0, 2, 1)
+            coefficients = frames @ self._cosines / self._density
             leverages = np.empty_like(frames)
-            for joint, filters in enumerate(self._filters):
+            for joint, own in enumerate(filters):
                 channels = slice(N_CHANNELS * joint, N_CHANNELS * (joint + 1))
-                solved, responsibility = _solve(joints[:, joint], filters)
-                coefficients[:, channels] -= self._variance[channels, None] * solved.reshape(
-                    len(starts), N_CHANNELS, -1
+                coefficients[:, channels], responsibility = self._smooth(
+                    coefficients[:, channels], own
                 )
-                leverages[:, channels] = (responsibility @ filters.leverage).reshape(
-                    len(starts), N_CHANNELS, -1
-                )
-            smoothed = coefficients @ self._basis.T
+                leverages[:, channels] = np.tensordot(responsibility, own.leverage, 1)
+            smoothed = coefficients @ self._cosines.T
             windows.add(total, smoothed.transpose(0, 2, 1), starts)
             windows.add(leverage, leverages.transpose(0, 2, 1), starts)
-        values, leverage = average + total / weight, np.minimum(leverage / weight, MAX_LEVERAGE)
-        return Smoothed(values, (samples - values) / (1.0 - leverage), leverage * self.noise**2)
+        return total / weight, leverage / weight
 
     @property
     def _density(self) -> float:
@@ -104,68 +139,46 @@ class MixtureSmoother:
         """Frames of a window."""
         return round(self.mixture.window * self._density)
 
-    @property
-    def _variance(self) -> Array:
-        """Of the noise of a coefficient of each channel."""
-        return self.noise**2 / self._density
-
     @cached_property
-    def _basis(self) -> Array:
-        mixture = self.mixture.truncated(self._length)
+    def _cosines(self) -> Array:
         windows = Windows(self._length, self._length, self._density)
-        return windows.dct_basis(mixture.window)
+        return windows.dct_basis(self.mixture.truncated(self._length).window)
 
     @cached_property
-    def _filters(self) -> list[_JointFilters]:
-        """The filters of each joint; joints of the same noise share them."""
-        mixture = self.mixture.truncated(self._length)
-        basis = self._basis / np.sqrt(self._density)
-        variances, same = np.unique(
-            self._variance.reshape(-1, N_CHANNELS), axis=0, return_inverse=True
-        )
-        filters = [_build_filters(mixture, variance, basis) for variance in variances]
-        return [filters[index] for index in same.ravel()]
+    def _basis(self) -> _Basis:
+        covariances = self.mixture.truncated(self._length).covariances
+        variances, vectors = np.linalg.eigh(covariances.transpose(1, 0, 2, 3))
+        frames = self._cosines / np.sqrt(self._density) @ vectors
+        by_coefficient = vectors.transpose(0, 2, 1, 3)
+        by_coefficient = by_coefficient.reshape(*by_coefficient.shape[:2], -1)
+        return _Basis(by_coefficient, variances, np.square(frames).transpose(0, 1, 3, 2))
 
+    def _build_filters(self, variance: Array) -> _JointFilters:
+        """Return a joint's filters for this noise of the coefficients of each axis."""
+        basis = self._basis
+        total = basis.variances + variance[:, None, None]
+        gains = basis.variances / total
+        log_density = np.log(self.mixture.weights) - 0.5 * np.log(total).sum(axis=(0, 2))
+        leverage = (gains[:, :, None] @ basis.squares)[:, :, 0].transpose(1, 0, 2)
+        return _JointFilters(total, gains, log_density, leverage)
 
-def _solve(coefficients: Array, filters: _JointFilters) -> tuple[Array, Array]:
-    """Return the mean inverse times the coefficients, and the components' probabilities.
+    def _smooth(self, coefficients: Array, filters: _JointFilters) -> tuple[Array, Array]:
+        """Return a joint's posterior mean coefficients, and the components' probabilities.
 
-    Parameters
-    ----------
-    coefficients : shape (n_windows, size)
-        Of one joint.
-    filters : _JointFilters
-    """
-    solved = coefficients @ filters.inverse
-    exponents = np.einsum("kws,ws->wk", solved, coefficients)
-    log_density = filters.log_density - 0.5 * exponents
-    density = np.exp(log_density - log_density.max(axis=1, keepdims=True))
-    responsibility = density / density.sum(axis=1, keepdims=True)
-    return np.einsum("wk,kws->ws", responsibility, solved), responsibility
-
-
-def _build_filters(mixture: MotionMixture, variance: Array, basis: Array) -> _JointFilters:
-    """Return the filters for the noise of the coefficients of each of the three channels.
-
-    Parameters
-    ----------
-    mixture : MotionMixture
-    variance : shape (3,)
-    basis : shape (length, n_coefficients), orthonormal
-    """
-    n = mixture.window
-    inverse = mixture.covariances + np.diag(np.repeat(variance, n))
-    # In place, and one triangle only: half the time of numpy's inverse.
-    for matrix in inverse:
-        dpotrf(matrix.T, lower=1, clean=0, overwrite_a=1)
-    log_scale = np.log(np.einsum("kii->ki", inverse)).sum(axis=1)
-    for matrix in inverse:
-        dpotri(matrix.T, lower=1, overwrite_c=1)
-    rows, columns = np.tril_indices(N_CHANNELS * n, -1)
-    inverse[:, rows, columns] = inverse[:, columns, rows]
-    blocks = inverse.reshape(-1, N_CHANNELS, n, N_CHANNELS, n)
-    own = np.eye(n) - variance[:, None, None] * np.einsum("kcicj->kcij", blocks)
-    products = np.einsum("ti,tj->ijt", basis, basis).reshape(n * n, -1)
-    leverage = own.reshape(-1, n * n) @ products
-    log_density = np.log(mixture.weights) - log_scale
-    return _JointFilters(inverse, log_density, leverage.reshape(len(inverse), -1))
+        Parameters
+        ----------
+        coefficients : shape (n_windows, 3, n_coefficients)
+        filters : _JointFilters
+        """
+        vectors, n_windows = self._basis.vectors, len(coefficients)
+        projected = coefficients.transpose(1, 0, 2) @ vectors
+        n_components, n_coefficients = filters.total.shape[1:]
+        each = projected.reshape(N_CHANNELS, n_windows, n_components, n_coefficients)
+        exponents = np.einsum("awkn,akn->wk", each**2, 1.0 / filters.total)
+        log_density = filters.log_density - 0.5 * exponents
+        density = np.exp(log_density - log_density.max(axis=1, keepdims=True))
+        responsibility = density / density.sum(axis=1, keepdims=True)
+        # In place: a view of `projected`.
+        each *= filters.gains[:, None]
+        each *= responsibility[..., None]
+        return (projected @ vectors.transpose(0, 2, 1)).transpose(1, 0, 2), responsibility

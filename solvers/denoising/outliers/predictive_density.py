@@ -46,13 +46,21 @@ class PredictiveDensity:
     noise : shape (3,)
     windows : Windows
     mixture : MotionMixture
+    axes : shape (3, 3)
+        Principal axes of the joint's movement, as columns.
     """
 
     def __init__(
-        self, samples: Array, noise: Array, windows: Windows, mixture: MotionMixture
+        self,
+        samples: Array,
+        noise: Array,
+        windows: Windows,
+        mixture: MotionMixture,
+        axes: Array,
     ) -> None:
         self._samples, self._noise, self._windows = samples, noise, windows
         self._mixture, self._basis = mixture, windows.dct_basis(mixture.window)
+        self._axes, self._inverses = axes, dict[tuple[int, ...], tuple[Array, Array]]()
 
     def of_run(
         self, run: slice, tested: NDArray[np.bool_], valid: NDArray[np.bool_]
@@ -98,7 +106,7 @@ class PredictiveDensity:
         `offset`. The constants follow the coefficients, so that one factorization yields both.
         If their deviation is infinite, it is the density of the frames outside `offset`.
         """
-        inverses, log_weights = _inverse_covariances(self._mixture, channels)
+        inverses, log_weights = self._inverse_covariances(channels)
         columns, variance = list(channels), self._noise[list(channels)] ** 2
         n, size = self._basis.shape[1], inverses.shape[1]
         end = size if offset is None else size + len(columns)
@@ -131,6 +139,21 @@ class PredictiveDensity:
         scale = np.log(deviation) if np.isfinite(deviation) else -0.5 * np.log(2.0 * np.pi)
         of_offsets = exponents[:, size:] - scale
         return without, without + of_offsets.sum(axis=1)
+
+    def _inverse_covariances(self, channels: tuple[int, ...]) -> tuple[Array, Array]:
+        """Return each component's inverse covariance, and the log of its weight and scale."""
+        if channels not in self._inverses:
+            self._inverses[channels] = self._invert_covariances(channels)
+        return self._inverses[channels]
+
+    def _invert_covariances(self, channels: tuple[int, ...]) -> tuple[Array, Array]:
+        axes, weights = self._axes[list(channels)], self._mixture.weights
+        if len(channels) == N_CHANNELS:
+            inverses, log_scale = _invert_axes(self._mixture)
+            return _in_channels(inverses, axes), np.log(weights) - log_scale
+        covariances = _in_channels(self._mixture.covariances, axes)
+        log_scale = 0.5 * np.linalg.slogdet(covariances)[1]
+        return np.linalg.inv(covariances), np.log(weights) - log_scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,18 +229,26 @@ def _log_sum(log_densities: Array) -> float:
     return float(np.logaddexp.reduce(log_densities))
 
 
-@lru_cache(maxsize=16)
-def _inverse_covariances(
-    mixture: MotionMixture, channels: tuple[int, ...]
-) -> tuple[Array, Array]:
-    """Return each component's inverse covariance, and the logarithm of its weight and scale."""
-    n = mixture.window
-    indices = np.concatenate([
-        np.arange(channel * n, (channel + 1) * n) for channel in channels
-    ])
-    covariances = mixture.covariances[:, indices[:, None], indices]
-    scale = 0.5 * np.linalg.slogdet(covariances)[1]
-    return np.linalg.inv(covariances), np.log(mixture.weights) - scale
+@lru_cache(maxsize=4)
+def _invert_axes(mixture: MotionMixture) -> tuple[Array, Array]:
+    """Return the inverse covariances of each axis, and the components' log of the scale."""
+    log_scale = 0.5 * np.linalg.slogdet(mixture.covariances)[1].sum(axis=1)
+    return np.linalg.inv(mixture.covariances), log_scale
+
+
+def _in_channels(matrices: Array, axes: Array) -> Array:
+    """Convert matrices from principal axes to channels, shape (n_components, size, size).
+
+    Parameters
+    ----------
+    matrices : shape (n_components, 3, n_coefficients, n_coefficients)
+    axes : shape (n_channels, 3)
+    """
+    n_components, _, n, _ = matrices.shape
+    products = np.einsum("ca,da->cda", axes, axes).reshape(-1, N_CHANNELS)
+    mixed = products @ matrices.reshape(n_components, N_CHANNELS, -1)
+    mixed = mixed.reshape(n_components, len(axes), len(axes), n, n).transpose(0, 1, 3, 2, 4)
+    return np.asarray(mixed.reshape(n_components, len(axes) * n, len(axes) * n))
 
 
 @lru_cache(maxsize=4)
@@ -227,7 +258,7 @@ def with_rare_movement(mixture: MotionMixture) -> MotionMixture:
     Copies of the components of the largest movement, scaled, join the mixture. A Gaussian
     alone takes a kick that is faster than any of the recordings for an error.
     """
-    energies = np.einsum("kss->k", mixture.covariances)
+    energies = np.einsum("kaii->k", mixture.covariances)
     largest = np.argsort(-energies, kind="stable")[:N_RARE_COMPONENTS]
     rare = mixture.covariances[largest] * RARE_MOVEMENT_SCALE**2
     weights = np.full(len(largest), RARE_MOVEMENT_WEIGHT / len(largest))

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.fft import idct
+from scipy.linalg import block_diag, eigh
+from scipy.spatial.transform import Rotation
+from scipy.special import softmax
 from scipy.stats import multivariate_normal
 
 from solvers.denoising.motion_model import (
@@ -12,31 +15,42 @@ from solvers.denoising.motion_model import (
     learn_motion_mixture,
     load_motion_mixture,
 )
+from solvers.denoising.motion_model.learn_mixture import extract_windows
 from solvers.denoising.outliers import PredictiveDensity
 from solvers.denoising.outliers.predictive_density import NEW_MOVEMENT_RATE
 from solvers.denoising.window_priors import Windows
 from solvers.errors import InvalidFileError, InvalidMotionError
+from solvers.rotations import inverse, multiply, quaternion_from_rotation_vector
 
 WINDOW = 8
 
 
+AXES = Rotation.from_rotvec([0.5, -0.8, 0.3]).as_matrix()
+"""Principal axes of a joint, as columns."""
+
+
 @pytest.fixture
 def mixture(rng):
-    """Two components, slow and fast, with correlated channels."""
-    decay = np.tile(10.0 / (1.0 + np.arange(WINDOW)) ** 2, 3)
-    mixing = rng.normal(size=(24, 24)) / 5.0 + np.eye(24)
-    covariance = mixing @ np.diag(decay**2) @ mixing.T
-    return MotionMixture(np.array([0.7, 0.3]), np.stack([0.05 * covariance, covariance]), 30.0)
+    """Two components, slow and fast, with correlated coefficients."""
+    decay = 10.0 / (1.0 + np.arange(WINDOW)) ** 2
+    mixing = rng.normal(size=(3, WINDOW, WINDOW)) / 5.0 + np.eye(WINDOW)
+    covariances = mixing @ np.diag(decay**2) @ mixing.transpose(0, 2, 1)
+    covariances *= np.array([4.0, 1.0, 0.25])[:, None, None]
+    return MotionMixture(
+        np.array([0.7, 0.3]), np.stack([0.05 * covariances, covariances]), 30.0
+    )
 
 
 def basis() -> np.ndarray:
     return idct(np.eye(WINDOW), axis=0, norm="ortho")
 
 
-def frame_covariance(mixture: MotionMixture, component: int, noise: float) -> np.ndarray:
+def frame_covariance(
+    mixture: MotionMixture, component: int, noise: float, axes: np.ndarray
+) -> np.ndarray:
     """Covariance of the samples of a window, channels outermost."""
-    to_frames = np.kron(np.eye(3), basis())
-    covariance = to_frames @ mixture.covariances[component] @ to_frames.T
+    to_frames = np.kron(axes, basis())
+    covariance = to_frames @ block_diag(*mixture.covariances[component]) @ to_frames.T
     return covariance + noise**2 * np.eye(len(covariance))
 
 
@@ -46,7 +60,7 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
     run, tested = slice(3, 5), np.array([True, False, True])
     valid[run] |= tested
     predictive = PredictiveDensity(
-        samples, np.full(3, noise), Windows(WINDOW, WINDOW, 1.0), mixture
+        samples, np.full(3, noise), Windows(WINDOW, WINDOW, 1.0), mixture, AXES
     )
 
     density = predictive.of_run(run, tested, valid)
@@ -63,7 +77,7 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
         chosen = known.T.ravel()
         total = []
         for component in range(len(mixture.weights)):
-            covariance = frame_covariance(mixture, component, noise) + extra
+            covariance = frame_covariance(mixture, component, noise, AXES) + extra
             total.append(
                 multivariate_normal.pdf(
                     samples.T.ravel()[chosen], cov=covariance[np.ix_(chosen, chosen)]
@@ -83,23 +97,73 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
     assert_allclose(density.max_gain, np.log(shifted / continued), rtol=1e-6)
 
 
-def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng):
-    samples, noise = 5.0 * rng.normal(size=(WINDOW, 3)), 0.7
+@pytest.mark.parametrize("noise", [[0.7, 0.7, 0.7], [1.5, 0.7, 0.1]])
+def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng, noise):
+    samples = 5.0 * rng.normal(size=(WINDOW, 3))
     samples -= samples.mean(axis=0)
+    variance = np.diag(np.square(noise))
+    movement, axes = eigh(samples.T @ samples, variance)
+    axes = variance @ axes
+    lengths = np.linalg.norm(axes, axis=0)
+    axes = (axes / lengths)[:, np.argsort(-movement * lengths**2)]
 
-    smoothed = MixtureSmoother(np.full(3, noise), 30.0, mixture)(samples)
+    smoothed = MixtureSmoother(np.array(noise), 30.0, mixture)(samples)
 
     assert smoothed is not None
-    flat, densities, means, leverages = samples.T.ravel(), [], [], []
+    flat, of_noise = samples.T.ravel(), np.kron(variance, np.eye(WINDOW))
+    densities, means, leverages = [], [], []
     for component, weight in enumerate(mixture.weights):
-        covariance = frame_covariance(mixture, component, noise)
-        densities.append(weight * multivariate_normal.pdf(flat, cov=covariance))
-        means.append(flat - noise**2 * np.linalg.solve(covariance, flat))
-        leverages.append(1.0 - noise**2 * np.diag(np.linalg.inv(covariance)))
-    expected = np.average(means, axis=0, weights=densities).reshape(3, WINDOW).T
-    assert_allclose(smoothed.values, expected, atol=1e-8)
-    leverage = np.average(leverages, axis=0, weights=densities).reshape(3, WINDOW).T
-    assert_allclose(smoothed.variance, noise**2 * leverage, rtol=1e-8)
+        covariance = frame_covariance(mixture, component, 0.0, axes) + of_noise
+        densities.append(np.log(weight) + multivariate_normal.logpdf(flat, cov=covariance))
+        means.append(flat - of_noise @ np.linalg.solve(covariance, flat))
+        leverages.append(1.0 - np.diag(of_noise @ np.linalg.inv(covariance)))
+    shares = softmax(densities)
+    expected = np.average(means, axis=0, weights=shares).reshape(3, WINDOW).T
+    assert_allclose(smoothed.values, expected, atol=1e-6)
+    leverage = np.average(leverages, axis=0, weights=shares).reshape(3, WINDOW).T
+    assert_allclose(smoothed.variance, np.square(noise) * leverage, rtol=1e-6)
+
+
+@pytest.mark.parametrize("axes", [AXES, np.eye(3)[[2, 0, 1]]])
+def test_axes_of_a_rigs_joints_change_nothing(mixture, rng, axes):
+    """Neither does it matter what the other joints do."""
+    samples, other = np.cumsum(rng.normal(size=(2, 4 * WINDOW, 3)), axis=1)
+    smooth = MixtureSmoother(np.full(3, 0.7), 30.0, mixture)
+    smooth_two = MixtureSmoother(np.full(6, 0.7), 30.0, mixture)
+
+    smoothed, both = smooth(samples), smooth_two(np.hstack([other, samples @ axes]))
+
+    assert smoothed is not None
+    assert both is not None
+    assert_allclose(both.values[:, 3:], smoothed.values @ axes, atol=1e-5)
+    if (axes**2 == axes).all():
+        assert_allclose(both.variance[:, 3:], smoothed.variance @ axes, atol=1e-5)
+
+
+def test_rounding_does_not_choose_the_axes_of_a_circle(rng):
+    """A joint that moves equally along two axes, and not along the third."""
+    phases = np.arange(60) * (2.0 * np.pi / 30.0)
+    circle = 20.0 * np.stack([np.cos(phases), np.sin(phases), 0.0 * phases], axis=1)
+    smooth = MixtureSmoother(np.ones(3), 30.0, load_motion_mixture())
+
+    smoothed, again = smooth(circle), smooth(circle + 1e-12 * rng.normal(size=circle.shape))
+
+    assert smoothed is not None
+    assert again is not None
+    assert_allclose(again.values, smoothed.values, atol=1e-4)
+
+
+def test_mixture_is_learned_along_the_axes_of_each_joint(swinging_leg):
+    turned = swinging_leg.rotations.copy()
+    turn = quaternion_from_rotation_vector(np.array([0.5, -0.8, 0.3]))
+    turned[:, 1:] = multiply(multiply(inverse(turn), turned[:, 1:]), turn)
+
+    windows, same = (
+        extract_windows([swinging_leg.with_poses(each)])
+        for each in (swinging_leg.rotations, turned)
+    )
+
+    assert_allclose(abs(same), abs(windows), atol=1e-5)
 
 
 @pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 120.0])

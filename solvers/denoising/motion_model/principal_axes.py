@@ -1,0 +1,55 @@
+"""The axes along which a joint moves most and least."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+
+TIE_BREAK = 1e-9 * np.diag([2.0, 1.0, 0.0])
+"""Fraction of the variance, added to each channel. Guards joints that move equally along two
+axes, whose axes rounding would choose."""
+MIN_VARIANCE = np.finfo(float).tiny
+"""Of all channels together. Guards joints that stand still."""
+
+
+class PrincipalAxes(NamedTuple):
+    """The principal axes of each joint's movement, that of the largest movement first.
+
+    They are orthogonal where the noise of a joint's channels is equal. Otherwise they are
+    oblique, so that the noise along one of them is independent of that along the others.
+    """
+
+    to_channels: Array
+    """Unit vectors as columns, shape (n_joints, 3, 3)."""
+    from_channels: Array
+    """Its inverse, same shape."""
+    variance: Array
+    """Of the noise along each axis, shape (n_joints, 3)."""
+
+
+def principal_axes(samples: Array, noise: Array) -> PrincipalAxes:
+    """Return the axes that make a joint's movement and its noise independent.
+
+    If a rig's bones are turned, the axes turn with them, so that the movement along them is the
+    same but for its sign.
+
+    Parameters
+    ----------
+    samples : shape (n_frames, n_joints, 3), without NaN
+    noise : shape (n_joints, 3)
+        Standard deviation of each channel, above zero.
+    """
+    whitened = (samples - samples.mean(axis=0)) / noise
+    products = np.einsum("tjc,tjd->jcd", whitened, whitened)
+    scale = np.maximum(np.einsum("jcc->j", products), MIN_VARIANCE)
+    movement, axes = np.linalg.eigh(products + scale[:, None, None] * TIE_BREAK)
+    lengths = np.linalg.norm(noise[..., None] * axes, axis=1)
+    order = np.argsort(-movement * lengths**2, axis=1, kind="stable")
+    axes = np.take_along_axis(axes, order[:, None], axis=2)
+    lengths = np.take_along_axis(lengths, order, axis=1)
+    return PrincipalAxes(
+        noise[..., None] * axes / lengths[:, None],
+        (axes / noise[..., None] * lengths[:, None]).transpose(0, 2, 1),
+        np.square(lengths),
+    )
