@@ -20,7 +20,8 @@ MIDDLE = {
     "nose": "nose", "neck": "neck_center", "midhip": "hips_center", "hips": "hips_center",
     "pelvis": "hips_center", "hipcenter": "hips_center", "hipscenter": "hips_center",
     "hip": "hips_center", "root": "hips_center", "head": "head_center",
-    "headtop": "head_center",
+    "headtop": "head_center", "centerhead": "head_center", "tophead": "head_center",
+    "centershoulder": "neck_center",
 }  # fmt: skip
 SIDES = {"l": "left", "left": "left", "r": "right", "right": "right"}
 LIMBS = tuple(
