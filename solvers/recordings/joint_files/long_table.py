@@ -141,9 +141,7 @@ def open_long_table(
     names, order = table.joints.in_order()
     points = _points(path, table, frames, order)
     if times is not None:
-        times = over_midnight(
-            times * (columns.times.second or second_of_times(times, progress))
-        )
+        times = times * (columns.times.second or second_of_times(times, progress))
     duration = len(points[0]) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
     listed = tuple(
         observed_body(
@@ -187,6 +185,9 @@ def _read_table(path: Path | str, progress: Progress) -> _LongTable:
     rows = stream_cells(
         reader, header.separator, len(titles), path, progress, converters=converters
     )
+    second = columns.times.second
+    if columns.time is not None and second is not None:
+        rows[:, columns.time] = over_midnight(rows[:, columns.time] * second) / second
     return _LongTable(rows, columns, joints, people)
 
 

@@ -172,15 +172,13 @@ def over_midnight(seconds: Array) -> Array:
 
     Parameters
     ----------
-    seconds : shape (n_frames,)
+    seconds : shape (n_lines,), the first time first, less than half a day
         Other times are returned as they are.
     """
-    known = np.isfinite(seconds)
-    if not known.any() or seconds[known].min() < 0.0 or seconds[known].max() >= DAY_S:
+    known = seconds[np.isfinite(seconds)]
+    if not len(known) or known.min() < 0.0 or known.max() >= DAY_S:
         return seconds
-    days = np.zeros(len(seconds))
-    days[known] = np.cumsum(np.diff(seconds[known], prepend=0.0) < -DAY_S / 2.0)
-    return seconds + DAY_S * days
+    return np.where(seconds < known[0] - DAY_S / 2.0, seconds + DAY_S, seconds)
 
 
 class TimeCells:
