@@ -133,6 +133,28 @@ def test_an_archive_of_joints_is_read(tmp_path, walk):
     assert np.allclose(recording.tracks.positions[:, :17], points)
 
 
+@pytest.mark.parametrize(
+    ("stated", "rate"),
+    [
+        ({"fps": 60}, 60.0),
+        ({"frame_rate": np.array([23.976])}, 23.976),
+        ({"fps": np.nan}, 30.0),
+        ({"fps": np.ones(4)}, 30.0),
+    ],
+)
+def test_an_archive_states_its_rate(tmp_path, walk, stated, rate):
+    """Before, joints at 60 Hz were read as 30 Hz."""
+    said = []
+    np.savez(tmp_path / "joints.npz", reconstruction=ordered(walk, "COCO"), **stated)
+
+    recording = read_recording(
+        tmp_path / "joints.npz", progress=lambda _, text="": said.append(str(text))
+    )
+
+    assert recording.frame_rate == pytest.approx(rate, rel=1e-3)
+    assert ("assumed" in " ".join(said)) == (rate == 30.0)
+
+
 @pytest.mark.parametrize("third", [None, 0.0, 0.9])
 def test_points_of_images_are_refused(tmp_path, walk, third):
     flat = 300.0 * ordered(walk, "COCO")[..., [0, 2]]
