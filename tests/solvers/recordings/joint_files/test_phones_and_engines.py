@@ -9,7 +9,7 @@ from exports.camera_bodies import mediapipe
 from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, forward_kinematics, roles_by_name
 from solvers.motion.skeletons import BODY_POINTS
-from solvers.recordings import read_recording
+from solvers.recordings import list_bodies, read_recording
 from solvers.samples import walking_gait
 
 F = 40
@@ -97,6 +97,17 @@ def test_bones_of_an_engine_have_a_line_each(tmp_path, walk, axis):
     recording = read(tmp_path, "\n".join([f"Frame,Bone,{titles},RotX,RotY,RotZ", *lines]))
 
     check(recording, walk)
+
+
+def test_hands_next_to_a_body_are_no_person(tmp_path, walk):
+    frames = [
+        {"body": {role: points[k].tolist() for role, points in walk.items()},
+         "leftHand": {f"finger{n}": [0.1 * n, 0.2, 0.3 + k] for n in range(21)}}
+        for k in range(F)
+    ]  # fmt: skip
+
+    check(read(tmp_path, frames), walk)
+    assert "leftHand" not in [body.name for body in list_bodies(tmp_path / "take")]
 
 
 def landmark_lines(n_people=1):

@@ -62,6 +62,12 @@ def test_words_below_the_frames_are_no_frames(read_any):
     assert_has_all_frames(read_any(table({"time": seconds}) + below))
 
 
+def test_last_frames_without_times_are_kept_above_words(read_any):
+    content = table({"time": lambda k: "" if k > F - 3 else seconds(k)}) + "mean;0.5\n"
+
+    assert_has_all_frames(read_any(content))
+
+
 def test_a_short_line_below_words_is_no_frame(read_any):
     content = table({"number": str, "time": seconds}) + ";mean;0.5\nEND\n"
 

@@ -115,6 +115,7 @@ def test_points_in_another_order_are_no_body(tmp_path, walk):
     lambda points: np.moveaxis(points, 0, 2),
     lambda points: points.reshape(len(points), -1),
     lambda points: np.concatenate([points, np.ones_like(points[..., :1])], axis=-1),
+    lambda points: np.concatenate([points, np.zeros_like(points[..., :1])], axis=-1),
 ])  # fmt: skip
 def test_other_orders_of_the_axes_are_understood(tmp_path, walk, make):
     points = ordered(walk, "Human3.6M")
