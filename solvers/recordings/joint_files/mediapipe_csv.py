@@ -143,9 +143,10 @@ def _from_long(
     )
     if counts.max() > 1:
         repeated = lines[counts > 1][0]
+        joint = BODY_POINTS[landmarks[repeated]]
         raise InvalidFileError(
-            f"{path} has joint {shown(BODY_POINTS[landmarks[repeated]])} of one person twice in"
-            f" frame {frames[repeated] + 1}. Name the person of each line in a column `person`."
+            f"{path} has joint {shown(joint)} of one person twice in frame"
+            f" {frames[repeated] + 1}. Name the person of each line in a column `person`."
         )
     points = np.full((len(first), N_POINTS, 4), np.nan)
     for title, column in {title: at for at, title in enumerate(titles)}.items():
