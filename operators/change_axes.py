@@ -14,7 +14,7 @@ from ..mocap_assist.importing.changing_axes import (
     noted_change,
     why_fixed,
 )
-from ..mocap_assist.importing.import_operator import DIALOG_WIDTH_PX
+from ..mocap_assist.importing.dialog.operators import DIALOG_WIDTH_PX
 from ..solvers.errors import InvalidMotionError
 
 

@@ -6,7 +6,7 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.importing.button_settings import ImportBundle
-from ..mocap_assist.importing.import_operator import WaitingImport
+from ..mocap_assist.importing.dialog.operators import WaitingImport
 
 
 @settings_from(ImportBundle)

@@ -8,8 +8,8 @@ from bpy.props import StringProperty
 from ..mocap_assist.blender.path_properties import HIDDEN
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.importing.button_settings import ImportBundle
-from ..mocap_assist.importing.file_kinds import kinds_of
-from ..mocap_assist.importing.import_operator import (
+from ..mocap_assist.importing.dialog.file_kinds import kinds_of
+from ..mocap_assist.importing.dialog.operators import (
     DIALOG_WIDTH_PX,
     FilesOperator,
     propose_start,

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..mocap_assist.overlays.strip_drag import RangeOperator
+from ..mocap_assist.overlays.strip.drag import RangeOperator
 
 
 class MOCAP_OT_set_range(RangeOperator, bpy.types.Operator):

@@ -88,7 +88,7 @@ def read_take(
     top = rig.bones.index(root) if root in rig.bones else body_root(rig, travels)
     space = space.in_unit(meters_per_unit(keyed.scene, rig, top, space.scale))
     rate = keyed.scene.render.fps / keyed.scene.render.fps_base / grid.step
-    return (yield from _assembled(rig, top, grid, tuple(channels), space, rate))
+    return (yield from _assemble_take(rig, top, grid, tuple(channels), space, rate))
 
 
 def _is_captured(bone: BoneChannels) -> bool:
@@ -166,7 +166,7 @@ def action_of(armature: bpy.types.Object) -> Source:
     return animation.action, animation.action_slot
 
 
-def _assembled(
+def _assemble_take(
     rig: Rig,
     root: int,
     grid: Grid,
@@ -180,7 +180,9 @@ def _assembled(
         axes = rig.rest_rotations[bone]
         rotation = multiply(multiply(axes, channels[bone].rotations), axes * (1, -1, -1, -1))
         shift = rotate(axes, channels[bone].locations)
-        carrier = carrier.moved(_filled(rotation), np.nan_to_num(shift), rig.heads[bone])
+        carrier = carrier.moved(
+            _hold_last_rotation(rotation), np.nan_to_num(shift), rig.heads[bone]
+        )
     body = yield from part_of.steps(rig, rig.subtree(root), channels, carrier, rest, rate)
     parts = [body]
     inside = {*above, *parts[0].bones}
@@ -222,7 +224,7 @@ def _read_offsets(
     return Tracks(names, np.stack(positions, axis=1), rate)
 
 
-def _filled(rotations: Array) -> Array:
+def _hold_last_rotation(rotations: Array) -> Array:
     """Hold the last observed rotation through the gaps of a bone that is not cleaned."""
     known = np.isfinite(rotations).all(axis=-1)
     last = np.maximum.accumulate(np.where(known, np.arange(len(known)), 0))

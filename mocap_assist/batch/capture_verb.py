@@ -68,7 +68,7 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     inside = find_recordings(others, list_recordings=depth_recordings_in)
     for path in [*takes, *(path for path, _ in inside)]:
         screen.title = path.name
-        sentence = attempt(path, _tracked, path, arguments, settings, screen)
+        sentence = attempt(path, _import_and_track, path, arguments, settings, screen)
         if isinstance(sentence, Failure):
             failed.append(sentence.sentence)
             continue
@@ -85,7 +85,7 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
         raise InvalidFileError(" ".join(failed))
 
 
-def _tracked(
+def _import_and_track(
     path: Path, arguments: argparse.Namespace, settings: TrackBundle, screen: Screen
 ) -> str:
     """Import one recording and track it; the new armature becomes active."""

@@ -13,7 +13,7 @@ from ...solvers.command_line.batches import Screen, escape_undecodable_names, pr
 from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
 from ...solvers.files import reason_of, write_atomically
 from ...solvers.processes import add_threads_option
-from ..actions.markers import markers_of
+from ..actions.markers.holders import markers_of
 from ..depth.depth_preview import shows_depth
 from ..scene import history
 from .capture_verb import HELP as CAPTURE_HELP

@@ -113,7 +113,7 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     faults: tuple[str, ...] = ()
     try:
         note_other_builds(tasks, screen)
-        run_all = partial(_worked, arguments=arguments)
+        run_all = partial(_work_on_tasks, arguments=arguments)
         for finished in until_released(tasks, run_all, screen):
             text = finished.outcome.text if finished.outcome else finished.failure
             sys.stdout.write(escaped(f"{finished.task.source}: {text}") + "\n")
@@ -189,7 +189,9 @@ def _blends_in(folder: Path) -> list[Path]:
     return found
 
 
-def _worked(tasks: Sequence[Task], arguments: argparse.Namespace) -> Iterator[FinishedTask]:
+def _work_on_tasks(
+    tasks: Sequence[Task], arguments: argparse.Namespace
+) -> Iterator[FinishedTask]:
     """Yield existing results, then each task when it finishes, and record it."""
     remaining = []
     for task in tasks:

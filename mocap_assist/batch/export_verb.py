@@ -12,8 +12,8 @@ from ...solvers.errors import InvalidSettingError
 from ...solvers.files import real_path
 from ...solvers.progress import Progress
 from ..exporting.button_settings import ExportBundle, ExportChoices, ExportFile
-from ..exporting.export_target import ENDINGS, target_of
 from ..exporting.exporting import read_export, write_exported
+from ..exporting.target_file import ENDINGS, target_of
 from .solving import solve_in_subprocess
 
 HELP = (

@@ -8,7 +8,7 @@ from ...solvers.errors import MocapAssistError
 from ...solvers.motion import Motion, Tracks
 from ...solvers.pictures import StickFigureSettings, draw_stick_figures
 from ..actions.armature_read import read_take
-from ..actions.marker_take import read_markers
+from ..actions.markers.take import read_markers
 from ..runtime.selection import played_source
 from ..scene import history
 
@@ -21,7 +21,7 @@ def draw_result(scene: bpy.types.Scene, subject: bpy.types.Object, path: Path) -
     A failed drawing leaves no picture, and is not an error.
     """
     try:
-        figures = {"result": _played(scene, subject)}
+        figures = {"result": _played_motion(scene, subject)}
         if subject.type == "ARMATURE" and (raw := history.raw_of(played_source(subject)[0])):
             given = read_take(subject, scene, source=raw).parts[0].motion
             if given.n_frames == figures["result"].n_frames:
@@ -33,7 +33,7 @@ def draw_result(scene: bpy.types.Scene, subject: bpy.types.Object, path: Path) -
         path.unlink(missing_ok=True)
 
 
-def _played(scene: bpy.types.Scene, subject: bpy.types.Object) -> Motion | Tracks:
+def _played_motion(scene: bpy.types.Scene, subject: bpy.types.Object) -> Motion | Tracks:
     if subject.type == "ARMATURE":
         return read_take(subject, scene, source=played_source(subject)).parts[0].motion
     return read_markers(subject, scene).tracks

@@ -18,7 +18,7 @@ from ...solvers.command_line.arguments import (
 from ...solvers.errors import InvalidSettingError
 from ...solvers.progress import Progress
 from ..actions.armature_read import read_take
-from ..actions.marker_take import read_markers
+from ..actions.markers.take import read_markers
 from ..blender.name_lists import join_names
 from ..check.button_settings import CheckBundle
 from ..check.checking import read_checking, show_checked

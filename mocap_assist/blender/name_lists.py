@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 
 SEPARATOR = ";"
+CHANGES_A_LIST = {"INTERNAL", "UNDO"}
+"""`bl_options` of the operators that add to such a list or remove from it."""
 
 
 def split_names(text: str) -> list[str]:

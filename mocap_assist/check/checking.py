@@ -10,8 +10,8 @@ from ...solvers.denoising import Issue
 from ..actions.armature_read import read_take
 from ..actions.contact_keys import FOOT_PROPERTIES, read_contacts
 from ..actions.limits import read_limits
-from ..actions.marker_take import MarkerTake, read_markers
-from ..actions.markers import markers_of, point_names
+from ..actions.markers.holders import markers_of, point_names
+from ..actions.markers.take import MarkerTake, read_markers
 from ..actions.take import ArmatureTake
 from ..blender.time_slices import Sliced, Steps
 from ..runtime.selection import played_source, select_only_bone, selected_subject

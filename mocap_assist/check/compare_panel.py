@@ -4,9 +4,9 @@ import bpy
 
 from ..actions.delta_layer import delta_strip
 from ..blender.mixins import PanelMixin
-from ..exporting.export_menu import EXPORT, draw_export
+from ..exporting.menu import EXPORT, draw_export
 from ..languages import translated
-from ..overlays.overlay_switch import draw_overlay_switches
+from ..overlays.comparison.switches import draw_overlay_switches
 from ..panel_parts.panel_layout import exists
 from ..runtime.selection import played_result, selected_subject
 from ..scene import history

@@ -6,8 +6,8 @@ import bpy
 from mathutils import Vector
 
 from ..actions.frames import FrameRange
-from ..actions.markers import markers_of, point_names
-from ..overlays.strip_drag import working_range
+from ..actions.markers.holders import markers_of, point_names
+from ..overlays.strip.drag import working_range
 from ..overlays.view_control import show_point
 from ..runtime.selection import selected_subject
 

@@ -7,7 +7,7 @@ import bpy
 from ...solvers.errors import InvalidMotionError
 from ..blender.mixins import PanelMixin
 from ..languages import translated
-from ..overlays.strip_switch import draw_strip_switch
+from ..overlays.strip.switch import draw_strip_switch
 from ..panel_parts.figure_rows import figure_rows, frames_text
 from ..panel_parts.fix_card import shown_card
 from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, is_wide

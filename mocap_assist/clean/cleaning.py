@@ -11,7 +11,7 @@ from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Tracks
 from ..actions.curves import GENERATED, MEASURED
 from ..actions.frames import Grid
-from ..actions.marker_take import MarkerTake
+from ..actions.markers.take import MarkerTake
 from ..actions.take import ArmatureTake
 from ..blender.time_slices import Sliced, Steps, in_thread
 from ..jobs.job import ShortSolve

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import bpy
 
 from ...solvers.recordings import SCENE_SUFFIXES
-from ..blender.name_lists import SEPARATOR, join_names, split_names
+from ..blender.name_lists import CHANGES_A_LIST, SEPARATOR, join_names, split_names
 from ..blender.path_properties import (
     HIDDEN,
     ChoosesFiles,
@@ -26,7 +26,6 @@ RECORDINGS = ";".join(
     f"*{suffix}"
     for suffix in (".bvh", ".amc", ".c3d", ".trc", ".blend", *sorted(SCENE_SUFFIXES))
 )
-CHANGES_A_LIST = {"INTERNAL", "UNDO"}
 MAX_MENU_ENTRIES = 30
 
 

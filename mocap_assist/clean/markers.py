@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
 from ..actions.armature_write import Output, assign_result, check_writable
-from ..actions.marker_take import MarkerTake, read_markers, write_markers
-from ..actions.markers import markers_of
+from ..actions.markers.holders import markers_of
+from ..actions.markers.take import MarkerTake, read_markers, write_markers
 from ..blender.time_slices import Steps
 from ..runtime.subject import Subject
 from ..scene import history

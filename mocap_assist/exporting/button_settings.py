@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from ...solvers.settings import Settings, setting
 from ..actions.frames import FrameRange
-from .export_formats import ExportedBones, FileFormat
+from .file_formats import ExportedBones, FileFormat
 
 
 @dataclass(frozen=True, kw_only=True)

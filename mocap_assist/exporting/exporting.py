@@ -22,9 +22,9 @@ from ..runtime.selection import played_source, selected_armature, why_not_read
 from ..scene.rig import placement_of
 from ..scene.scene_rate import scene_rate
 from .button_settings import ExportBundle
-from .export_formats import FileFormat
-from .export_target import format_of, refuse_recording, target_of
+from .file_formats import FileFormat
 from .solve_exporting import ExportedTake, ExportProblem, ExportRequest, export_take
+from .target_file import format_of, refuse_recording, target_of
 
 MAX_NAMED = 5
 

@@ -15,7 +15,7 @@ from ..actions.new_action import write_channels
 from ..blender import compat
 from ..rigs.rigify import is_rigify
 from ..scene.rig import END, placement_of
-from .export_formats import ExportedBones
+from .file_formats import ExportedBones
 
 MIN_LENGTH_M = 1e-3
 """Length of a bone, meters, at least. It guards against bones without a length, which

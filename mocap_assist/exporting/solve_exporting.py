@@ -11,7 +11,7 @@ from ...solvers.progress import Progress, unwatched
 from ..jobs.child_process import EXTENSION
 from ..jobs.in_blender import BackgroundBlender
 from ..jobs.job import run
-from .export_formats import ExportedBones, FileFormat
+from .file_formats import ExportedBones, FileFormat
 
 WRITER = "mocap_assist.exporting.write_file"
 TAKE = "take"

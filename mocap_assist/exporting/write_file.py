@@ -17,7 +17,7 @@ from ...solvers.rotations import IDENTITY, inverse, multiply
 from ..actions.take import skeleton_of
 from ..blender import compat
 from ..scene.rig import Placement, read_rig
-from .export_formats import FileFormat
+from .file_formats import FileFormat
 from .plain_armature import (
     BoneTree,
     SampledPoses,

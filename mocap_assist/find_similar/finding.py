@@ -10,7 +10,7 @@ from ...solvers.motion import Motion, Tracks
 from ...solvers.retrieval import FindSettings
 from ..actions.armature_read import read_take
 from ..actions.frames import FrameRange, Grid
-from ..actions.marker_take import read_markers
+from ..actions.markers.take import read_markers
 from ..blender.time_slices import Sliced, Steps
 from ..library.button_settings import FindBundle
 from ..library.library_prior import own_origins

@@ -22,7 +22,7 @@ from ..overlays.pixel_drawing import (
     window_region,
     write,
 )
-from ..overlays.strip_ranges import Color
+from ..overlays.view_drawing import Color
 from .gallery import GAP_PX, LABEL_PX, cell_at, cells_in, figure_lines, posture_row
 from .ghost_drawing import COLOR
 from .match_grid import GOOD_SCORE

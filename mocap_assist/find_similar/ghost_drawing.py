@@ -6,8 +6,7 @@ from mathutils import Matrix
 from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ..blender.redrawing import redraw_views
-from ..overlays.overlay_drawing import Color, draw_lines
-from ..overlays.view_drawing import ViewDrawing
+from ..overlays.view_drawing import Color, ViewDrawing, draw_lines
 from . import searches
 from .ghost import ghost_lines
 

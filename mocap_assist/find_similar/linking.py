@@ -64,7 +64,7 @@ def take_action(found: Found, link: bool) -> bpy.types.Action:
     path = Path(origin.path)
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == path:
         here = [each for each in bpy.data.actions if each.library is None]
-        return _named(here, origin.item, path)
+        return _find_action(here, origin.item, path)
     if not path.is_file():
         raise InvalidFileError(f"{path} was moved or deleted; its actions cannot be loaded.")
     try:
@@ -86,7 +86,7 @@ def fits_any_armature(scene: bpy.types.Scene, source: bpy.types.Action) -> bool:
     )
 
 
-def _named(actions: list[bpy.types.Action], item: str, path: Path) -> bpy.types.Action:
+def _find_action(actions: list[bpy.types.Action], item: str, path: Path) -> bpy.types.Action:
     name = _name_in([each.name for each in actions], item, path)
     return next(each for each in actions if each.name == name)
 

@@ -8,6 +8,7 @@ from ...solvers.retrieval import FindSettings
 from ..blender.mixins import PanelMixin
 from ..languages import translated
 from ..library.auto_update_list import choices_are_kept
+from ..library.source_list import draw_sources
 from ..overlays.color_icons import square_icon
 from ..panel_parts.figure_rows import frames_text
 from ..panel_parts.panel_layout import draw_sentence, exists, folded, is_wide, settings_column
@@ -18,7 +19,6 @@ from .finding import why_not_find
 from .ghost_drawing import COLOR
 from .match_grid import draw_match_grid
 from .previews import icon_of
-from .source_list import draw_sources
 
 KEEP = "mocap_assist.keep_current"
 INDEX, FIND = "mocap_assist.index_library", "mocap_assist.find_similar"

@@ -120,7 +120,7 @@ def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Findi
         found = []
         for index, match in enumerate(matches):
             progress(0.7 + 0.3 * index / len(matches), "Drawing")
-            found.append(_shown(match, numbers[match.clip], library))
+            found.append(_found_from_match(match, numbers[match.clip], library))
     return Finding(tuple(found), stage, len(entries))
 
 
@@ -141,7 +141,7 @@ def list_clips(library: str, first: int, *, progress: Progress = unwatched) -> F
         found = []
         for index, number in enumerate(numbers):
             progress(index / len(numbers), "Drawing")
-            found.append(_shown(_complete_match(entries[number]), number, clips))
+            found.append(_found_from_match(_complete_match(entries[number]), number, clips))
     stage = QueryPath(np.zeros((1, 3)), np.zeros(1), ADULT_BONE_LENGTHS_M, BROWSED_HZ)
     return Finding(tuple(found), stage, len(entries), first)
 
@@ -153,7 +153,7 @@ def _complete_match(entry: ClipEntry) -> Match:
     return Match(entry.name, range(entry.n_frames), 1.0, alignment)
 
 
-def _shown(match: Match, number: int, library: ClipLibrary) -> Found:
+def _found_from_match(match: Match, number: int, library: ClipLibrary) -> Found:
     entry, postures = library.numbered()[number], library.postures(number)
     per_frame = postures.frame_rate / entry.frame_rate
     first = min(int(match.frames.start * per_frame), postures.n_frames - 1)

@@ -8,10 +8,10 @@ from typing import Protocol
 import bpy
 
 from ...solvers.errors import InvalidFileError, InvalidMotionError
-from ..actions.markers import holder_of
+from ..actions.markers.holders import holder_of
 from ..depth.depth_preview import shows_depth
 from ..importing.depth_folders import all_recordings_in
-from ..importing.import_one import ImportedFile
+from ..importing.one_file import ImportedFile
 from ..runtime.subject import Subject
 
 QUEUE = "mocap_assist_queue"

@@ -21,20 +21,20 @@ def retargeted(here: Subject, rig: str, report: dict[str, Any]) -> Steps[dict[st
     """
     scene, subject = here.find()
     if subject.type != "ARMATURE":
-        return _reported(report, POINTS, is_notice=True)
+        return _report_sentence(report, POINTS, is_notice=True)
     bundle = RetargetBundle(RetargetChoices(target=rig), RetargetSettings())
     try:
         solve = yield from read_retarget.steps(scene, subject, bundle)
-        result = yield from _solved(solve)
+        result = yield from _solve(solve)
         sentence = yield from write_retargeted.steps(*here.find(), bundle, result)
     except SolveCancelled:
         raise
     except MocapAssistError as error:  # the fixed action is written already
-        return _reported(report, f"Not retargeted. {error}", is_notice=True)
-    return _reported(report, sentence, is_notice=False)
+        return _report_sentence(report, f"Not retargeted. {error}", is_notice=True)
+    return _report_sentence(report, sentence, is_notice=False)
 
 
-def _solved(solve: Callable[..., Any]) -> Steps[Any]:
+def _solve(solve: Callable[..., Any]) -> Steps[Any]:
     """Solve in a process of its own, unless it is short; meanwhile only Esc works."""
     if runs_here(solve) or not runs_in_slices():
         return run(solve)
@@ -49,6 +49,8 @@ def _solved(solve: Callable[..., Any]) -> Steps[Any]:
     return job.result()
 
 
-def _reported(report: dict[str, Any], sentence: str, *, is_notice: bool) -> dict[str, Any]:
+def _report_sentence(
+    report: dict[str, Any], sentence: str, *, is_notice: bool
+) -> dict[str, Any]:
     headline = sentence if is_notice else report["headline"]
     return report | {"steps": [*report["steps"], sentence], "headline": headline}

@@ -72,15 +72,15 @@ def fix(
     )
     match problem:
         case Problem():
-            written: Cleaned | Rebuilt | MarkerMotion | FixedDepth = _cleaned(
+            written: Cleaned | Rebuilt | MarkerMotion | FixedDepth = _cleaned_from_fixed(
                 problem, fixed, within(progress, TREE_FRACTION, 1.0)
             )
         case RebuildProblem():
-            written = _rebuilt(fixed)
+            written = _rebuilt_from_fixed(fixed)
         case Tracks():
-            written = _solved(fixed)
+            written = _solved_from_fixed(fixed)
         case DepthRecording():
-            written = _tracked(fixed)
+            written = _tracked_from_fixed(fixed)
     progress(1.0, "Done")
     return Fixed(written, fixed.figures(), fixed.after.issues, fixed.after.quality.report())
 
@@ -103,7 +103,7 @@ def _take_of(
             return problem
 
 
-def _cleaned(problem: Problem, fixed: FixedTake, progress: Progress) -> Cleaned:
+def _cleaned_from_fixed(problem: Problem, fixed: FixedTake, progress: Progress) -> Cleaned:
     """Clean the other trees of an armature, such as props, too."""
     other_trees = problem.recordings[1:]
     chain = fixed.chain
@@ -125,7 +125,7 @@ def _cleaned(problem: Problem, fixed: FixedTake, progress: Progress) -> Cleaned:
     return Cleaned(recordings, moved, solution, chain.planted, before, after)
 
 
-def _rebuilt(fixed: FixedTake) -> Rebuilt:
+def _rebuilt_from_fixed(fixed: FixedTake) -> Rebuilt:
     chain, solution = fixed.chain, fixed.chain.rebuilt
     assert isinstance(solution, RebuiltMotion) and isinstance(fixed.recording, Motion)
     remarks = chain.planted.remarks if chain.planted else ()
@@ -139,13 +139,13 @@ def _rebuilt(fixed: FixedTake) -> Rebuilt:
     )
 
 
-def _solved(fixed: FixedTake) -> MarkerMotion:
+def _solved_from_fixed(fixed: FixedTake) -> MarkerMotion:
     solved = fixed.chain.solved
     assert solved is not None and isinstance(fixed.recording, Motion)
     return replace(solved, motion=fixed.recording)
 
 
-def _tracked(fixed: FixedTake) -> FixedDepth:
+def _tracked_from_fixed(fixed: FixedTake) -> FixedDepth:
     captured, planted = fixed.chain.captured, fixed.chain.planted
     assert captured is not None and isinstance(fixed.recording, Motion)
     tracked = build_tracked(

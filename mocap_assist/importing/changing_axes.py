@@ -12,7 +12,7 @@ from ...solvers.recordings import Axis, FloorPlacement, FloorPlacementSettings, 
 from ...solvers.recordings.conventions import floor_level, rotation_between, with_axes
 from ...solvers.settings import setting
 from ..actions.armature_read import read_take
-from ..actions.marker_take import read_markers
+from ..actions.markers.take import read_markers
 from ..blender import compat
 from ..scene.origin import note_origin, noted_conventions, origin_of
 from ..scene.units import unit_of

@@ -20,10 +20,10 @@ from ..blender.path_properties import absolute, chosen_files
 from ..scene.scene_rate import scene_rate
 from .button_settings import ImportChoices
 from .depth_folders import is_take, readable, take_of
-from .import_transaction import READING_FRACTION, Imported, ImportTransaction
 from .recent_files import read_again
 from .recording_objects import conversion_from_choices
 from .solve_reading import Conversion
+from .transaction import READING_FRACTION, Imported, ImportTransaction
 
 MAX_PREVIEW_BYTES = 2_000_000
 """Bytes of a file up to which the dialog reads it, so that it opens without delay."""

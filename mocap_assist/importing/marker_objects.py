@@ -10,7 +10,7 @@ from ...solvers.arrays import Array
 from ...solvers.markers import find_marker_sticks, find_model_outputs
 from ...solvers.motion import Tracks
 from ...solvers.progress import Progress
-from ..actions.empties_build import build_empties, write_tracks
+from ..actions.markers.empties import build_empties, write_tracks
 from ..actions.sensor_notes import write_sensor_values
 from ..blender import compat
 from ..markers.sticks import build_sticks

@@ -13,7 +13,7 @@ from ..panel_parts.solver_ready import note_drawing
 from ..panel_parts.visibility import ALL_PANELS
 from ..runtime.selection import selected_subject
 from ..scene.origin import noted_conventions, origin_of
-from .import_menu import IMPORT
+from .menu import IMPORT
 
 CHANGE = "mocap_assist.change_axes"
 SHOW = "mocap_assist.show_depth"

@@ -9,10 +9,10 @@ from ...solvers.samples import noisy_walk
 from ..runtime.solver_operator import in_background
 from ..runtime.watch import why_busy
 from .button_settings import ImportChoices
-from .import_transaction import ImportTransaction
 from .recording_objects import conversion_from_choices
 from .show_actor import show_actor
 from .solve_reading import ReadRecording, convert_recording
+from .transaction import ImportTransaction
 
 NAME = Path("Sample Walk")
 """Name that replaces the path of a file: the sample take has no file."""

@@ -35,9 +35,9 @@ def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[SkeletonAction,
         raise InvalidFileError(
             found.refused[0] if found.refused else f"{path} has no animation of a skeleton."
         )
-    groups = _grouped(found.clips)
+    groups = _group_by_armature(found.clips)
     longest = max(clip.motion.n_frames for group in groups for clip in group)
-    listed = tuple(_body(name, group, longest) for name, group in _named(groups))
+    listed = tuple(_body(name, group, longest) for name, group in _name_groups(groups))
     takes = [
         tuple(
             SkeletonAction(clip.item, clip.motion, clip.armature, clip.left_out)
@@ -74,7 +74,7 @@ def describe_left_out(takes: Sequence[LeftOut]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _grouped(clips: Sequence[BlendClip]) -> list[list[BlendClip]]:
+def _group_by_armature(clips: Sequence[BlendClip]) -> list[list[BlendClip]]:
     """Put together the clips of each armature with the same joints.
 
     Bone lengths that an action changes by constant keys are those of the group's first clip.
@@ -92,7 +92,7 @@ def _grouped(clips: Sequence[BlendClip]) -> list[list[BlendClip]]:
     return groups
 
 
-def _named(groups: list[list[BlendClip]]) -> list[tuple[str, list[BlendClip]]]:
+def _name_groups(groups: list[list[BlendClip]]) -> list[tuple[str, list[BlendClip]]]:
     """Name groups after their armatures; of one armature, also after the first take."""
     armatures = [group[0].armature for group in groups]
     return [

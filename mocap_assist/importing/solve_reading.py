@@ -167,7 +167,7 @@ def read_takes(
     contents: list[ReadRecording] = []
     for index in chosen:
         first, *others = (
-            replace(take, motion=_settled(take.motion, conversion))
+            replace(take, motion=_settle_scene_take(take.motion, conversion))
             for take in bodies.read(index, unwatched)
         )
         take = first.name if others else ""
@@ -221,7 +221,7 @@ def read_file(path: Path, conversion: Conversion) -> ReadRecording:
     return _read_bodies(path, conversion, unwatched)[0]
 
 
-def _settled(motion: Motion, conversion: Conversion) -> Motion:
+def _settle_scene_take(motion: Motion, conversion: Conversion) -> Motion:
     """Return a take of another program in the unit and axes of the settings."""
     reading, conventions = conversion.reading, conventions_of(motion)
     if unit := reading.unit.metres:
@@ -248,7 +248,7 @@ def convert_recording(recording: Recording, conversion: Conversion) -> Motion | 
 
 def convert_tracked(recording: TrackedRecording, conversion: Conversion) -> Motion | Tracks:
     """Convert joints or markers to a motion or points for the scene."""
-    moving = scaled(_joined(recording, conversion.armature), conversion.scale)
+    moving = scaled(_motion_or_points(recording, conversion.armature), conversion.scale)
     return moving if conversion.frame_rate is None else at_rate(moving, conversion.frame_rate)
 
 
@@ -273,7 +273,7 @@ def connected_joints(recording: JointRecording) -> list[int]:
     return [joint for joint, parent in enumerate(parents) if parent >= 0 or joint in parents]
 
 
-def _joined(recording: TrackedRecording, armature: bool) -> Motion | Tracks:
+def _motion_or_points(recording: TrackedRecording, armature: bool) -> Motion | Tracks:
     """Convert a camera's joints to a motion for an armature, otherwise to points."""
     if not isinstance(recording, JointRecording):
         return recording

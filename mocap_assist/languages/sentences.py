@@ -32,11 +32,11 @@ def translated(text: str) -> str:
     language = bpy.app.translations.locale
     if not text or language not in LANGUAGES:
         return text
-    return _remembered(text, language)
+    return _cached_translation(text, language)
 
 
 @lru_cache(MAX_CACHED)
-def _remembered(text: str, language: str) -> str:
+def _cached_translation(text: str, language: str) -> str:
     """Return a translation; the language is a key of the cache."""
     look_up = bpy.app.translations.pgettext_iface
     return translate_sentence(text, lambda english: str(look_up(english, CONTEXT)))

@@ -20,7 +20,7 @@ from .sources import index_problem, library_path, listed_sources
 def auto_updated_libraries() -> list[IndexProblem]:
     """Return the libraries that are kept current."""
     stored = permissions.entries(permissions.LIBRARIES)
-    return [kept for each in stored if (kept := _problem(each)) is not None]
+    return [kept for each in stored if (kept := _problem_from_stored(each)) is not None]
 
 
 def is_kept(problem: IndexProblem) -> bool:
@@ -30,7 +30,9 @@ def is_kept(problem: IndexProblem) -> bool:
 
 def keep(problem: IndexProblem) -> None:
     """Update a library automatically from these sources, which replace earlier ones."""
-    permissions.change(permissions.LIBRARIES, [*_without(problem.library), _stored(problem)])
+    permissions.change(
+        permissions.LIBRARIES, [*_without(problem.library), _stored_from_problem(problem)]
+    )
 
 
 def stop_keeping(library: str) -> None:
@@ -78,10 +80,14 @@ def choices_are_kept(choices: LibraryChoices) -> bool:
 
 
 def _without(library: str) -> list[Any]:
-    return [_stored(each) for each in auto_updated_libraries() if each.library != library]
+    return [
+        _stored_from_problem(each)
+        for each in auto_updated_libraries()
+        if each.library != library
+    ]
 
 
-def _stored(problem: IndexProblem) -> dict[str, Any]:
+def _stored_from_problem(problem: IndexProblem) -> dict[str, Any]:
     return {
         "library": problem.library,
         "places": [[source.path, source.assets_only] for source in problem.sources],
@@ -90,8 +96,8 @@ def _stored(problem: IndexProblem) -> dict[str, Any]:
     }
 
 
-def _problem(stored: Any) -> IndexProblem | None:
-    """Undo `_stored`; None for what this version does not understand."""
+def _problem_from_stored(stored: Any) -> IndexProblem | None:
+    """Undo `_stored_from_problem`; None for what this version does not understand."""
     try:
         sources = tuple(Source(str(path), bool(assets)) for path, assets in stored["places"])
         tags = tuple(map(str, stored["tags"]))

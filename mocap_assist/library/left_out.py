@@ -13,10 +13,10 @@ from ..jobs.in_blender import LeftOut
 
 MIN_SHIFT_M = 0.02
 """Change of a bone's distance to its parent, meters, from which it is reported. Chosen by hand:
-half of the width of a wrist."""
+half of the width of a wrist. It decides a sentence of the report only."""
 MIN_GROWTH = 0.02
 """Difference of a bone's scale from 1, a ratio, from which it is reported. Chosen by hand: 1 cm
-of a thigh."""
+of a thigh. It decides a sentence of the report only."""
 
 
 def find_left_out(source: Source, take: ArmatureTake) -> LeftOut:

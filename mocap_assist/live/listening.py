@@ -17,7 +17,7 @@ from ...solvers.workflows import LiveSession, SessionUpdate
 from ..blender.redrawing import redraw
 from ..languages import translated
 from ..overlays.live_figure import LiveFigure
-from ..overlays.overlay_drawing import Color
+from ..overlays.view_drawing import Color
 from .commands import library_news, obey_all, search_for
 from .stream_state import issue_text
 

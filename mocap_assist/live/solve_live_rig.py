@@ -95,7 +95,7 @@ class LiveRig:
         self._limits = choices.limits
         self._start = calibration.root_positions[-1] * (1.0, 1.0, 0.0)
         roles = find_humanoid_map(calibration.skeleton)
-        measured = _moved(calibration, -self._start)
+        measured = _shift_root(calibration, -self._start)
         self._retargeting = LiveRetargeting(
             measured,
             roles,
@@ -121,7 +121,7 @@ class LiveRig:
 
     def keys(self, live: LiveMotion, n_skipped: int) -> LiveFrameKeys:
         """Return the channels of the controls for the actor's next pose."""
-        posed, contacts = self._posed(live)
+        posed, contacts = self._pose_target(live)
         keys = keys_of(self._target, forward_kinematics(posed), self._still)
         rotations = [keys[bone].rotations for bone in self.bones.rotating]
         locations = [keys[bone].locations for bone in self.bones.moving]
@@ -134,9 +134,9 @@ class LiveRig:
             contacts,
         )
 
-    def _posed(self, live: LiveMotion) -> tuple[Motion, tuple[bool, bool]]:
+    def _pose_target(self, live: LiveMotion) -> tuple[Motion, tuple[bool, bool]]:
         """Return the pose of the target with its feet held, as far as its limits allow."""
-        posed = self._retargeting.update(_moved(live.motion, -self._start))
+        posed = self._retargeting.update(_shift_root(live.motion, -self._start))
         elapsed_s = (live.frame - self._last_frame) / self.frame_rate
         self._last_frame = live.frame
         posed = self._within_limits(posed)
@@ -171,5 +171,5 @@ def _sources(target: TargetRig, roles: HumanoidMap, names: tuple[str, ...]) -> d
     return found
 
 
-def _moved(motion: Motion, offset: Array) -> Motion:
+def _shift_root(motion: Motion, offset: Array) -> Motion:
     return motion.with_poses(motion.rotations, motion.root_positions + offset)

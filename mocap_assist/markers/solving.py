@@ -10,7 +10,7 @@ from ...solvers.errors import InvalidMotionError
 from ...solvers.markers import SolveSettings
 from ...solvers.workflows import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from ..actions.armature_build import build_armature
-from ..actions.marker_take import read_markers
+from ..actions.markers.take import read_markers
 from ..actions.new_action import write_motion
 from ..blender.time_slices import Sliced, Steps
 from ..runtime.selection import played_source, selected_subject

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import bpy
 
-from ..actions.markers import STICKS
+from ..actions.markers.holders import STICKS
 from ..blender.data_names import fitting_name
 from ..scene.scene_objects import add_unselected
 

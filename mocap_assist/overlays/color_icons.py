@@ -7,7 +7,8 @@ import bpy.utils.previews
 import numpy as np
 
 from ...solvers.arrays import Single
-from .strip_ranges import COLORS, Color, Mark
+from .marked_ranges import COLORS, Mark
+from .view_drawing import Color
 
 ICON_PX = 16
 """Size of an icon, in pixels at scale 1: Blender's own."""

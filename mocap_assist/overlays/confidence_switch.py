@@ -12,7 +12,7 @@ from ..panel_parts.panel_layout import draw_sentence
 from ..panel_parts.preference_values import preferred
 from .color_icons import draw_marks
 from .confidence_colors import ColoredBones, available_terms, colored_bones_at
-from .strip_ranges import MARKS, StripRow
+from .marked_ranges import MARKS, StripRow
 from .view_drawing import ViewDrawing, draw_in_front, visible_active
 
 WIDTH_FACTOR = 2.0

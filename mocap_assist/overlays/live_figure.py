@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from ...solvers.motion import joint_parents
 from ...solvers.recordings.streams import LiveFrame
 from ..scene.units import unit_of
-from .overlay_drawing import Color, draw_lines
-from .view_drawing import ViewDrawing
+from .view_drawing import Color, ViewDrawing, draw_lines
 
 MIN_CONFIDENCE = 0.25
 """Bones below this confidence are not drawn."""

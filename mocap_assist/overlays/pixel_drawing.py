@@ -8,7 +8,7 @@ import gpu
 import numpy as np
 
 from ...solvers.arrays import Array
-from .strip_ranges import Color
+from .view_drawing import Color
 
 TEXT_PX = 12
 """Size of a text, in pixels at scale 1."""

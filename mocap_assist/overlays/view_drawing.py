@@ -9,6 +9,8 @@ import numpy as np
 from bpy.types import SpaceView3D
 from numpy.typing import NDArray
 
+Color = tuple[float, float, float, float]
+
 
 class ViewDrawing:
     """Calls `draw` for every redraw of a 3D View with overlays, until it is closed.
@@ -46,6 +48,17 @@ def visible_active(context: bpy.types.Context) -> bpy.types.Object | None:
     if active is None or not active.visible_get(viewport=context.space_data):
         return None
     return active
+
+
+def draw_lines(
+    lines: NDArray[np.floating[Any]], matrix: Any, color: Color, width: float
+) -> None:
+    """Draw lines of shape (n_lines, 2, 3) in the space of `matrix`, in front of all objects."""
+    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
+    points = np.ascontiguousarray(lines.reshape(-1, 3), dtype=np.float32)
+    shader.bind()
+    shader.uniform_float("color", color)
+    draw_in_front(shader, {"pos": points}, matrix, width)
 
 
 def draw_in_front(

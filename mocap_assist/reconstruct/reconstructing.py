@@ -155,7 +155,7 @@ def _problem(
     elif choices.postures is Postures.LEARNED:
         if not choices.postures_file:
             raise InvalidMotionError("Choose a pose file, or another source of poses.")
-        postures = _dated(choices.postures_file)
+        postures = _file_and_date(choices.postures_file)
     state = read_states(reading.recorded, body.skeleton.names, reading.take.frames)
     return RebuildProblem(
         body=body,
@@ -166,7 +166,9 @@ def _problem(
         settings=settings.rebuilding,
         examples=examples,
         postures_file=postures,
-        residuals_file=_dated(choices.residuals_file) if choices.residuals_file else None,
+        residuals_file=_file_and_date(choices.residuals_file)
+        if choices.residuals_file
+        else None,
         library=library,
     )
 
@@ -175,7 +177,7 @@ def _source_of(action: bpy.types.Action) -> tuple[str, int, str] | None:
     """Return the file of an action, its date, and its body there; None if it is gone."""
     origin = origin_of(action)
     path, body = (str(origin.get(name, "")) for name in ("file", "body"))
-    return (*_dated(path), body) if absolute(path).is_file() else None
+    return (*_file_and_date(path), body) if absolute(path).is_file() else None
 
 
 def _is_resizable(take: ArmatureTake) -> bool:
@@ -189,7 +191,7 @@ def _sensor_of(action: bpy.types.Action) -> Sensor:
     return Sensor(noted) if noted in {one.value for one in Sensor} else Sensor.OTHER
 
 
-def _dated(file: str) -> tuple[str, int]:
+def _file_and_date(file: str) -> tuple[str, int]:
     """Return a file and its date; 0 if it is missing, which its reader reports."""
     path = absolute(file)
     return str(path), path.stat().st_mtime_ns if path.is_file() else 0

@@ -7,8 +7,7 @@ import numpy as np
 
 from ...solvers.arrays import Single
 from ..blender.redrawing import redraw_views
-from ..overlays.overlay_drawing import Color, draw_lines
-from ..overlays.view_drawing import ViewDrawing
+from ..overlays.view_drawing import Color, ViewDrawing, draw_lines
 from ..panel_parts.preference_values import preferred
 from ..runtime.selection import select_only_bone
 from .bone_map import SIDES, listed_armature

@@ -14,7 +14,7 @@ from ..blender.mixins import OperatorMixin
 from ..blender.path_properties import absolute, path_property
 from ..languages import translated
 from ..overlays.color_icons import BARS, bars_icon, square_icon
-from ..overlays.strip_ranges import MARKS, Mark, StripRow, confidence_mark
+from ..overlays.marked_ranges import MARKS, Mark, StripRow, confidence_mark
 from ..panel_parts.panel_layout import draw_sentence, is_wide
 from ..runtime.selection import selected_armature, why_not_retarget
 from .bone_highlight import COLOR, SWITCH, why_certain

@@ -9,6 +9,7 @@ from ...solvers.arrays import Array
 from ..blender.redrawing import redraw_views
 from ..overlays.color_icons import square_icon
 from ..overlays.confidence_colors import UNKNOWN
+from ..overlays.marked_ranges import COLORS, confidence_mark
 from ..overlays.pixel_drawing import (
     TEXT_COLOR,
     Box,
@@ -17,8 +18,7 @@ from ..overlays.pixel_drawing import (
     free_space,
     write,
 )
-from ..overlays.strip_ranges import COLORS, Color, confidence_mark
-from ..overlays.view_drawing import ViewDrawing
+from ..overlays.view_drawing import Color, ViewDrawing
 from ..panel_parts.preference_values import preferred
 from .bone_highlight import COLOR as HIGHLIGHT
 from .bone_map import SIDES, listed_armature

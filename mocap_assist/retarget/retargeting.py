@@ -220,7 +220,7 @@ def _read(here: Subject, settings: RetargetBundle) -> Steps[RetargetScene]:
     sources = tuple(each.find() for each in lasting)
     maps, known = _roles(scene, source, target, choices)
     on_root = settings.retargeting.root_motion is RootMotion.ROOT_BONE
-    roles = _wanted(maps)
+    roles = _roles_without_missing_fingers(maps)
     rig, switches = read_target(scene, target, roles, choices.limbs, on_root)
     problem = RetargetProblem(tuple(map(_clip, takes)), known, rig, settings.retargeting)
     return RetargetScene(target, sources, tuple(takes), switches, maps, problem)
@@ -259,7 +259,7 @@ def _clip(take: ArmatureTake) -> StagedMotion:
     return StagedMotion(take.parts[0].motion, origin, vertical_part(take.rest.rotations[0]))
 
 
-def _wanted(maps: BoneMaps) -> HumanoidMap:
+def _roles_without_missing_fingers(maps: BoneMaps) -> HumanoidMap:
     """Return the target's roles, without fingers that the source lacks."""
     joints = maps.target.joints.items()
     kept = {role: bone for role, bone in joints if maps.source.has(role) or not is_finger(role)}

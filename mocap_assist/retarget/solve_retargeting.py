@@ -111,7 +111,7 @@ def _retarget(
     )
     progress(0.8, "Moving controls")
     if clip.start is not None:
-        result = _started(result, target.humanoid, clip.start)
+        result = _moved_to_start(result, target.humanoid, clip.start)
     gaps = ~np.isfinite(result.rotations).all(axis=-1)
     gaps[:, 0] |= ~np.isfinite(result.root_positions).all(axis=-1)
     completed = result.with_poses(
@@ -126,8 +126,8 @@ def _retarget(
     }
 
 
-def _started(motion: Motion, roles: HumanoidMap, start: Start) -> Motion:
-    """Return the motion with a rigid transform, so that it begins at `start`."""
+def _moved_to_start(motion: Motion, roles: HumanoidMap, start: Start) -> Motion:
+    """Return the motion, moved and turned as a whole so that it begins at `start`."""
     body = normalize_postures(postures_from_motion(motion, roles), motion.frame_rate)
     half = 0.5 * (start.heading - body.headings[0])
     yaw = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])

@@ -96,7 +96,7 @@ def unbake(problem: UnbakeProblem, *, progress: Progress = unwatched) -> Unbaked
     error, n_trees = 0.0, len(problem.trees)
     for index, tree in enumerate(problem.trees):
         tree_progress = within(progress, index / n_trees, (index + 1) / n_trees)
-        found, off = _unbake_tree(_pruned(tree), problem, tree_progress)
+        found, off = _unbake_tree(_without_still_bones(tree), problem, tree_progress)
         keys |= found
         error = max(error, off)
     return Unbaked(keys, error)
@@ -167,10 +167,10 @@ def _bone_curve(rotations: Array, shape: BoneShape, curve: KeyCurve, finest: flo
         return KeyCurve(curve.frames, curve.values[:, columns], curve.slopes[:, columns])
     channels = channels_from_quaternions(basis, shape.mode, near)
     allowed = max(float(_curve_errors(curve, basis, QUATERNION).max()), finest)
-    return _refined(channels, curve.frames, basis, shape.mode, allowed)
+    return _add_needed_keys(channels, curve.frames, basis, shape.mode, allowed)
 
 
-def _refined(
+def _add_needed_keys(
     channels: Array, frames: NDArray[np.intp], basis: Array, mode: str, allowed: float
 ) -> KeyCurve:
     """Add keys where interpolated axis-angles deviate too far from quaternions."""
@@ -219,7 +219,7 @@ def _error(tree: KeyedMotion, curves: Sequence[KeyCurve | None], root: KeyCurve)
     return float(np.linalg.norm(played - points.positions(truth), axis=-1).max())
 
 
-def _pruned(tree: KeyedMotion) -> KeyedMotion:
+def _without_still_bones(tree: KeyedMotion) -> KeyedMotion:
     """Leave out bones that never move; a control rig has hundreds of helpers."""
     motion = tree.motion
     skeleton = motion.skeleton

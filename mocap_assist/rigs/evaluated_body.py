@@ -68,7 +68,7 @@ def with_body_shown(
     ordered = [role for role in HUMANOID_ROLES if role in body.joints]
     names = tuple(body.joints[role] for role in ordered)
     index = [rig.bones.index(name) for name in names]
-    rotations, root_positions = yield from _shown(scene, armature, names, take, source)
+    rotations, root_positions = yield from _visible_poses(scene, armature, names, take, source)
     upright = multiply(rest.rotations[0], rig.rest_rotations[index])
     world = multiply(rotations, inverse(upright))
     parents = tuple(_parent(role, ordered) for role in ordered)
@@ -83,7 +83,7 @@ def with_body_shown(
     return replace(take, parts=(shown, *take.parts[1:]))
 
 
-def _shown(
+def _visible_poses(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
     names: tuple[str, ...],
@@ -101,7 +101,7 @@ def _shown(
         if rotations:
             yield len(rotations) / len(take.frames)
         scene, armature, source = (each.find() for each in lasting)
-        with values_kept(armature, source), _played(scene, armature, source):
+        with values_kept(armature, source), _playing(scene, armature, source):
             for frame in take.frames[len(rotations) :]:
                 pose_rotations, position = _pose_at(scene, armature, names, frame)
                 rotations.append(pose_rotations)
@@ -125,7 +125,7 @@ def _pose_at(
 
 
 @contextmanager
-def _played(
+def _playing(
     scene: bpy.types.Scene, armature: bpy.types.Object, source: Source
 ) -> Iterator[None]:
     """Let the armature play an action temporarily, then restore its own and the frame."""

@@ -48,7 +48,7 @@ def find_carriers(
     """
     names = [name for name, _ in controls]
     movers = [name for name, moves in controls if moves]
-    with _copied(scene, armature, switches) as (copy, depsgraph):
+    with _posable_copy(scene, armature, switches) as (copy, depsgraph):
         height = max(max(bone.tail_local.length for bone in copy.data.bones), 1e-9)
         probes = [
             _carried_and_moved(scene, copy, depsgraph, names, movers, seed, height)
@@ -77,7 +77,7 @@ def _same(carried: Array, moved: Mapping[str, Array], name: str, height: float) 
 
 
 @contextmanager
-def _copied(
+def _posable_copy(
     scene: bpy.types.Scene, armature: bpy.types.Object, switches: Switches
 ) -> Iterator[tuple[bpy.types.Object, bpy.types.Depsgraph]]:
     copy = armature.copy()

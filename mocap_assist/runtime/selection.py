@@ -6,7 +6,7 @@ from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
 from ..actions.armature_read import action_of
 from ..actions.armature_write import check_writable
-from ..actions.markers import first_marker_of, holder_of, markers_of, point_names
+from ..actions.markers.holders import first_marker_of, holder_of, markers_of, point_names
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history

@@ -12,7 +12,7 @@ from ..blender.redrawing import redraw_views
 from ..overlays.body_drawing import Solid, draw_solid, solid
 from ..overlays.confidence_colors import color_from_reliability, reliability_source
 from ..overlays.view_drawing import ViewDrawing, visible_active
-from .tracked_body import TrackedBody, bones_of, is_tracked, posed_frames
+from .tracked_armature.body import TrackedBody, bones_of, is_tracked, posed_frames
 
 NEUTRAL_COLOR = np.array([0.62, 0.72, 0.85, 1.0])
 """Color of a joint without a confidence."""

@@ -9,7 +9,7 @@ from ..blender.mixins import PanelMixin
 from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, split_column
 from ..panel_parts.visibility import shows_all
 from .retracking import why_not_retrack
-from .tracked_body import is_tracked
+from .tracked_armature.body import is_tracked
 from .tracking import selected_preview, why_not_track
 
 TRACK, RETRACK = "mocap_assist.track_depth", "mocap_assist.retrack"

@@ -23,10 +23,10 @@ from .live_body import BodyDisplay, LiveBody
 from .low_confidence import list_low_confidence
 from .solve_retracking import Correction, TrackedActor, retrack_recording
 from .solve_tracking import LowConfidenceRange, low_confidence_ranges, mean_cm
-from .tracked_body import TrackedBody, armature_from_motion, is_tracked
-from .tracked_checks import check_in_time
-from .tracked_curves import update_reliability, write_residual
-from .tracked_take import TrackedTake, read_tracked_take
+from .tracked_armature.body import TrackedBody, armature_from_motion, is_tracked
+from .tracked_armature.checks import check_in_time
+from .tracked_armature.curves import update_reliability, write_residual
+from .tracked_armature.take import TrackedTake, read_tracked_take
 from .tracking import WatchChoices
 
 OPERATION = "retrack"
@@ -66,7 +66,7 @@ def read_retracking(
     check_writable(armature)
     here = Subject.of(scene, armature)
     check_in_time(armature, played_source(armature))
-    take, played = yield from _played(armature)
+    take, played = yield from _read_played_take(armature)
     scene, armature = here.find()
     source = played_source(armature)
     frame = round((scene.frame_current_final - take.frames[0]) / take.tracked.shown.step)
@@ -75,7 +75,9 @@ def read_retracking(
             f"Frame {scene.frame_current_final:g} is not in the recording. Go to one from"
             f" {take.frames[0]:.2f} to {take.frames[-1]:.2f}, and pose {armature.name} there."
         )
-    correction = Correction(frame, take.pose(armature), _fixed(source, take, frame))
+    correction = Correction(
+        frame, take.pose(armature), _earlier_corrections(source, take, frame)
+    )
     return PreviewSolve(retrack_recording, played, correction, settings.retracking)
 
 
@@ -120,7 +122,7 @@ def write_retracked(
     Raises InvalidMotionError if the armature plays another motion than the one that was solved.
     """
     read = Played.of(scene, armature)
-    take, problem = yield from _played(armature)
+    take, problem = yield from _read_played_take(armature)
     yield from check_unchanged.steps(read.find()[1], solved_digest, problem)
     _, armature, source = read.find()
     rows = slice(result.first, result.last + 1)
@@ -144,7 +146,7 @@ def write_retracked(
     return f"{source_new[0].name}: {report}"
 
 
-def _played(armature: bpy.types.Object) -> Steps[tuple[TrackedTake, TrackedActor]]:
+def _read_played_take(armature: bpy.types.Object) -> Steps[tuple[TrackedTake, TrackedActor]]:
     """Return the take of an armature, and the same with the data for tracking."""
     tracked = TrackedBody.read(armature)
     recording = open_recording(tracked.shown)
@@ -156,7 +158,7 @@ def _played(armature: bpy.types.Object) -> Steps[tuple[TrackedTake, TrackedActor
     )
 
 
-def _fixed(source: Source, take: TrackedTake, frame: int) -> tuple[int, ...]:
+def _earlier_corrections(source: Source, take: TrackedTake, frame: int) -> tuple[int, ...]:
     """Return the other frames with earlier corrections."""
     image_indices = [
         int(entry["picture"]) - take.first

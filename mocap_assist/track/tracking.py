@@ -30,8 +30,8 @@ from ..scene.units import unit_of
 from .live_body import LiveBody, stage_of_preview
 from .low_confidence import list_low_confidence
 from .solve_tracking import Tracked, mean_cm, partial_result, track_recording
-from .tracked_body import TrackedBody
-from .tracked_curves import write_residual
+from .tracked_armature.body import TrackedBody
+from .tracked_armature.curves import write_residual
 
 MODE = "QUATERNION"
 CAPTURED = "mocap_assist_captured"

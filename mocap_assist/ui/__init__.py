@@ -3,17 +3,15 @@
 from .. import languages
 from ..check import issue_views, key_map, renewing
 from ..clean import example_list
-from ..exporting import export_menu
-from ..find_similar import match_grid, source_list
+from ..exporting import menu as export_menu
+from ..find_similar import match_grid
 from ..find_similar import panel as library_panel
-from ..importing import import_menu
-from ..overlays import (
-    color_icons,
-    confidence_switch,
-    overlay_switch,
-    raw_curves_switch,
-    strip_switch,
-)
+from ..importing import menu as import_menu
+from ..library import source_list
+from ..overlays import color_icons, confidence_switch
+from ..overlays.comparison import raw_curves_switch
+from ..overlays.comparison import switches as overlay_switch
+from ..overlays.strip import switch as strip_switch
 from ..panel_parts import presets
 from ..retarget import bone_highlight, bone_list, rest_preview
 from ..retarget import panel as retarget_panel

@@ -12,7 +12,7 @@ from ..actions.armature_write import Output
 from ..check.key_map import draw_keys
 from ..languages import translated
 from ..library.auto_update_list import auto_updated_libraries, stop_keeping
-from ..overlays import overlay_drawing
+from ..overlays.comparison import drawing
 from ..panel_parts.manual_page import start_page
 from ..panel_parts.panel_layout import draw_sentence
 from ..panel_parts.preference_values import EXTENSION, preferences, preferred
@@ -31,7 +31,7 @@ def _move_panels(self: bpy.types.AddonPreferences, context: bpy.types.Context) -
 
 
 def _redraw(self: bpy.types.AddonPreferences, context: bpy.types.Context) -> None:
-    overlay_drawing.refresh()
+    drawing.refresh()
 
 
 class MOCAP_AP_preferences(bpy.types.AddonPreferences):

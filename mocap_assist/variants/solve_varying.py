@@ -89,11 +89,11 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
         motions.append(resample_variant(aligned, problem.frame_rate) if finer else aligned)
         pictures.append(thumbnail(normalized.postures))
     remarks = (*made.remarks, SIMILAR_VARIANTS) if are_similar(motions) else made.remarks
-    keys = _keyed(motions, problem.controls, within(progress, 0.9, 1.0))
+    keys = _control_channels(motions, problem.controls, within(progress, 0.9, 1.0))
     return Varied(tuple(motions), tuple(pictures), remarks, keys)
 
 
-def _keyed(
+def _control_channels(
     motions: Sequence[Motion], controls: Controls | None, progress: Progress
 ) -> Retargeted:
     """Return the channels of a control rig's bones for each motion of its body."""

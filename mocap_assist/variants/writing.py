@@ -61,10 +61,10 @@ def write_variants(
                 scene, armature = here.find()
         check_writable(armature)
     except BaseException:
-        for action in _numbered(made):
+        for action in _actions_with_numbers(made):
             bpy.data.actions.remove(action)
         raise
-    listing.fill(scene, armature, _numbered(made))
+    listing.fill(scene, armature, _actions_with_numbers(made))
     return writer.message()
 
 
@@ -138,7 +138,7 @@ class _Writer(NamedTuple):
         return " ".join([f"{made} of {of}.", *self.varied.remarks])
 
 
-def _numbered(numbers: list[int]) -> list[bpy.types.Action]:
+def _actions_with_numbers(numbers: list[int]) -> list[bpy.types.Action]:
     """Return the actions with these numbers of the session."""
     wanted = set(numbers)
     return [action for action in bpy.data.actions if action.session_uid in wanted]

@@ -54,7 +54,7 @@ def perform_replay(task: Task, prepared: None, progress: Progress) -> Outcome:
         )
     recording = read_recorded(task.source, arguments, within(progress, 0.0, 0.1))
     if arguments.rate is not None:
-        recording = _resampled(recording, arguments.rate)
+        recording = _resample(recording, arguments.rate)
     packets = encode_recording(
         recording, PROTOCOLS[arguments.protocol], is_repeated=arguments.loop
     )
@@ -74,7 +74,7 @@ def perform_replay(task: Task, prepared: None, progress: Progress) -> Outcome:
     return Outcome(message, {"n_frames": sent, "port": arguments.port})
 
 
-def _resampled(
+def _resample(
     recording: Motion | Tracks | JointRecording, frame_rate: float
 ) -> Motion | Tracks | JointRecording:
     """Return a recording at another rate; joints of sensors lose their tracking states."""

@@ -10,8 +10,9 @@ from ..motion.skeletons import GROUND_WINDOW_S, MAX_CLIMB_M
 from ..signals import TwoStateFilter
 
 MAX_LINE_S = 0.15
-"""Seconds of frames from which a speed is measured at most. It bounds the delay of contacts in
-noisy streams to half of it, and what a single frame after dropped ones counts."""
+"""Maximum duration, seconds, of the frames from which a speed is measured. It bounds the delay
+of contacts in noisy streams to half of it, and the weight of a single frame after dropped
+ones."""
 
 
 class RunningLine:
@@ -67,12 +68,12 @@ class RunningLine:
 class LiveContacts:
     """The probability of foot contact by the model of `contact_probabilities`, frame by frame.
 
-    What needs later frames there looks back here: speeds are those of a line through the last
-    frames, the ground is the highest level of the last two seconds above which the lower foot
-    stayed for one, and the hidden Markov model is filtered forward only. So contacts begin and
-    end up to some frames late. The ground is at most `MAX_CLIMB_M` above the lowest ground of
-    the last two seconds: a floor that is higher counts three seconds after the step onto it,
-    and a single low frame does not count.
+    Where that model needs later frames, this one looks back: speeds are those of a line through
+    the last frames, the ground is the highest level of the last two seconds above which the
+    lower foot stayed for one, and the hidden Markov model is filtered forward only. So contacts
+    begin and end a few frames late at most. The ground is at most `MAX_CLIMB_M` above the
+    lowest ground of the last two seconds: a floor that is higher counts three seconds after the
+    step onto it, and a single low frame does not count.
 
     Parameters
     ----------

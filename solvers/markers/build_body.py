@@ -44,13 +44,13 @@ def joints_with(landmarks: Collection[str]) -> tuple[JointPrior, ...]:
     if "chest" in excluded:
         excluded.add("spine")
     selected: dict[str, JointPrior] = {}
-    for joint in (*CENTRAL_JOINTS, *_mirrored()):
+    for joint in (*CENTRAL_JOINTS, *_joints_of_both_sides()):
         if joint.name not in excluded and (not joint.parent or joint.parent in selected):
             selected[joint.name] = joint
     return tuple(selected.values())
 
 
-def _mirrored() -> list[JointPrior]:
+def _joints_of_both_sides() -> list[JointPrior]:
     names = {joint.name for joint in SIDE}
     return [
         joint._replace(

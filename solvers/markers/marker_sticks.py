@@ -62,7 +62,7 @@ def _sticks_of_solved_sets(names: Sequence[str]) -> Sticks:
     for subject in subjects:
         markers = find_marker_set(names, subject).markers
         indices = {landmark: index_of[name] for landmark, name in markers.items()}
-        sticks |= dict.fromkeys(_connected(indices, CHAINS))
+        sticks |= dict.fromkeys(_consecutive_points(indices, CHAINS))
     return tuple(sticks)
 
 
@@ -75,7 +75,9 @@ def _sticks_of(title: str, names: Sequence[str]) -> Sticks:
             subject, label = found
             subjects.setdefault(subject, {}).setdefault(label, index)
     known = [each for each in subjects.values() if len(each) >= MIN_LABELS]
-    return tuple(dict.fromkeys(pair for each in known for pair in _connected(each, chains)))
+    return tuple(
+        dict.fromkeys(pair for each in known for pair in _consecutive_points(each, chains))
+    )
 
 
 def _split_label(name: str, labels: Container[str]) -> tuple[str, str] | None:
@@ -85,7 +87,7 @@ def _split_label(name: str, labels: Container[str]) -> tuple[str, str] | None:
     return next((part for part in parts if part[1] in labels), None)
 
 
-def _connected(
+def _consecutive_points(
     indices: Mapping[str, int], chains: Sequence[Sequence[str]]
 ) -> Iterator[tuple[int, int]]:
     """Yield the pairs of points that follow each other on a chain."""

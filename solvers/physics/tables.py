@@ -44,7 +44,7 @@ MAX_RADIUS_M = 0.105
 `make sensitivity` varies it."""
 
 DENSITY_KG_M3 = 1000.0
-"""Density of a body. Chosen by hand; `make sensitivity` varies it."""
+"""Density of a body, that of water. Chosen by hand; `make sensitivity` varies it."""
 
 
 def role_without_side(role: str) -> str:

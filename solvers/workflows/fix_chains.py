@@ -79,11 +79,11 @@ def clean_motion(
         recording=planting_result.motion,
         steps=(
             reason,
-            *_cleaned(motion, denoised),
-            *_planted(planting_result),
+            *_describe_cleaning(motion, denoised),
+            *_describe_planting(planting_result),
             *low_confidence,
         ),
-        notices=(*planting_result.remarks, *low_confidence, *_unfinished(denoised)),
+        notices=(*planting_result.remarks, *low_confidence, *_describe_convergence(denoised)),
         planted=planting_result.planted,
         denoised=denoised,
     )
@@ -98,11 +98,15 @@ def clean_points(tracks: Tracks, progress: Progress) -> ChainResult:
         "The points were cleaned, but a skeleton needs the Plug-in-Gait or CMU markers; missing"
         f" are {missing}."
     )
-    steps = (reason, *_unswapped(len(unswapped.swaps)), *_cleaned(tracks, denoised))
+    steps = (
+        reason,
+        *_describe_swaps(len(unswapped.swaps)),
+        *_describe_cleaning(tracks, denoised),
+    )
     return ChainResult(
         recording=denoised.recording,
         steps=steps,
-        notices=(reason, *_unfinished(denoised)),
+        notices=(reason, *_describe_convergence(denoised)),
         denoised=denoised,
         unswapped=unswapped,
     )
@@ -122,10 +126,10 @@ def solve_markers(
     steps = [
         f"These are markers of the set {solved.solved.marker_set.name}: a skeleton was solved"
         " from them.",
-        *_unswapped(len(solved.swaps)),
+        *_describe_swaps(len(solved.swaps)),
         *[f"Filled {n_filled} samples of missing markers."] * bool(n_filled),
         f"The skeleton has {n_joints} joints, and the mean marker error is {error:.1f} mm.",
-        *_planted(planting_result),
+        *_describe_planting(planting_result),
     ]
     return ChainResult(
         recording=planting_result.motion,
@@ -145,7 +149,7 @@ def reconstruct_joints(
     planting_result = PlantingResult(rebuilt.motion, rebuilt.planted, [])
     return ChainResult(
         recording=rebuilt.motion,
-        steps=_rebuilt(fraction, rebuilt.remarks, planting_result),
+        steps=_describe_rebuilding(fraction, rebuilt.remarks, planting_result),
         notices=(*planting_result.remarks, *rebuilt.remarks),
         planted=rebuilt.planted,
         rebuilt=rebuilt,
@@ -176,7 +180,7 @@ def reconstruct_tracked(
     )
     return ChainResult(
         recording=planting_result.motion,
-        steps=_rebuilt(rebuilt.rebuilt_fraction, rebuilt.remarks, planting_result),
+        steps=_describe_rebuilding(rebuilt.rebuilt_fraction, rebuilt.remarks, planting_result),
         notices=(*planting_result.remarks, *rebuilt.remarks),
         planted=planting_result.planted,
         rebuilt=rebuilt,
@@ -206,20 +210,20 @@ def take_before(take: Take, chain: ChainResult, progress: Progress) -> Motion | 
             return take
 
 
-def _cleaned(start: Motion | Tracks, denoised: Denoised) -> list[str]:
+def _describe_cleaning(start: Motion | Tracks, denoised: Denoised) -> list[str]:
     filled = observed_samples(denoised.recording) & ~observed_samples(start)
     n_spikes, n_gaps = _n_runs(denoised.outliers), _n_runs(filled)
-    corrected, gaps = _counted(n_spikes, SPIKES), _counted(n_gaps, GAPS)
+    corrected, gaps = _count_as_text(n_spikes, SPIKES), _count_as_text(n_gaps, GAPS)
     # The first sentence says that there are no examples, which is so for every take here.
     _, _, remarks = denoised.prior_used.partition(". ")
     return [
         f"Clean corrected {corrected} and filled {gaps}.",
         *[remarks] * bool(remarks),
-        *_unfinished(denoised),
+        *_describe_convergence(denoised),
     ]
 
 
-def _unfinished(denoised: Denoised) -> list[str]:
+def _describe_convergence(denoised: Denoised) -> list[str]:
     unfinished = "Clean stopped before the result converged; a part of the take may go better."
     return [] if denoised.converged else [unfinished]
 
@@ -232,7 +236,7 @@ def _low_confidence_of_legs(motion: Motion) -> list[str]:
     return list(filter(None, [describe_low_confidence(humanoid, legs)]))
 
 
-def _rebuilt(
+def _describe_rebuilding(
     fraction: float, remarks: Sequence[str], planting_result: PlantingResult
 ) -> tuple[str, ...]:
     return (
@@ -240,11 +244,11 @@ def _rebuilt(
         " was not needed.",
         f"Rebuilt {100.0 * fraction:.1f} % of the joint samples.",
         *remarks,
-        *_planted(planting_result),
+        *_describe_planting(planting_result),
     )
 
 
-def _planted(planting_result: PlantingResult) -> list[str]:
+def _describe_planting(planting_result: PlantingResult) -> list[str]:
     planted, remarks = planting_result.planted, planting_result.remarks
     if planted is None:
         return remarks
@@ -269,13 +273,13 @@ def _planted(planting_result: PlantingResult) -> list[str]:
     return [text, *remarks]
 
 
-def _unswapped(n_swaps: int) -> list[str]:
-    return [f"Corrected {_counted(n_swaps, SWAPPED_LABELS)}."] if n_swaps else []
+def _describe_swaps(n_swaps: int) -> list[str]:
+    return [f"Corrected {_count_as_text(n_swaps, SWAPPED_LABELS)}."] if n_swaps else []
 
 
 def _n_runs(flags: Flags) -> int:
     return sum(len(find_runs(column)) for column in flags.T)
 
 
-def _counted(number: int, texts: tuple[str, str]) -> str:
+def _count_as_text(number: int, texts: tuple[str, str]) -> str:
     return texts[number != 1].format(number=number)

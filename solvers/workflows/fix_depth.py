@@ -33,7 +33,7 @@ def track_depth(
         recording=cleaned.recording,
         steps=(
             "These are depth images: Track found the actor, fitted a body and followed it.",
-            *_redetected(captured),
+            *_describe_restarts(captured),
             *captured.remarks,
             *cleaned.steps[1:],
         ),
@@ -44,7 +44,7 @@ def track_depth(
     )
 
 
-def _redetected(captured: CapturedMotion) -> list[str]:
+def _describe_restarts(captured: CapturedMotion) -> list[str]:
     n_restarts = len(captured.captured.restarts)
     if n_restarts == 1:
         return ["Track lost the actor and found it again once."]

@@ -145,12 +145,12 @@ def see_ghosts_and_wipe():
 
 def drag_on_the_strip():
     """A drag sets the range in the Graph Editor and in the Timeline; a click clears it."""
-    scene, drag = bpy.context.scene, ours("overlays.strip_drag")
+    scene, drag = bpy.context.scene, ours("overlays.strip.drag")
     for kind, picture in (("GRAPH_EDITOR", "3b-dragged.png"), ("DOPESHEET_EDITOR", None)):
         region = bgui.region("WINDOW", kind)
         with bgui.override("WINDOW", kind):
-            found = ours("overlays.strip_reading").strip_of(bpy.context)
-            bottom, row = ours("overlays.strip_drawing").strip_height(
+            found = ours("overlays.strip.reading").strip_of(bpy.context)
+            bottom, row = ours("overlays.strip.drawing").strip_height(
                 bpy.context, len(found.rows)
             )
         columns = [region.x + int(part * region.width) for part in (0.4, 0.5, 0.6)]
@@ -184,7 +184,7 @@ def see_raw_curves(armature):
         compat.select_bone(bone, bone.name == "LeftLeg")
     armature.data.bones.active = armature.data.bones["LeftLeg"]
     with bgui.override("WINDOW", "GRAPH_EDITOR"):
-        pairs = ours("overlays.raw_curves").shown_pairs(bpy.context)
+        pairs = ours("overlays.comparison.raw_curves").shown_pairs(bpy.context)
         bpy.ops.graph.view_all()
     assert pairs and all("LeftLeg" in each.recorded.data_path for each in pairs), pairs
     yield from settle(2)
@@ -210,7 +210,7 @@ def measure():
     for each in bpy.context.view_layer.objects:
         each.select_set(each == as_long)  # Blender need not draw millions of keys
     bpy.context.scene.frame_end = N_FRAMES
-    switch, times, cpu_times = ours("overlays.strip_switch"), [], []
+    switch, times, cpu_times = ours("overlays.strip.switch"), [], []
     draw_strip = switch.draw_strip
     uploads = time_uploads()
 

@@ -50,7 +50,7 @@ def open_timeline():
 
 def rows():
     with bgui.override("WINDOW", "DOPESHEET_EDITOR"):
-        found = ours("overlays.strip_reading").strip_of(bpy.context)
+        found = ours("overlays.strip.reading").strip_of(bpy.context)
     return {row.value: ranges for row, ranges in found.rows.items()}
 
 

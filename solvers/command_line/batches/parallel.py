@@ -77,7 +77,7 @@ def _run_on_workers(
                     again.append(finished.task)
                 else:
                     yield finished
-        recorded = [_recorded(finished, workers.batch) for finished in given_up]
+        recorded = [_record_crash(finished, workers.batch) for finished in given_up]
         yield from (finished for finished in recorded if not finished.is_held)
         given_up = [each for each, end in zip(given_up, recorded, strict=True) if end.is_held]
         if n_held + len(given_up):
@@ -112,7 +112,7 @@ def until_released(
         remaining = taken
 
 
-def _recorded(crashed: FinishedTask, batch: str) -> FinishedTask:
+def _record_crash(crashed: FinishedTask, batch: str) -> FinishedTask:
     """Record a crash; the claim of a lost worker is that of this batch, and may hold still.
 
     A process that was killed holds its claim until the system has removed it, and one that the

@@ -127,7 +127,7 @@ def _stamps(entries: Sequence[Entry]) -> list[tuple[str, tuple[str, ...]]]:
 
 
 def _write(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str, ...]:
-    checked = [attempt(entry.source, _checked, folder, entry) for entry in entries]
+    checked = [attempt(entry.source, _check_entry, folder, entry) for entry in entries]
     faults = tuple(each.sentence for each in checked if isinstance(each, Failure))
     entries = [
         entry._replace(figures=None, failure=found.sentence)
@@ -157,7 +157,7 @@ def _write(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str, ...]
     return faults
 
 
-def _checked(folder: Path, entry: Entry) -> None:
+def _check_entry(folder: Path, entry: Entry) -> None:
     """Format an entry as both reports do, to detect failures before writing."""
     json.dumps(_report_entry(folder, entry), allow_nan=False)
     _severity(entry)

@@ -68,7 +68,7 @@ class FlamencoManager:
             raise self._not_flamenco()
         if version.split(".")[0] != VERSION:
             raise MocapAssistError(
-                f"{self.address} runs Flamenco {_shown(version)}, and Mocap Assist needs"
+                f"{self.address} runs Flamenco {_one_line(version)}, and Mocap Assist needs"
                 f" Flamenco {VERSION}. Name another Manager."
             )
 
@@ -124,7 +124,7 @@ class FlamencoManager:
                 ) from None
             raise MocapAssistError(
                 f"No Flamenco Manager can be reached at {self.address}"
-                f" ({_shown(getattr(reason, 'strerror', None) or str(reason))})."
+                f" ({_one_line(getattr(reason, 'strerror', None) or str(reason))})."
                 f"{was_sent or ' Start it, or correct the address.'}"
             ) from None
         return answer.status, self._parsed(content)
@@ -138,7 +138,7 @@ class FlamencoManager:
             raise self._not_flamenco() from None
 
     def _refusal(self, status: int, answer: Any) -> MocapAssistError:
-        message = _shown(_text_at(answer, "message") or f"status {status}").rstrip(".")
+        message = _one_line(_text_at(answer, "message") or f"status {status}").rstrip(".")
         if status in CLIENT_ERRORS and status != OUTDATED:
             return InvalidSettingError(
                 f"The Flamenco Manager at {self.address} refuses the job: {message}."
@@ -155,8 +155,8 @@ class FlamencoManager:
 
     def _redirected(self, location: str) -> MocapAssistError:
         return MocapAssistError(
-            f"{self.address} redirects to {_shown(location)}, where nothing was sent. If that"
-            " is your Flamenco Manager, enter its address."
+            f"{self.address} redirects to {_one_line(location)}, where nothing was sent. If"
+            " that is your Flamenco Manager, enter its address."
         )
 
 
@@ -178,8 +178,8 @@ def _checked_address(address: str) -> str:
         is_valid = False
     if not is_valid or "@" in text or not text.isascii() or " " in text or not address.strip():
         raise InvalidSettingError(
-            f"{_shown(address)!r} is not the address of a Flamenco Manager. Enter one such as"
-            " http://farm:8080."
+            f"{_one_line(address)!r} is not the address of a Flamenco Manager. Enter one such"
+            " as http://farm:8080."
         )
     return text.rstrip("/")
 
@@ -190,6 +190,6 @@ def _text_at(answer: Any, key: str) -> str:
     return found if isinstance(found, str) else ""
 
 
-def _shown(text: str) -> str:
+def _one_line(text: str) -> str:
     """Return a text of another program in one line."""
     return escaped(" ".join(text.split()))[:MAX_MESSAGE_LETTERS]

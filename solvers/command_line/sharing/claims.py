@@ -74,7 +74,7 @@ def claimed(path: Path, batch: str = "") -> Iterator[Claim]:
     finally:
         ended.set()
         renewal.join()
-        if not _numbered(path, len(files) + 1).exists():  # else it stalled and was taken over
+        if not _claim_file(path, len(files) + 1).exists():  # else it stalled and was taken over
             _release(files)
 
 
@@ -82,8 +82,8 @@ def _claim(path: Path, batch: str) -> tuple[Claims, dict[str, Any] | None]:
     """Return the claims taken over and the new one, or the content of another one."""
     claims: Claims = {}
     while True:
-        file = _numbered(path, len(claims) + 1)
-        own = _created(file, batch)
+        file = _claim_file(path, len(claims) + 1)
+        own = _create_claim(file, batch)
         if own is not None:
             if all(_content(each) == content for each, content in claims.items()):
                 return {**claims, file: own}, None
@@ -99,7 +99,7 @@ def _claim(path: Path, batch: str) -> tuple[Claims, dict[str, Any] | None]:
             return {}, holder
 
 
-def _numbered(path: Path, number: int) -> Path:
+def _claim_file(path: Path, number: int) -> Path:
     return path.with_name(f"{path.name}.{number}.claim")
 
 
@@ -111,7 +111,7 @@ def _release(files: Claims) -> None:
                 file.unlink()
 
 
-def _created(file: Path, batch: str) -> dict[str, Any] | None:
+def _create_claim(file: Path, batch: str) -> dict[str, Any] | None:
     """Create a claim, where the disk has links at once with its content; None if it exists.
 
     No two claims have the same content, also if one process makes both.

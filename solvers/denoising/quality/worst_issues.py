@@ -16,8 +16,8 @@ from .measure import Quality, measure_quality
 LONG_GAP_S = 0.25
 """Seconds that an animator can still bridge by eye: severity 1, by definition."""
 CUT_SEVERITY = 10.0
-"""Severity of a cut, chosen by hand: joined recordings should be split before any other
-edit."""
+"""Severity of a cut, chosen by hand: joined recordings should be split before any other edit.
+It decides the order of a list only."""
 SEVERE_EXCESS = np.radians(10.0)
 """Radians beyond a joint limit with severity 1, by definition; a fifth of it is not
 reported."""
@@ -192,7 +192,9 @@ def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[I
         for signal in signals:
             for start, stop in _merged(find_runs(signal.local_noise > threshold), pause):
                 level = float(signal.local_noise[start:stop].max())
-                amount = _amount(signal, level) + _compared(level, typical_noise)
+                amount = _amount(signal, level) + _relative_to_typical_noise(
+                    level, typical_noise
+                )
                 yield Issue(
                     signal.joint,
                     start,
@@ -252,7 +254,7 @@ def _amount(signal: Signal, value: float) -> str:
     return f"{100 * value:.1f} cm"
 
 
-def _compared(level: float, typical_noise: float) -> str:
+def _relative_to_typical_noise(level: float, typical_noise: float) -> str:
     if typical_noise <= 0.0:
         return ""
     return f", {level / typical_noise:.0f} times the typical noise of the take"

@@ -102,7 +102,9 @@ def stream_cells(
                 if ended:
                     break
                 row = prepare(line)
-                spaced = _spaced(row, separator, width, converters, f"{path}, line {number}")
+                spaced = _cells_between_spaces(
+                    row, separator, width, converters, f"{path}, line {number}"
+                )
                 is_row = spaced or (keep_blank and separator in line)
                 lines.append(spaced or b"nan " * width if is_row else b"")
             numbers = range(part.first, part.first + len(lines))
@@ -113,7 +115,7 @@ def stream_cells(
     return table.rows()
 
 
-def _spaced(
+def _cells_between_spaces(
     line: bytes,
     separator: bytes,
     width: int,

@@ -59,11 +59,14 @@ def archive_names(content: bytes) -> tuple[str, ...]:
     if content[: len(ZIP_MEMBER)] != ZIP_MEMBER:
         return ()
     entries = (found.start() for found in re.finditer(ZIP_ENTRY, content))
-    names = [_named(content, 0, 26, 30), *(_named(content, at, 28, 46) for at in entries)]
+    names = [
+        _name_in_header(content, 0, 26, 30),
+        *(_name_in_header(content, at, 28, 46) for at in entries),
+    ]
     return tuple(name.decode("ascii", "replace").removesuffix(".npy") for name in names)
 
 
-def _named(content: bytes, start: int, length_at: int, name_at: int) -> bytes:
+def _name_in_header(content: bytes, start: int, length_at: int, name_at: int) -> bytes:
     """Return the name in a header of a ZIP archive, by the offsets of its length and itself."""
     length = int.from_bytes(content[start + length_at : start + length_at + 2], "little")
     return content[start + name_at : start + name_at + length]

@@ -64,7 +64,8 @@ CLEAR_FLOOR_LEAD = 0.3
 those takes, and 0.09 in `bvh_test3.bvh`, which is near zero on both axes."""
 MIN_LYING_FLOOR = 0.8
 """Evidence of the floor along another axis, a ratio, from which the body may lie there rather
-than stand. Chosen by hand: joints of who lies are up to 8 % of the stature above the floor."""
+than stand. Chosen by hand: joints of an actor who lies are up to 8 % of the stature above the
+floor."""
 CLEAR_CONTACT_LEAD = 0.2
 """Lead of the evidence of contact, a ratio, from which the body may lie along another axis,
 unless it stands on a floor. Chosen by hand: it is 0.16 in an upright take, `test_mocap.bvh`."""

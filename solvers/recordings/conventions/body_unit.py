@@ -28,7 +28,7 @@ from .marker_bodies import stature_of_markers
 UNITS = (1.0, 0.01, 0.001)
 ODD_STATURE_M = (0.8, 2.6)
 """Range of statures, meters, outside which the report asks. Chosen by hand: from a small child,
-0.8 m, to more than the tallest people."""
+0.8 m, to more than the tallest people. It decides a sentence of the report only."""
 HEAD_TO_ANKLE = 0.886
 """Path along the bones from the head to an ankle, relative to the stature. By definition of the
 body in `smpl_body`."""

@@ -41,15 +41,16 @@ MIN_BELOW_FRACTION = 0.3
 by hand: it is 0 on a floor, and 0.40 to 0.60 in the five takes of docs/benchmarks/importing.md
 whose origin is in the body."""
 MIN_UPRIGHT_FRACTION = 0.2
-"""Height of the head above the hips, relative to the stature, of who stands or sits: 0.27 to
-0.36 in upright bodies of several makers. Chosen by hand: x2 fails
+"""Height of the head above the hips, relative to the stature, of an actor who stands or sits:
+0.27 to 0.36 in upright bodies of several makers. Chosen by hand: x2 fails
 `test_an_actor_far_below_the_floor_is_put_on_it`."""
 MAX_FLIGHT_STATURES = 10.0
 """Distance from height 0, in statures, above which units of positions and bones differ rather
 than heights. By definition of the units: confused ones give factors of 2.5 to 100."""
 MIN_OFF_FLOOR_FRACTION = 0.15
-"""Distance of the lowest level from height 0, relative to the stature, that is a question.
-Chosen by hand on takes that float or are sunk, see docs/benchmarks/importing.md."""
+"""Distance of the lowest level from height 0, relative to the stature, from which the report
+asks a question. Chosen by hand on takes that float or are sunk, see
+docs/benchmarks/importing.md."""
 MAX_HIPS_FRACTION = 0.15
 """Height of the hips, relative to the stature, of a take whose origin is the hips. Chosen by
 hand: they are at 0.00 to 0.08 in four such takes of docs/benchmarks/importing.md, and at 0.5
@@ -65,7 +66,8 @@ def put_on_floor(recording: Recording) -> Recording:
     """Move a take up or down so that the lowest level that the body rests on is height 0.
 
     A body rests where its lowest joint neither rises nor falls: feet that stand, hands of a
-    handstand, the back of who lies. So a jump is no floor, and neither are single wrong frames.
+    handstand, the back of an actor who lies. So a jump is no floor, and neither are single
+    wrong frames.
     """
     lift = -floor_level(recording)
     if isinstance(recording, Motion):
@@ -96,8 +98,8 @@ def _lowest(recording: Motion | Tracks | JointRecording) -> Array:
 def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
     """Whether height 0 is not a measured floor.
 
-    So it is with depth cameras and video models, where the hips are the origin and the feet
-    hang below, and where an upright actor is far below height 0 in most frames.
+    This holds for depth cameras and video models: the hips are the origin, and the feet hang
+    below. It also holds where an upright actor is far below height 0 in most frames.
     """
     if not conventions_of(recording).has_floor or isinstance(recording, JointRecording):
         return True
@@ -124,7 +126,7 @@ def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
 
 
 def question_of_floor(recording: Motion | Tracks | JointRecording) -> str:
-    """Ask whether an actor who never comes near height 0 is right; nothing otherwise.
+    """Return a question if an actor never comes near height 0; otherwise nothing.
 
     Heights of a measured floor are kept, as of an actor on a platform.
     """

@@ -15,9 +15,9 @@ FOOT_MARKERS = re.compile(
 )
 """Names of markers on head, upper trunk and feet, without blanks, in lower case."""
 HEAD_TO_FEET, SHOULDERS_TO_FEET = 0.897, 0.779
-"""Height of the eyes, and of the acromion, above the ankle, relative to the stature. Chosen by
-hand from Winter (2009), Biomechanics and motor control of human movement, figure 4.1: 0.936 and
-0.818 less 0.039."""
+"""Height of the eyes, and of the acromion, above the ankle, relative to the stature: 0.936 and
+0.818 less 0.039 in Winter 2009, Biomechanics and motor control of human movement, figure
+4.1."""
 STANDING_PERCENTILE = 90.0
 """Percentile over the frames of the distance from feet to head, which is that of standing where
 some frames do. Chosen by hand: crouching is shorter, and few frames are outliers."""

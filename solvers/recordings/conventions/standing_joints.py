@@ -30,8 +30,8 @@ MAX_FLOOR_FRACTION = 0.4
 by hand: x0.5 fails `test_a_lying_actor_is_left_lying_and_reported`, x2
 `test_any_axis_may_be_up`."""
 MIN_HIPS_FRACTION = 0.03
-"""Height of the hips of who lies on a floor, relative to the body. Chosen by hand: 5 cm of an
-adult, whose hips are 8 cm and more above the floor."""
+"""Height of the hips of an actor who lies on a floor, relative to the body. Chosen by hand: 5
+cm of an adult, whose hips are 8 cm and more above the floor."""
 MIN_SPREAD_FRACTION = 0.06
 """Distance between the feet, relative to the size, below which a rest pose is folded. Chosen by
 hand: in the rest poses of these takes it is 0.09 to 0.88, in a folded one 0."""

@@ -6,7 +6,13 @@ from .freemocap import is_npy, read_freemocap, read_freemocap_points
 from .irds import is_irds, open_irds
 from .joint_csv import is_joint_csv, open_joint_csv, write_joint_csv
 from .joint_json import is_joint_json, open_joint_json, write_joint_json
-from .json_people import is_frames_json, people_of_frame, time_of_frame
+from .json_bodies import (
+    is_frame_json,
+    is_frames_json,
+    open_frames_json,
+    people_of_frame,
+    time_of_frame,
+)
 from .kinect_csv import is_kinect_csv, read_kinect_csv
 from .long_table import is_long_table, open_long_table
 from .mediapipe_csv import is_mediapipe_csv, read_mediapipe_csv
@@ -19,7 +25,6 @@ from .nuitrack import (
     open_nuitrack_json,
 )
 from .point_table import is_point_table, open_point_table
-from .pose_estimator_json import is_frame_json, open_frames_json
 from .table_titles import MAX_TITLE_LINES
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
 from .zed_json import is_zed_json, open_zed_json

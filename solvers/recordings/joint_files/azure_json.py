@@ -13,7 +13,7 @@ from ...progress import Progress, unwatched
 from ..containers import UniqueNames, array_from_json, json_members, printable
 from ..conventions import MILLIMETER, Bodies, check_scale, from_azure_space, joint_recording
 from .azure_csv import azure_joint
-from .body_json import (
+from .json_bodies import (
     BodiesFrame,
     BodyJoints,
     listed,

@@ -202,7 +202,7 @@ def _points(
     cells = np.zeros(len(rows), int), frames, joints
     person = columns.person
     is_enough = len(rows) >= MIN_JOINTS * len(table.people)
-    if person is None and is_enough and _repeated(cells) is not None:
+    if person is None and is_enough and _first_repeated_line(cells) is not None:
         person = columns.identity
     if person is not None:
         cells = np.nan_to_num(rows[:, person]).astype(int), frames, joints
@@ -213,7 +213,7 @@ def _points(
             f"{path} has {shape[2]} joints of {shape[0]} people in {shape[1]} frames, which"
             " does not fit its lines. Export it again."
         )
-    repeated = _repeated(cells)
+    repeated = _first_repeated_line(cells)
     if repeated is not None:
         joint = table.joints.name(int(rows[repeated, columns.joint]))
         raise InvalidFileError(
@@ -225,7 +225,7 @@ def _points(
     return points
 
 
-def _repeated(cells: tuple[NDArray[np.intp], ...]) -> int | None:
+def _first_repeated_line(cells: tuple[NDArray[np.intp], ...]) -> int | None:
     """Return the first line that has the person, frame and joint of another one; else None."""
     order = np.lexsort(cells)
     ordered = np.stack(cells)[:, order]

@@ -197,9 +197,9 @@ def _landmark_number(cell: bytes) -> bytes:
 
 def _columns(titles: list[str]) -> dict[tuple[int, int], int]:
     """Return columns by landmark and channel: those of the world, if there are any."""
-    worldly = [at for at, title in enumerate(titles) if "world" in title.split("_")]
+    in_world = [at for at, title in enumerate(titles) if "world" in title.split("_")]
     found: dict[tuple[int, int], int] = {}
-    for at in worldly or range(len(titles)):
+    for at in in_world or range(len(titles)):
         if key := _landmark_and_channel(titles[at]):
             found.setdefault(key, at)
     numbers = {landmark for landmark, _ in found}

@@ -22,7 +22,7 @@ from ..conventions import (
     observed_body,
     recorded_seconds,
 )
-from .body_json import (
+from .json_bodies import (
     BodiesFrame,
     BodyJoints,
     json_frames,

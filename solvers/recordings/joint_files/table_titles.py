@@ -59,7 +59,7 @@ class TableTitles(NamedTuple):
         if not self.vectors:
             return line
         cells: list[bytes] = []
-        for column, cell in enumerate(_bracketed(line, self.separator)):
+        for column, cell in enumerate(_cells_with_brackets(line, self.separator)):
             if column in self.vectors:
                 cells += _coordinates(cell, self.separator)
             else:
@@ -130,7 +130,7 @@ def _titles_of_line(line: bytes, following: Sequence[bytes]) -> TableTitles:
     separator = find_separator(line)
     titles = _cells(line.lstrip(b"# "), separator)
     vectors: set[int] = set()
-    for cells in (_bracketed(each, separator) for each in following):
+    for cells in (_cells_with_brackets(each, separator) for each in following):
         if len(cells) == len(titles):
             vectors |= {column for column, cell in enumerate(cells) if _vector(cell)}
     if len(vectors) < MIN_POINTS:
@@ -155,7 +155,7 @@ def _coordinates(cell: bytes, separator: bytes) -> Sequence[bytes]:
     return [word.replace(SPACE, b"__"), b"", b""]
 
 
-def _bracketed(line: bytes, separator: bytes) -> list[bytes]:
+def _cells_with_brackets(line: bytes, separator: bytes) -> list[bytes]:
     """Return the cells of a line in which brackets may enclose separators."""
     hidden = BRACKETS.sub(lambda match: match[0].replace(separator, INSIDE_BRACKETS), line)
     return [cell.replace(INSIDE_BRACKETS, separator) for cell in split_cells(hidden, separator)]

@@ -19,7 +19,7 @@ from ..conventions import (
     joint_recording,
     stand_along,
 )
-from .body_json import (
+from .json_bodies import (
     BodiesFrame,
     BodyJoints,
     json_frames,

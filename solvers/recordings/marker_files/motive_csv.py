@@ -102,7 +102,7 @@ def open_motive_csv(
         )
     duration_s = len(rows) / (_stated_rate(header) or 1.0)
     listed = tuple(
-        observed_body(name or str(number), _observed(part, rows), len(rows), duration_s)
+        observed_body(name or str(number), _observed_rows(part, rows), len(rows), duration_s)
         for number, (name, part) in enumerate(skeletons.items(), start=1)
     )
     parts = list(skeletons.values())
@@ -121,7 +121,7 @@ def _actor_and_bone(name: str) -> tuple[str, str]:
     return actor, ROOT if bone == actor else bone
 
 
-def _observed(bones: list[MotiveItem], rows: Array) -> NDArray[np.intp]:
+def _observed_rows(bones: list[MotiveItem], rows: Array) -> NDArray[np.intp]:
     """Return the rows with the first bone of a skeleton."""
     return np.flatnonzero(np.isfinite(rows[:, bones[0].position["X"]]))
 

@@ -206,11 +206,11 @@ def stand_body(
     )
     standing = reinterpreted(recording, estimated.axis, None)
     noted = replace(conventions_of(standing), confidence=estimated.confidence)
-    standing = with_conventions(_unmirrored(standing, progress), noted)
-    return standing if scale is not None else _sized(standing, noted, progress)
+    standing = with_conventions(_with_sides_corrected(standing, progress), noted)
+    return standing if scale is not None else _with_adult_size(standing, noted, progress)
 
 
-def _sized(
+def _with_adult_size(
     recording: JointRecording, noted: FileConventions, progress: Progress
 ) -> JointRecording:
     """Give a body whose lengths have no unit the size of an adult."""
@@ -231,7 +231,7 @@ def _sized(
     )
 
 
-def _unmirrored(recording: JointRecording, progress: Progress) -> JointRecording:
+def _with_sides_corrected(recording: JointRecording, progress: Progress) -> JointRecording:
     """Mirror a body whose front shows that its left side is on the right."""
     points = recording.tracks.positions
     named = roles_by_name(recording.names)

@@ -257,8 +257,9 @@ TIME_UNITS = (
         Remark("Times have no unit; by their steps they are interpreted as nanoseconds"),
     ),
 )
-"""Units of clocks, with their seconds. Chosen by hand: the largest steps are 2 s in
-milliseconds, 10 Hz in microseconds and 5 Hz in ticks of Windows, in which 30 Hz is 333333."""
+"""Units of clocks, with their seconds by definition. The largest steps are chosen by hand: 2 s
+in milliseconds, 10 Hz in microseconds and 5 Hz in ticks of Windows, in which 30 Hz is
+333333."""
 
 
 def second_of_times(times: Array, progress: Progress) -> float:

@@ -1,8 +1,7 @@
 """Read and write skeletons with rotations: BVH, Acclaim, SMPL and Kimodo."""
 
 from .acclaim import find_skeleton, read_acclaim
-from .bvh import open_bvh, read_bvh
-from .bvh_writing import write_bvh
+from .bvh import open_bvh, read_bvh, write_bvh
 from .kimodo import is_kimodo, open_kimodo
 from .motion_x import is_motion_x, read_motion_x
 from .mvnx import is_mvnx, open_mvnx

@@ -23,8 +23,7 @@ from ..conventions import (
     stand_upright,
     z_up_from_y_up,
 )
-from .smpl_body import BODY
-from .smpl_people import split_people
+from .smpl_bodies import BODY, split_people
 from .world_poses import motion_from_world_poses
 
 Tree = tuple[tuple[str, str], ...]

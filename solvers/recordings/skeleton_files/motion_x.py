@@ -15,7 +15,7 @@ from ..conventions import (
     z_up_from_y_up,
 )
 from .smpl import N_BODY, N_HAND, VIDEO_UP
-from .smpl_body import smpl_joints
+from .smpl_bodies import smpl_joints
 
 MOTION_X_COLUMNS = 322
 MOTION_X_POSITION = slice(309, 312)

@@ -26,9 +26,13 @@ from ..conventions import (
     z_up_from_y_up,
 )
 from .kimodo import open_kimodo
-from .smpl_body import BODY, FINGERS, smpl_joints
-from .smpl_people import split_people
-from .smpl_rotations import with_rotation_vectors
+from .smpl_bodies import (
+    BODY,
+    FINGERS,
+    smpl_joints,
+    split_people,
+    with_rotation_vectors,
+)
 
 ROTATIONS = (
     "poses", "smpl_poses", "fullpose", "smpl_pose", "pred_rotmat", "pose_world", "pose",

@@ -64,14 +64,16 @@ def encode_recording(
             )
         motion = motion_in_layout(recording, LAYOUTS[protocol])
         encode = ENCODERS[protocol](motion)
-        return _paced(motion.n_frames, motion.dt, is_repeated, encode)
+        return _packets_in_time(motion.n_frames, motion.dt, is_repeated, encode)
     joints = joints_of(recording)
     frames = list(frames_from_recording(joints))
     encode = _mediapipe(frames) if protocol is StreamProtocol.MEDIAPIPE else _json(frames)
-    return _paced(len(frames), joints.tracks.dt, is_repeated, encode)
+    return _packets_in_time(len(frames), joints.tracks.dt, is_repeated, encode)
 
 
-def _paced(n_frames: int, dt: float, is_repeated: bool, encode: Encode) -> Iterator[Packets]:
+def _packets_in_time(
+    n_frames: int, dt: float, is_repeated: bool, encode: Encode
+) -> Iterator[Packets]:
     """Yield the packets of frames, which repeat if wanted."""
     for number in itertools.count() if is_repeated else range(n_frames):
         yield Packets(number * dt, encode(number % n_frames, number * dt))

@@ -169,7 +169,7 @@ def measured(file: Path, start: Seconds = NO_START) -> list[float | str]:
 def furthest(file: Path, made: bpy.types.Object) -> float:
     """Return how far any joint or marker that is read back is from the file's, meters."""
     from mocap_ext.mocap_assist.actions.armature_read import read_take
-    from mocap_ext.mocap_assist.actions.marker_take import read_markers
+    from mocap_ext.mocap_assist.actions.markers.take import read_markers
     from mocap_ext.solvers.motion import Motion, forward_kinematics
     from mocap_ext.solvers.recordings import read_motion_or_tracks
 

@@ -146,7 +146,7 @@ def confidence(n_repetitions: int) -> list[str]:
     return [
         _confidence_table(
             "**Confidence**, subject left out: predicted probability that a joint is within"
-            " 5 cm of the truth, and fraction of joints that are; the last two rows hold all"
+            " 5 cm of the truth, and fraction of joints that are. The last two rows hold all"
             " joints and the mean of -log(probability of the outcome)",
             {name: _confidences(solve, n_repetitions) for name, solve in methods.items()},
         ),

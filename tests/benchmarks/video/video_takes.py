@@ -20,7 +20,7 @@ from solvers.motion import Motion, Skeleton, find_humanoid_map
 from solvers.recordings import read_acclaim, read_recording
 from solvers.recordings.conventions import put_on_floor, z_up_from_y_up
 from solvers.recordings.conventions.axes import rotations_y_up_from_z_up, y_up_from_z_up
-from solvers.recordings.skeleton_files.smpl_body import smpl_joints
+from solvers.recordings.skeleton_files.smpl_bodies.joints import smpl_joints
 from solvers.retargeting import retarget
 from solvers.rotations import (
     multiply,

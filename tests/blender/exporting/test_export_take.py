@@ -120,7 +120,7 @@ def test_a_file_that_cannot_be_written_is_refused(walk, blank, filepath, sentenc
 
 
 def test_a_read_only_folder_is_refused(walk, blank, load, tmp_path, monkeypatch):
-    target = load("mocap_assist.exporting.export_target")
+    target = load("mocap_assist.exporting.target_file")
     monkeypatch.setattr(target.os, "access", lambda path, mode: False)
 
     with pytest.raises(RuntimeError, match=r"the folder is read-only\. Choose another one"):

@@ -27,7 +27,7 @@ def bring(blank):
 @pytest.fixture
 def markers_of(load):
     """The markers below an object."""
-    return load("mocap_assist.actions.markers").markers_of
+    return load("mocap_assist.actions.markers.holders").markers_of
 
 
 @pytest.fixture
@@ -57,7 +57,7 @@ def walks(recordings, tmp_path):
 def press(load, window, walks):
     """Import files of the folder; return the operator, which waits."""
     button_settings = load("mocap_assist.importing.button_settings")
-    module = load("mocap_assist.importing.import_operator")
+    module = load("mocap_assist.importing.dialog.operators")
 
     def start(*names, **chosen):
         class Operator(module.WaitingImport):

@@ -138,7 +138,7 @@ def test_a_unit_counts_for_files_of_other_programs(recordings, bring, shown, bla
 
 
 def test_only_what_fits_is_shown(recordings, load):
-    kinds = load("mocap_assist.importing.file_kinds")
+    kinds = load("mocap_assist.importing.dialog.file_kinds")
     names = ("target", "unit", "height", "up", "rotate_mode", "held")
 
     def of(*paths):

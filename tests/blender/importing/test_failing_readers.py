@@ -35,7 +35,7 @@ def dying(load, monkeypatch):
     """Files that begin with a certain word end the process that reads them."""
     reading = load("mocap_assist.importing.solve_reading")
     monkeypatch.setattr(
-        load("mocap_assist.importing.import_job"), "read_files", DyingReader(reading.__name__)
+        load("mocap_assist.importing.dialog.job"), "read_files", DyingReader(reading.__name__)
     )
 
 
@@ -132,7 +132,7 @@ def test_one_blender_reads_all_scene_files_but_one_that_kills_it(load, tmp_path,
 
 
 def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank, monkeypatch):
-    transaction = load("mocap_assist.importing.import_transaction")
+    transaction = load("mocap_assist.importing.transaction")
     real = transaction.make_objects
 
     def fail(context, name, *words, **more):

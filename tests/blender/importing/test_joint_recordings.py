@@ -80,7 +80,7 @@ def test_confidence_is_kept_and_survives_cleaning(
 
 def test_empties_give_back_what_the_camera_measured(lossy, bring, load, blank):
     recording = load("solvers.recordings").read_recording(lossy)
-    read = load("mocap_assist.actions.marker_take").read_markers
+    read = load("mocap_assist.actions.markers.take").read_markers
 
     empties = bring(lossy, target="OBJECT", place_on_floor="NEVER")
     tracks = read(empties, blank.context.scene).tracks

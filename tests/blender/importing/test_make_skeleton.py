@@ -96,7 +96,7 @@ def test_clean_puts_swapped_labels_right(blank, bring, tracks, load, tmp_path, u
 
     blank.ops.mocap_assist.denoise(unswap=unswap)
 
-    read = load("mocap_assist.actions.marker_take").read_markers
+    read = load("mocap_assist.actions.markers.take").read_markers
     take = read(holder, blank.context.scene)
     order = [take.tracks.names.index(name.split(":")[-1]) for name in tracks.names]
     error = np.linalg.norm(

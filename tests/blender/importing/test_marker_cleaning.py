@@ -45,7 +45,7 @@ def holder(file, bring):
 
 @pytest.fixture
 def read(load, blank):
-    markers = load("mocap_assist.actions.marker_take")
+    markers = load("mocap_assist.actions.markers.take")
     return lambda holder, **how: markers.read_markers(holder, blank.context.scene, **how)
 
 

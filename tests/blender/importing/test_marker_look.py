@@ -28,7 +28,7 @@ def ends_of(sticks, blank):
 
 def names_of_ends(sticks, holder, load):
     """Names of the markers that each stick connects, by the rule for their names."""
-    markers = load("mocap_assist.actions.markers").markers_of(holder)
+    markers = load("mocap_assist.actions.markers.holders").markers_of(holder)
     names = [each["mocap_assist_point"] for each in markers]
     where = dict(zip(names, markers, strict=True))
     pairs = load("solvers.markers").find_marker_sticks(names)
@@ -64,7 +64,9 @@ def test_sticks_follow_the_markers_even_when_the_take_is_moved(gait, blank, load
 
 
 def test_sticks_survive_save_and_load_and_new_names(gait, blank, load, tmp_path):
-    for number, marker in enumerate(load("mocap_assist.actions.markers").markers_of(gait)):
+    for number, marker in enumerate(
+        load("mocap_assist.actions.markers.holders").markers_of(gait)
+    ):
         marker.name = f"other {number % 7} {number}"
     blank.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
     blank.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
@@ -76,7 +78,7 @@ def test_sticks_survive_save_and_load_and_new_names(gait, blank, load, tmp_path)
 
 
 def test_computed_points_lie_in_a_hidden_collection(gait, blank, load, capfd):
-    markers = load("mocap_assist.actions.markers").markers_of(gait)
+    markers = load("mocap_assist.actions.markers.holders").markers_of(gait)
 
     assert len(markers) == 35
     assert {"LASI", "CLAV"} <= {each["mocap_assist_point"] for each in markers}
@@ -114,7 +116,7 @@ def test_computed_points_are_not_cleaned(gait, blank):
 
 
 def test_markers_are_selected_and_their_parent_is_active(gait, blank, load):
-    markers = load("mocap_assist.actions.markers").markers_of(gait)
+    markers = load("mocap_assist.actions.markers.holders").markers_of(gait)
 
     assert blank.context.object == gait
     assert set(blank.context.selected_objects) == set(markers)

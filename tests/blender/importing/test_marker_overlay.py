@@ -12,7 +12,7 @@ FRAMES = (1, 20, 90)
 
 @pytest.fixture
 def overlay(load):
-    found = load("mocap_assist.overlays.marker_overlay")
+    found = load("mocap_assist.overlays.comparison.markers")
     found.forget()
     return found
 
@@ -116,7 +116,7 @@ def test_keys_are_read_once_until_they_are_edited(blank, load, overlay, holder):
     marker.location = (9.0, 9.0, 9.0)
     marker.keyframe_insert("location", frame=20)
     blank.context.view_layer.update()
-    refresh = load("mocap_assist.overlays.overlay_drawing").refresh
+    refresh = load("mocap_assist.overlays.comparison.drawing").refresh
     assert blank.app.timers.is_registered(refresh)
     refresh()  # timers run only where there is a window
 

@@ -56,7 +56,7 @@ def test_the_dialog_proposes_the_first_frame_of_the_scene(load, blank, is_chosen
         frame_start=1, properties=SimpleNamespace(is_property_set=lambda name: is_chosen)
     )
 
-    load("mocap_assist.importing.import_operator").propose_start(operator, blank.context)
+    load("mocap_assist.importing.dialog.operators").propose_start(operator, blank.context)
 
     assert operator.frame_start == (1 if is_chosen else 1001)
 

@@ -97,7 +97,7 @@ def test_unknown_body_leaves_nothing(blank, crowd):
 
 def test_dialog_shows_a_choice_only_where_there_is_one(blank, crowd, recordings, load):
     importing = load("mocap_assist.importing.importing")
-    choice = load("mocap_assist.importing.body_choice")
+    choice = load("mocap_assist.importing.dialog.body_choice")
     alone = recordings / "kinect" / "irds" / "215_18_5_3_1_stand.txt"
 
     notes = [importing.preview(blank.context, [path]) for path in (crowd, alone)]
@@ -193,7 +193,7 @@ def test_rigs_of_a_file_are_bodies(blank, two_rigs, suffix, load):
     ]
     assert not np.allclose(*paths, atol=0.01)  # each plays its own slot
 
-    listed = load("mocap_assist.importing.body_choice").bodies_to_choose([path])
+    listed = load("mocap_assist.importing.dialog.body_choice").bodies_to_choose([path])
     assert [body.name for body in listed] == ["Anna", "Ben"]
     for each in [*blank.data.objects]:
         blank.data.objects.remove(each)

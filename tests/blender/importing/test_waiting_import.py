@@ -86,7 +86,7 @@ def test_escape_restores_rate_and_range_of_a_scene_without_animation(
 @pytest.mark.parametrize("bytes_at_once", [1, 64_000_000])
 def test_all_that_can_be_read_comes_in(press, window, load, monkeypatch, blank, bytes_at_once):
     monkeypatch.setattr(
-        load("mocap_assist.importing.import_job"), "BYTES_AT_ONCE", bytes_at_once
+        load("mocap_assist.importing.dialog.job"), "BYTES_AT_ONCE", bytes_at_once
     )
     job = load("mocap_assist.jobs.job").Job
     done = job.done
@@ -170,7 +170,7 @@ def test_what_goes_wrong_unforeseen_leaves_no_watch(
         raise ZeroDivisionError
 
     monkeypatch.setattr(
-        load("mocap_assist.importing.import_transaction").ImportTransaction, "add", fail
+        load("mocap_assist.importing.transaction").ImportTransaction, "add", fail
     )
     operator = press("first.bvh")
     with pytest.raises(ZeroDivisionError):
@@ -188,7 +188,7 @@ def test_a_fault_over_the_only_file_is_a_sentence_and_leaves_nothing(
     def fail(*_, **__):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(load("mocap_assist.importing.import_transaction"), "make_objects", fail)
+    monkeypatch.setattr(load("mocap_assist.importing.transaction"), "make_objects", fail)
 
     assert wait(press("first.bvh"), window) == {"CANCELLED"}
 

@@ -218,7 +218,7 @@ def test_row_without_a_bone_on_one_side_highlights_the_other(listed, blank, high
 
 
 def test_levels_differ_without_colors(load):
-    names = ("color_icons", "strip_ranges")
+    names = ("color_icons", "marked_ranges")
     icons, ranges = (load(f"mocap_assist.overlays.{name}") for name in names)
 
     levels = [ranges.confidence_mark(each) for each in (0.4, 0.7, 0.8)]

@@ -79,7 +79,7 @@ def test_body_survives_renaming_applied_transforms_and_saving(tracked, body, bla
 
 
 def test_rotated_and_scaled_rest_pose_is_accepted(tracked, load, blank):
-    module = load("mocap_assist.track.tracked_body")
+    module = load("mocap_assist.track.tracked_armature.body")
     model = module.TrackedBody.read(tracked).body
     transform = Matrix.Rotation(0.7, 4, "Z") @ Matrix.Scale(2.0, 4)
     tracked.data.transform(transform)
@@ -95,7 +95,7 @@ def test_rotated_and_scaled_rest_pose_is_accepted(tracked, load, blank):
 
 
 def test_damaged_body_is_not_drawn(tracked, body, load):
-    module = load("mocap_assist.track.tracked_body")
+    module = load("mocap_assist.track.tracked_armature.body")
     tracked.data[module.KEY] = "{}"
     assert body(tracked) is None
     with pytest.raises(

@@ -31,7 +31,7 @@ def test_armature_and_points_agree_for_any_camera_pose(
     frames = load("solvers.depth_tracking.body.segment_kinematics").segment_frames(
         made.body, given_poses
     )
-    shown = load("mocap_assist.track.tracked_body").posed_frames
+    shown = load("mocap_assist.track.tracked_armature.body").posed_frames
     for picture in (0, 11):
         blank.context.scene.frame_set(1 + picture)
         through_points = np.array(made.points.matrix_world) @ frames[picture]

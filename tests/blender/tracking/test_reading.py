@@ -54,7 +54,7 @@ def test_rotated_bones_and_moved_hips_are_read_as_displayed(made, read, load, bl
     bones[ARM].rotation_quaternion = ROTATION @ bones[ARM].rotation_quaternion
     correction = read()
     assert correction.frame == 4
-    space = load("mocap_assist.track.tracked_body")
+    space = load("mocap_assist.track.tracked_armature.body")
     moved = load("solvers.depth_tracking.body.motion")
     frames = moved.motion_frames(made.body, correction.pose)[0]
     to_armature = space.armature_from_motion(made.armature, made.body)

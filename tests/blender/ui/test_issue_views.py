@@ -209,7 +209,7 @@ def test_list_and_strip_name_the_kind_of_an_issue(blank, draw, actor, issue, loa
     assert {"mocap_assist_issue_view", "mocap_assist_issue_range"} <= set(
         draw("MOCAP_PT_check")
     )
-    strip = load("mocap_assist.overlays.strip_reading").strip_of(blank.context)
+    strip = load("mocap_assist.overlays.strip.reading").strip_of(blank.context)
     assert [row.value for row in strip.rows] == ["Gaps"]
 
 

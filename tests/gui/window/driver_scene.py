@@ -198,8 +198,8 @@ def time_uploads():
         return upload
 
     for module, name in (
-        (ours("overlays.strip_drawing"), "_make_batch"),
-        (ours("overlays.strip_labels"), "_make_image"),
+        (ours("overlays.strip.drawing"), "_make_batch"),
+        (ours("overlays.strip.labels"), "_make_image"),
     ):
         setattr(module, name, timed(getattr(module, name)))
     return uploads

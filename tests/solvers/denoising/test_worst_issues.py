@@ -6,7 +6,7 @@ import pytest
 from solvers.denoising.quality.measure import measure_quality
 from solvers.denoising.quality.worst_issues import IssueSettings, find_worst_issues
 from solvers.motion import Motion
-from solvers.recordings.skeleton_files.bvh import read_bvh
+from solvers.recordings.skeleton_files import read_bvh
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 
 

@@ -8,7 +8,7 @@ from solvers.feet.legs import find_legs
 from solvers.feet.plant_feet import PlantSettings, plant_feet
 from solvers.motion import Motion, Skeleton, forward_kinematics
 from solvers.motion.humanoid.foot_contacts import detect_contacts
-from solvers.recordings.skeleton_files.bvh import read_bvh
+from solvers.recordings.skeleton_files import read_bvh
 from solvers.rotations.representations import (
     angle_between,
     multiply,

@@ -6,7 +6,7 @@ import pytest
 from solvers.motion import FileConventions, Motion, Skeleton, world_poses
 from solvers.recordings import Axis, FloorPlacement, ReadingSettings, Unit, read_as, write_bvh
 from solvers.recordings.conventions import conventions_of, floor_level, stature
-from solvers.recordings.skeleton_files.smpl_body import smpl_joints
+from solvers.recordings.skeleton_files.smpl_bodies.joints import smpl_joints
 from solvers.rotations import multiply, quaternion_from_euler
 
 F, RATE = 120, 30.0

@@ -14,7 +14,7 @@ from solvers.recordings.conventions import (
     stature,
 )
 from solvers.recordings.conventions.file_axes import reinterpreted, rotate_motion
-from solvers.recordings.skeleton_files.smpl_body import smpl_joints
+from solvers.recordings.skeleton_files.smpl_bodies.joints import smpl_joints
 from solvers.rotations import quaternion_from_euler
 
 NAMES, PARENTS, Y_UP_OFFSETS = smpl_joints(hands=False)

@@ -81,9 +81,9 @@ class StreamPeople:
         person = self._by_identity.get(frame.body)
         position = _position_of(frame)
         if person is None:
-            person = self._returned(frame, position) or self._new(frame, position)
+            person = self._find_returned_person(frame, position) or self._new(frame, position)
         elif position is not None:
-            person = self._reidentified(frame.body, person, position)
+            person = self._undo_identity_switch(frame.body, person, position)
         if person is not None and frame.time >= person.time:
             person.time = frame.time
             person.position = position or person.position
@@ -94,7 +94,9 @@ class StreamPeople:
             if not -NEW_STREAM_S < time - person.time <= BODY_TIMEOUT_S:
                 del self._by_identity[identity]
 
-    def _reidentified(self, identity: int, person: Person, position: Position) -> Person:
+    def _undo_identity_switch(
+        self, identity: int, person: Person, position: Position
+    ) -> Person:
         """Return whose path a position continues, and undo an identity switch."""
         jump = math.dist(position, person.position)
         if jump < MIN_SWITCH_M:
@@ -109,7 +111,7 @@ class StreamPeople:
                 return other
         return person
 
-    def _returned(
+    def _find_returned_person(
         self, frame: LiveFrame | PoseFrame, position: Position | None
     ) -> Person | None:
         """Return who was missing at this position and has a new identity, if anyone."""

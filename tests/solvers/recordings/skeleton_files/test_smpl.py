@@ -6,7 +6,7 @@ import pytest
 from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, world_poses
 from solvers.recordings import read_recording
-from solvers.recordings.skeleton_files.smpl_body import BODY
+from solvers.recordings.skeleton_files.smpl_bodies.joints import BODY
 from solvers.rotations import rotate
 
 F = 40

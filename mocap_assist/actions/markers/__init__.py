@@ -1,0 +1,1 @@
+"""Empties that move as captured markers do, made, read and written."""

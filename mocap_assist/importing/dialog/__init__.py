@@ -1,0 +1,1 @@
+"""The dialog of Import, its settings for the chosen files, and the job that it starts."""

@@ -1,0 +1,1 @@
+"""The recorded take next to its result: stick figures, markers, ghosts and curves."""

@@ -1,0 +1,1 @@
+"""The strip of ranges at the bottom of the Timeline, the Dope Sheet and the Graph Editor."""

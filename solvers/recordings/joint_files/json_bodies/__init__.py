@@ -1,0 +1,32 @@
+"""Read the joints of people from JSON, however frames, people and points are nested."""
+
+from .bodies import (
+    BodiesFrame,
+    BodyJoints,
+    json_frames,
+    listed,
+    name_of_body,
+    number,
+    open_frames,
+    point,
+    stacked,
+)
+from .people import is_frames_json, people_of_frame, time_of_frame
+from .pose_estimators import is_frame_json, open_frames_json
+
+__all__ = [
+    "BodiesFrame",
+    "BodyJoints",
+    "is_frame_json",
+    "is_frames_json",
+    "json_frames",
+    "listed",
+    "name_of_body",
+    "number",
+    "open_frames",
+    "open_frames_json",
+    "people_of_frame",
+    "point",
+    "stacked",
+    "time_of_frame",
+]
