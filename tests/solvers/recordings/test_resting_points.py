@@ -95,6 +95,35 @@ def test_joints_that_only_lie_are_a_question(recordings, take):
     assert estimated.axis == "Z" or not estimated.is_clear
 
 
+@pytest.mark.parametrize("up", ["Y", "Z"])
+@pytest.mark.parametrize("take", ["bd_kickLFront1Reps_001", "bd_depositFloorR_001"])
+def test_markers_around_hips_at_the_origin_are_a_question(recordings, take, up):
+    """Feet slide then, and markers near the hips rest along any axis."""
+    motion = read_recording(recordings / f"mocap/hdm05/HDM_{take}_120.amc")
+    positions, roles = joints_of(motion)
+    centered = positions[::EVERY] - positions[::EVERY, [roles.index("hips")]]
+
+    axes = estimate_axes_of_points(in_file(centered, up), "", 1.0)
+
+    assert axes.confidence < 1.0 or axes.up == up
+
+
+@pytest.mark.parametrize("up", ["Y", "Z"])
+def test_markers_of_a_walker_around_a_camera_come_in_as_recorded(up):
+    walk, _ = joints_of(walking_gait())
+
+    axes = estimate_axes_of_points(in_file(walk - (0.0, 3.0, 1.3), up), "", 1.0)
+
+    assert axes.up == up
+
+
+def test_a_body_that_stays_in_place_rests_on_nothing():
+    walk, _ = joints_of(walking_gait())
+    centered = walk - walk.mean(axis=1, keepdims=True)
+
+    assert contact(centered) == pytest.approx(0.0)
+
+
 def test_hips_at_the_origin_rest_on_nothing():
     """Feet slide then, and hands at the side may move least."""
     walk, roles = joints_of(walking_gait())
