@@ -1,6 +1,5 @@
 """Read the arrays of NumPy files, which state little but their shape."""
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -141,15 +140,19 @@ def open_point_archive(
         Raised by `progress`.
     """
     check_scale(scale)
-    members = read_archive_members(path, (*POINT_MEMBERS, *RATE_MEMBERS))
+    members = read_archive_members(path, POINT_MEMBERS)
     found = next((members[name] for name in POINT_MEMBERS if name in members), None)
     if found is None:
         raise InvalidFileError(f"{path} has no array of joints. Export it again.")
-    return _open_points(path, found, scale, _stated_rate(members))
+    return _open_points(path, found, scale, _stated_rate(path))
 
 
-def _stated_rate(members: Mapping[str, Array]) -> float | None:
+def _stated_rate(path: Path | str) -> float | None:
     """Return the frames per second that an archive states; None if it states none."""
+    try:
+        members = read_archive_members(path, RATE_MEMBERS)
+    except InvalidFileError:  # words or None in place of a number
+        return None
     stated = (members[name] for name in RATE_MEMBERS if name in members)
     rate = next((float(each.item()) for each in stated if each.size == 1), 0.0)
     return common_rate(rate) if 0.0 < rate < np.inf else None

@@ -198,11 +198,14 @@ def stamps_of_frame(frame: Mapping[str, Any]) -> dict[str, tuple[float, float | 
     """Return all times that a frame states, and their seconds per unit, by their keys.
 
     Whole seconds with nanoseconds next to them come first, without a key or below one, then
-    names that state the unit, then others. Times in a header count if the frame has none of
-    the same name.
+    names that state the unit, then others. Times in a header count if the frame has none.
     """
-    for header in members(frame, HEADER_KEYS):
-        frame = {**header, **frame} if isinstance(header, Mapping) else frame
+    headers = [each for each in members(frame, HEADER_KEYS) if isinstance(each, Mapping)]
+    found = (_stamps_of_mapping(each) for each in (frame, *headers))
+    return next(filter(None, found), {})
+
+
+def _stamps_of_mapping(frame: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
     names = {key: name for key in frame if (name := time_name(str(key))) is not None}
     split = {"": _joined_seconds(frame)} | {
         key: _joined_seconds(frame[key]) for key in names if isinstance(frame[key], Mapping)

@@ -70,6 +70,7 @@ def test_points_of_apple_vision(tmp_path, walk):
         lambda time: {"Header": {"Stamp": time}},
         lambda time: {"metadata": {"timestamp_ms": 1000.0 * time}},
         lambda time: {"stamp": time, "header": {"stamp": 0.0}},
+        lambda time: {"time": time, "header": {"stamp_ms": 500.0 * time}},
     ],
 )  # fmt: skip
 def test_the_time_of_a_message_is_in_its_header(tmp_path, walk, header):

@@ -141,6 +141,7 @@ def test_an_archive_of_joints_is_read(tmp_path, walk):
         ({"frame_rate": np.array([23.976])}, 23.976),
         ({"fps": np.nan}, 30.0),
         ({"fps": np.ones(4)}, 30.0),
+        ({"fps": "60"}, 30.0),
     ],
 )
 def test_an_archive_states_its_rate(tmp_path, walk, stated, rate):
