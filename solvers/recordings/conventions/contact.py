@@ -34,9 +34,9 @@ def measure_contact(before: Array, after: Array, directions: Array) -> Array:
     """Return the evidence of each direction to be up, 0 to 1, shape (n_directions,).
 
     It is 1 where the lowest points along it rest, and 0 where they move as fast as all points
-    do on average. All directions are alike where the center of the points stays in place: what
-    rests then may be near the center rather than carry the body. Points that never move are not
-    those of a body.
+    do on average. It is 0 along all directions where the center of the points stays in place:
+    what rests then may be near the center rather than carry the body. Points that never
+    move are not those of a body.
 
     Parameters
     ----------

@@ -18,8 +18,8 @@ ROTATION, TRANSLATION = "Rh", "Th"
 N_WITHOUT_ROOT = {63, 69}
 """Numbers of a pose without its root, which newer versions leave out."""
 PELVIS_M = np.array([0.0, -0.226, 0.028])
-"""Pelvis of the model without pose and shape, meters, Y up. By definition of the model, the mean
-of its male and female body: 0.241 and 0.211 below the origin."""
+"""Pelvis of the model without pose and shape, meters, Y up. By definition of the model, the
+mean of its male and female body: 0.241 and 0.211 below the origin."""
 
 
 def with_root_at_pelvis(path: Path | str, arrays: Mapping[str, Array]) -> dict[str, Array]:
