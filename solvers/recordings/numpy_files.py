@@ -16,7 +16,7 @@ from .containers import (
     read_archive_members,
     read_array,
 )
-from .conventions import DEFAULT_FRAME_RATE, Bodies, check_scale, observed_body
+from .conventions import DEFAULT_FRAME_RATE, Bodies, check_scale, common_rate, observed_body
 from .joint_files import read_freemocap_points
 from .point_bodies import body_of_points, has_layout, points_of_array, read_body
 from .skeleton_files import is_motion_x, read_motion_x
@@ -25,9 +25,12 @@ HUMANML3D_FEATURES = 263
 POINT_MEMBERS = (
     "positions", "joints", "joint_positions", "joints3d", "joints_3d", "keypoints3d",
     "keypoints_3d", "kps3d", "pose3d", "pose_3d", "poses3d", "poses_3d", "points3d",
-    "points_3d", "xyz", "points", "keypoints", "arr_0",
+    "points_3d", "pose_world_landmarks", "world_landmarks", "landmarks", "pred_xyz_jts", "xyz",
+    "points", "keypoints", "reconstruction", "predictions", "arr_0",
 )  # fmt: skip
 """Names of joints in archives, the clear ones first."""
+RATE_MEMBERS = ("fps", "frame_rate", "framerate", "mocap_frame_rate", "mocap_framerate")
+"""Names of frames per second in archives."""
 MAX_ROUNDING = 1e-2
 """Difference from a rotation, relative to 1, up to which numbers are one. It guards points on a
 sphere of radius 1; rotations of 16 bits are off by 1e-3."""
@@ -141,11 +144,22 @@ def open_point_archive(
     found = next((members[name] for name in POINT_MEMBERS if name in members), None)
     if found is None:
         raise InvalidFileError(f"{path} has no array of joints. Export it again.")
-    return _open_points(path, found, scale)
+    return _open_points(path, found, scale, _stated_rate(path))
+
+
+def _stated_rate(path: Path | str) -> float | None:
+    """Return the frames per second that an archive states; None if it states none."""
+    try:
+        members = read_archive_members(path, RATE_MEMBERS)
+    except InvalidFileError:  # words or None in place of a number
+        return None
+    stated = (members[name] for name in RATE_MEMBERS if name in members)
+    rate = next((float(each.item()) for each in stated if each.size == 1), 0.0)
+    return common_rate(rate) if 0.0 < rate < np.inf else None
 
 
 def _open_points(
-    path: Path | str, array: Array, scale: float | None
+    path: Path | str, array: Array, scale: float | None, rate: float | None = None
 ) -> Bodies[JointRecording | Tracks]:
     """List the bodies of an array; several are on its first or second axis."""
     _refuse_rotations(path, array)
@@ -155,14 +169,14 @@ def _open_points(
             str(number),
             np.flatnonzero(np.isfinite(points).all(axis=2).any(axis=1)),
             len(points),
-            len(points) / DEFAULT_FRAME_RATE,
+            len(points) / (rate or DEFAULT_FRAME_RATE),
         )
         for number, points in enumerate(bodies, start=1)
         if len(bodies) > 1
     )
 
     def read(index: int, progress: Progress) -> JointRecording | Tracks:
-        return _read_points(path, points_of_array(path, bodies[index]), scale, progress)
+        return _read_points(path, points_of_array(path, bodies[index]), scale, rate, progress)
 
     return Bodies(str(path), listed, read)
 
@@ -208,13 +222,17 @@ def _refuse_rotations(path: Path | str, array: Array) -> None:
 
 
 def _read_points(
-    path: Path | str, points: Array, scale: float | None, progress: Progress
+    path: Path | str,
+    points: Array,
+    scale: float | None,
+    rate: float | None,
+    progress: Progress,
 ) -> JointRecording | Tracks:
     points = np.where(np.isfinite(points).all(axis=-1)[..., None], points, np.nan)
     body = body_of_points(path, points)
     n_points = points.shape[1]
     if body is not None:
-        return read_body(path, body, scale, progress)
+        return read_body(path, body, scale, progress, rate=rate)
     if body is None and has_layout(n_points):
         progress(
             0.9,
@@ -223,4 +241,4 @@ def _read_points(
                 " the joints as a joint CSV, which has names"
             ),
         )
-    return read_freemocap_points(path, points, scale, DEFAULT_FRAME_RATE, progress)
+    return read_freemocap_points(path, points, scale, rate or DEFAULT_FRAME_RATE, progress)

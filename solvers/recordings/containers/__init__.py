@@ -1,7 +1,7 @@
 """Read container formats and tables: C3D, Matroska, MATLAB, NumPy, JSON and text."""
 
 from .c3d_file import BLOCK_BYTES, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
-from .delimited import SPACE, find_separator, split_cells, stream_cells
+from .delimited import SPACE, find_separator, ignored_columns, split_cells, stream_cells
 from .folder_scan import check_folder_access, files_below, is_folder
 from .frame_files import (
     FrameFiles,
@@ -105,6 +105,7 @@ __all__ = [
     "files_below",
     "find_separator",
     "frame_files",
+    "ignored_columns",
     "index_matroska",
     "is_c3d",
     "is_folder",

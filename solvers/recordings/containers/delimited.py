@@ -1,7 +1,7 @@
 """Read tables whose cells are separated by tabs, semicolons or commas."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
@@ -21,6 +21,13 @@ QUOTED = re.compile(rb'"([^"]*)"')
 NO_CONVERTERS: Mapping[int, Callable[[bytes], bytes]] = MappingProxyType({})
 INSIDE_QUOTES = b"\0"
 """Replaces separators inside quotes while a line is split."""
+
+
+def ignored_columns(
+    width: int, used: Collection[int | None]
+) -> dict[int, Callable[[bytes], bytes]]:
+    """Return converters that leave out all other columns, which may hold words."""
+    return {column: lambda cell: b"" for column in range(width) if column not in used}
 
 
 def find_separator(line: bytes) -> bytes:

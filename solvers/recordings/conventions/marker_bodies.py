@@ -37,15 +37,25 @@ def axis_of_named_markers(names: Sequence[str], points: Array) -> str:
     points : float array, shape (n_frames, n_points, 3)
         NaN where missing.
     """
-    trunk = _from_feet_to_top(names, points)
-    if trunk is None:
+    median = direction_of_named_markers(names, points)
+    if median is None:
         return ""
-    directions = trunk[0] / np.linalg.norm(trunk[0], axis=1, keepdims=True)
-    median = np.median(directions, axis=0)
     axis = int(np.argmax(np.abs(median)))
     if abs(median[axis]) < MIN_UPRIGHT_COSINE:
         return ""
     return ("-" if median[axis] < 0.0 else "+") + "XYZ"[axis]
+
+
+def direction_of_named_markers(names: Sequence[str], points: Array) -> Array | None:
+    """Return the direction from feet to head in most frames; None if names show neither.
+
+    Its components are medians over the frames, so that it is shorter than 1 where it changes.
+    """
+    trunk = _from_feet_to_top(names, points)
+    if trunk is None:
+        return None
+    directions = trunk[0] / np.linalg.norm(trunk[0], axis=1, keepdims=True)
+    return np.asarray(np.median(directions, axis=0))
 
 
 def stature_of_markers(names: Sequence[str], points: Array) -> float | None:

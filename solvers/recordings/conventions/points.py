@@ -11,6 +11,7 @@ from ...motion import AxisName, FileConventions, Tracks
 from ..containers import UniqueNames, printable
 from .axes import MIN_BODY_JOINTS, z_up_from_y_up
 from .file_axes import FORWARD
+from .marker_axes import estimate_up_of_markers
 from .marker_bodies import axis_of_named_markers
 
 METERS = {
@@ -21,10 +22,6 @@ METERS = {
 """Meters per unit, by its name without the plural s."""
 ROLLED_FORWARD: dict[AxisName, AxisName] = {"X": "-Z", "-X": "Z"}
 """Axis that becomes -Y where points are rotated cyclically."""
-GUESSED_CONFIDENCE = 0.9
-"""Confidence, a ratio, in an up axis that is estimated from the extent of markers. Chosen by
-hand: right in all files of tests/solvers/recordings/marker_files that state theirs, but they
-are few."""
 BODY_EXTENT_M = 1.5
 """Typical extent of the markers of a body, meters, to which the unit brings them nearest.
 Chosen by hand: x2 fails `test_the_unit_is_the_header_s_or_gives_a_person_s_size`."""
@@ -81,9 +78,9 @@ def estimate_axes_of_points(
         up = default_up
     if up[-1:] in {"X", "Y", "Z"}:
         return axes_of_points(up, unit)
-    guessed = "+Y" if _looks_y_up(points) else "+Z"
+    guessed, confidence = estimate_up_of_markers(points, labels)
     axes = axes_of_points(other_standing_axis(points, guessed, labels) or guessed, unit)
-    return replace(axes, confidence=GUESSED_CONFIDENCE)
+    return replace(axes, confidence=confidence)
 
 
 def stand_markers(
@@ -115,17 +112,8 @@ def axes_of_points(up: str, unit: float = 1.0) -> FileConventions:
     return FileConventions(axis, ROLLED_FORWARD.get(axis, FORWARD[axis]), unit)
 
 
-def points_z_up(
-    points: NDArray[np.float64], up: str = "", default_up: str = ""
-) -> NDArray[np.float64]:
-    """Rotate points so that `up`, such as `+Y`, becomes Z; if it is unknown, estimate it.
-
-    With too few points for a body it is `default_up`, if that is given.
-    """
-    if up[-1:] not in {"X", "Y", "Z"} and points.shape[1] < MIN_BODY_JOINTS:
-        up = default_up
-    if up[-1:] not in {"X", "Y", "Z"}:
-        up = "+Y" if _looks_y_up(points) else "+Z"
+def points_z_up(points: NDArray[np.float64], up: str) -> NDArray[np.float64]:
+    """Rotate points so that `up`, such as `+Y`, becomes Z."""
     if up[-1] == "X":
         points = np.roll(points, -1, axis=-1)  # x y z -> y z x
     if up[-1] == "Y":
@@ -168,21 +156,6 @@ def other_standing_axis(
     is_sunk = lowest[stated] <= -FLOOR_TOLERANCE_M
     is_tall = extents[best] > max(MIN_STANDING_M, MIN_STANDING_RATIO * extents[stated])
     return f"+{'XYZ'[best]}" if is_sunk and is_tall and best != stated else ""
-
-
-@np.errstate(over="ignore", invalid="ignore")
-def _looks_y_up(points: NDArray[np.float64]) -> bool:
-    """Return whether Y rather than Z is up, for points in meters.
-
-    Points are never far below the floor: if only one of the two axes satisfies that, it is up.
-    Otherwise the axis of the larger median extent is up. This is correct for all test files
-    that state their axes.
-    """
-    is_above_floor = np.nanpercentile(points.reshape(-1, 3), 2, axis=0) > -FLOOR_TOLERANCE_M
-    if is_above_floor[1] != is_above_floor[2]:
-        return bool(is_above_floor[1])
-    _, y, z = np.median(_extents(points), axis=0)
-    return bool(y > z)
 
 
 def _extents(points: NDArray[np.float64]) -> NDArray[np.float64]:

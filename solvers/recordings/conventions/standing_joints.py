@@ -4,9 +4,11 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...motion import AxisName, Motion, world_poses
+from .contact import measure_contact, sampled_steps
 
 N_SAMPLED_FRAMES = 60
 """Number of frames, evenly spaced, that are evaluated. It bounds the run time."""
@@ -20,10 +22,9 @@ AXES: dict[AxisName, Array] = {
 MIN_STANDING = -0.5
 """Evidence, a ratio, of a body that is upside down. It guards handstands, which must not
 outvote the rest pose (`test_a_handstand_stays_one`)."""
-MIN_TRAVEL_FRACTION = 1.0
-"""Travel, relative to the height of the body, from which it is evidence. Chosen by hand: in 87
-upright takes of ten makers, longer travel has 0.71 to 0.99 of evidence for the right axis,
-shorter travel 0 to 0.92."""
+MIN_HIPS_MOTION = 0.01
+"""Mean step of the hips, relative to that of all joints, below which they are the origin of the
+file rather than in the room. It guards rounding of numbers."""
 MAX_FLOOR_FRACTION = 0.4
 """Distance of the lowest joint from zero, relative to the height, that is no evidence. Chosen
 by hand: x0.5 fails `test_a_lying_actor_is_left_lying_and_reported`, x2
@@ -58,10 +59,22 @@ class StandingJoints(NamedTuple):
 def sampled_positions(motion: Motion) -> Array:
     """Return the joints in some frames without gaps, shape (n_frames, n_joints, 3)."""
     step = max(1, motion.n_frames // N_SAMPLED_FRAMES)
-    positions = world_poses(
-        motion.skeleton, motion.rotations[::step], motion.root_positions[::step]
-    ).positions
+    positions = _positions(motion, np.arange(0, motion.n_frames, step))
     return np.asarray(positions[np.isfinite(positions).all(axis=(1, 2))])
+
+
+def sampled_pairs(motion: Motion) -> tuple[Array, Array]:
+    """Return the joints in some frames, and in those that follow them."""
+    steps = sampled_steps(np.ones(motion.n_frames, dtype=np.bool_))
+    return _positions(motion, steps), _positions(motion, steps + 1)
+
+
+def _positions(motion: Motion, frames: NDArray[np.intp]) -> Array:
+    return np.asarray(
+        world_poses(
+            motion.skeleton, motion.rotations[frames], motion.root_positions[frames]
+        ).positions
+    )
 
 
 def is_unfolded(rest: Array, body: StandingJoints) -> bool:
@@ -115,13 +128,27 @@ def measure_rest(
     return {axis: floor[axis] if hips[axis] >= least else 0.0 for axis in AXES}
 
 
-def measure_travel(positions: Array, body: StandingJoints) -> dict[AxisName, float]:
-    """Return how far the actor travels at right angles to each axis, 0 to 1."""
-    travel = np.ptp(positions[:, body.hips], axis=0)
-    length = float(np.linalg.norm(travel))
-    if length < MIN_TRAVEL_FRACTION * height_of(positions, body):
+@np.errstate(over="ignore", invalid="ignore")  # numbers that are refused later
+def measure_joint_contact(
+    before: Array, after: Array, body: StandingJoints
+) -> dict[AxisName, float]:
+    """Return how still the lowest joints along each axis are, 0 to 1 (`measure_contact`).
+
+    It is 0 along all axes where the hips are the origin.
+
+    Parameters
+    ----------
+    before, after : shape (n_steps, n_joints, 3)
+        Joints in frames, and in those that follow them; NaN where missing.
+    """
+    steps = np.linalg.norm(after - before, axis=2)
+    hips, joints = steps[:, body.hips], steps[:, body.joints]
+    if not np.nansum(hips) > MIN_HIPS_MOTION * np.nansum(joints) / len(body.joints):
         return dict.fromkeys(AXES, 0.0)
-    return {axis: 1.0 - float(travel @ np.abs(AXES[axis])) / length for axis in AXES}
+    evidence = measure_contact(
+        before[:, body.joints], after[:, body.joints], np.stack([*AXES.values()])
+    )
+    return dict(zip(AXES, evidence.tolist(), strict=True))
 
 
 def height_of(positions: Array, body: StandingJoints) -> float:

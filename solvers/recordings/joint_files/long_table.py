@@ -17,6 +17,7 @@ from ..containers import (
     LineReader,
     NumberedWords,
     check_n_joints,
+    ignored_columns,
     shown,
     stream_cells,
 )
@@ -35,7 +36,7 @@ from ..point_bodies import (
     second_of_times,
     time_name,
 )
-from .point_table import ignored_columns, recording_of_points
+from .point_table import recording_of_points
 from .table_titles import MAX_TITLE_LINES, table_titles
 
 FRAMES = ("frame", "frame_id", "frameid", "frame_index", "frame_number", "frame_num", "image")
@@ -55,7 +56,10 @@ IDENTITIES = ("id", "pid")
 """Titles of the person in tables that state a joint of a frame several times without it; others
 have a number of the line or of the joint there."""
 AXES = ("x", "y", "z")
-AXIS_AFFIXES = ("{}", "pos_{}", "{}_pos", "position_{}", "{}_m", "world_{}", "{}_world", "{}3d")
+AXIS_AFFIXES = (
+    "{}", "pos_{}", "{}_pos", "position_{}", "{}_m", "world_{}", "{}_world", "{}3d",
+    "location_{}", "translate_{}", "pos{}", "position{}", "location{}", "translate{}", "t{}",
+)  # fmt: skip
 """Titles of coordinates, with the axis at the braces."""
 MIN_JOINTS = 8
 """Number of joints of a body. It guards tables of something else."""
@@ -137,9 +141,7 @@ def open_long_table(
     names, order = table.joints.in_order()
     points = _points(path, table, frames, order)
     if times is not None:
-        times = over_midnight(
-            times * (columns.times.second or second_of_times(times, progress))
-        )
+        times = times * (columns.times.second or second_of_times(times, progress))
     duration = len(points[0]) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
     listed = tuple(
         observed_body(
@@ -183,6 +185,9 @@ def _read_table(path: Path | str, progress: Progress) -> _LongTable:
     rows = stream_cells(
         reader, header.separator, len(titles), path, progress, converters=converters
     )
+    second = columns.times.second
+    if columns.time is not None and second is not None:
+        rows[:, columns.time] = over_midnight(rows[:, columns.time] * second) / second
     return _LongTable(rows, columns, joints, people)
 
 

@@ -1,6 +1,7 @@
 """Read MediaPipe's world landmarks as programs save them: CSV."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,7 +12,15 @@ from ...errors import InvalidFileError
 from ...motion import JointRecording
 from ...motion.skeletons import BODY_POINTS
 from ...progress import Progress, unwatched, within
-from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
+from ..containers import (
+    LineReader,
+    decode_text,
+    find_separator,
+    ignored_columns,
+    shown,
+    split_cells,
+    stream_cells,
+)
 from ..conventions import check_scale
 from ..point_bodies import N_POINTS, recording_from_landmarks, second_of_times, time_name
 
@@ -92,7 +101,7 @@ def read_mediapipe_csv(
         len(titles),
         path,
         within(progress, 0.0, 0.9),
-        converters={index: _landmark_number} if index >= 0 else {},
+        converters=_converters(titles, index) if index >= 0 else {},
     )
     if not len(rows):
         raise InvalidFileError(f"{path} has a header but no frames. Export it again.")
@@ -101,6 +110,13 @@ def read_mediapipe_csv(
     else:
         table = _from_wide(titles, rows, progress)
     return recording_from_landmarks(path, table.points, table.times, None, scale, progress)
+
+
+def _converters(titles: list[str], index: int) -> dict[int, Callable[[bytes], bytes]]:
+    """Return converters of a table with a line per landmark: unused columns may hold words."""
+    used = {*CHANNELS, *FRAME_TITLES, *_time_titles(titles)}
+    kept = {column for column, title in enumerate(titles) if title in used}
+    return {**ignored_columns(len(titles), kept), index: _landmark_number}
 
 
 def _from_wide(titles: list[str], rows: Array, progress: Progress) -> _Table:
@@ -122,6 +138,16 @@ def _from_long(
     if not len(rows):
         raise InvalidFileError(f"{path} has no landmark of a pose in any line.")
     _, first, frames = np.unique(stamps, return_index=True, return_inverse=True)
+    _, lines, counts = np.unique(
+        frames * N_POINTS + landmarks, return_index=True, return_counts=True
+    )
+    if counts.max() > 1:
+        repeated = lines[counts > 1][0]
+        joint = BODY_POINTS[landmarks[repeated]]
+        raise InvalidFileError(
+            f"{path} has joint {shown(joint)} of one person twice in frame"
+            f" {frames[repeated] + 1}. Name the person of each line in a column `person`."
+        )
     points = np.full((len(first), N_POINTS, 4), np.nan)
     for title, column in {title: at for at, title in enumerate(titles)}.items():
         if title in CHANNELS:

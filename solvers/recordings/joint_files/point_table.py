@@ -1,6 +1,6 @@
 """Read tables of any program whose columns are named after points and coordinates."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
 from ...progress import READING, Progress, Remark, unwatched, within
-from ..containers import LineReader, shown, stream_cells
+from ..containers import LineReader, ignored_columns, shown, stream_cells
 from ..conventions import (
     DEFAULT_FRAME_RATE,
     Bodies,
@@ -146,13 +146,6 @@ def _times(times: Array, columns: _Columns, progress: Progress) -> Array | None:
     """Return the times of frames, seconds; None if there are hardly any."""
     second = columns.times.second or second_of_times(times, progress)
     return completed_times(over_midnight(times * second), progress)
-
-
-def ignored_columns(
-    width: int, used: Collection[int | None]
-) -> dict[int, Callable[[bytes], bytes]]:
-    """Return converters that leave out all other columns, which may hold words."""
-    return {column: lambda cell: b"" for column in range(width) if column not in used}
 
 
 def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[MarkerSubject]:

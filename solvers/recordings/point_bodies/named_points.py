@@ -20,9 +20,12 @@ MIDDLE = {
     "nose": "nose", "neck": "neck_center", "midhip": "hips_center", "hips": "hips_center",
     "pelvis": "hips_center", "hipcenter": "hips_center", "hipscenter": "hips_center",
     "hip": "hips_center", "root": "hips_center", "head": "head_center",
-    "headtop": "head_center",
+    "headtop": "head_center", "centerhead": "head_center", "tophead": "head_center",
+    "centershoulder": "neck_center",
 }  # fmt: skip
 SIDES = {"l": "left", "left": "left", "r": "right", "right": "right"}
+OTHER_SIDE = {"l": "r", "r": "l", "L": "R", "R": "L"}
+"""Last letters of names such as `hand_r`."""
 LIMBS = tuple(
     f"{side}_{part}"
     for side in ("left", "right")
@@ -100,10 +103,21 @@ def missing_limbs(names: Sequence[str]) -> list[str]:
     keypoints = [*map(_keypoint, names)]
     by_kind = (
         [each for each in LIMBS if each not in keypoints],
-        [NAMES_OF_ROLES[role] for role in NEEDED_ROLES - roles_by_name(names).keys()],
+        [NAMES_OF_ROLES[role] for role in NEEDED_ROLES - _roles(names)],
     )
     shortest = min(by_kind, key=len)
     return sorted(shortest) if len(shortest) <= MAX_MISSING else []
+
+
+def _roles(names: Sequence[str]) -> set[str]:
+    """Return the roles of points, also where only those of one side are there."""
+    mirrored = [
+        name[:-1] + OTHER_SIDE[name[-1]]
+        for name in names
+        if name[-1:] in OTHER_SIDE and not name[-2:-1].isalnum()
+    ]
+    roles = roles_by_name([*dict.fromkeys([*names, *mirrored])])
+    return {role for role, name in roles.items() if name in names}
 
 
 def _keypoint(name: str) -> str:

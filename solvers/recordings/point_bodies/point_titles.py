@@ -4,6 +4,8 @@ import re
 from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
+from ...motion import roles_by_name
+
 SIGNS = r"[\s_.:\-|/\[(]"
 KINDS = r"pos(?:ition)?|loc(?:ation)?|translat(?:e|ion)|tr?|world"
 COORDINATE = re.compile(
@@ -70,16 +72,21 @@ def is_quantity(name: str) -> bool:
 def names_of_positions(names: Collection[str]) -> list[str]:
     """Return the names without those of other quantities of a point, such as `Hips_r`.
 
-    `hand_r` is the right hand if there is a `hand_l`.
+    `hand_r` is the right hand if there is a `hand_l`, or if a body with it has a `hand_l`.
     """
     letters: dict[str, set[str]] = {}
     matches = {name: LETTER.fullmatch(name) for name in names}
     for match in filter(None, matches.values()):
         letters.setdefault(match["name"].lower(), set()).add(match["letter"].lower())
+    bare = {name.lower() for name in names}
+    right = [name for name, found in letters.items() if found == {"r"} and name not in bare]
+    is_right_side = bool(roles_by_name([f"{name}_{side}" for name in right for side in "lr"]))
 
     def is_position(match: re.Match[str] | None) -> bool:
         letter = match["letter"].lower() if match else "p"
-        is_label = match is not None and not letters[match["name"].lower()] <= QUANTITIES
+        name = match["name"].lower() if match else ""
+        is_label = match is not None and not letters[name] <= QUANTITIES
+        is_label = is_label or (is_right_side and name in right)
         return letter not in QUANTITIES or letter == "p" or (is_label and letter != "q")
 
     return [name for name, match in matches.items() if is_position(match)]

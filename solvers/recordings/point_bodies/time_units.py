@@ -28,7 +28,7 @@ SECONDS = {
 """Seconds per unit, by its name without the plural s. By definition of the units."""
 WORD_OF_TIME = re.compile(
     r"(?i)(?:(?:unix|utc|system|capture|sensor|device|recording|relative)[\s_\-]*)?"
-    r"(?:time[\s_\-]*stamps?|times?|zeit(?:stempel)?|temps|tiempo|tempo|時間|时间|時刻|elapsed"
+    r"(?:(?:time[\s_\-]*)?stamps?|times?|zeit(?:stempel)?|temps|tiempo|tempo|時間|时间|時刻|elapsed"
     r"|offset(?=.)|pts(?=.)|ts?)"
     r"(?:[\s_\-]*(?:in\s)?[\s_\-]*[(\[]?\s*(?P<unit>[a-z\u00b5\u03bc]+)\s*[)\]]?)?"
 )
@@ -172,15 +172,13 @@ def over_midnight(seconds: Array) -> Array:
 
     Parameters
     ----------
-    seconds : shape (n_frames,)
+    seconds : shape (n_lines,), the first time first, less than half a day
         Other times are returned as they are.
     """
-    known = np.isfinite(seconds)
-    if not known.any() or seconds[known].min() < 0.0 or seconds[known].max() >= DAY_S:
+    known = seconds[np.isfinite(seconds)]
+    if not len(known) or known.min() < 0.0 or known.max() >= DAY_S:
         return seconds
-    days = np.zeros(len(seconds))
-    days[known] = np.cumsum(np.diff(seconds[known], prepend=0.0) < -DAY_S / 2.0)
-    return seconds + DAY_S * days
+    return np.where(seconds < known[0] - DAY_S / 2.0, seconds + DAY_S, seconds)
 
 
 class TimeCells:

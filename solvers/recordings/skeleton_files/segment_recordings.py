@@ -17,6 +17,7 @@ from ...rotations import (
 )
 from ..conventions import (
     MIN_BODY_JOINTS,
+    estimate_axes_of_points,
     points_z_up,
     rotations_z_up_from_y_up,
     stand_upright,
@@ -95,7 +96,8 @@ def recording_from_segments(
         progress(1.0, Remark(POINTS_ONLY))
     if not np.isfinite(positions).all(axis=-1).any():
         raise InvalidMotionError("No segment is observed in any frame. Export it again.")
-    return Tracks(tuple(names), points_z_up(positions, default_up=default_up), frame_rate)
+    axes = estimate_axes_of_points(positions, "", 1.0, default_up)
+    return Tracks(tuple(names), points_z_up(positions, axes.up), frame_rate)
 
 
 def _at_joints(positions: Array, rotations: Array, parents: Sequence[int]) -> Array:

@@ -31,6 +31,7 @@ from .smpl_bodies import (
     FINGERS,
     smpl_joints,
     split_people,
+    with_root_at_pelvis,
     with_rotation_vectors,
 )
 
@@ -47,15 +48,19 @@ LEFT_HAND, RIGHT_HAND = ("left_hand_pose",), ("right_hand_pose",)
 POSITIONS = ("trans_world", "trans", "transl", "translation", "smpl_trans", "pred_trans")
 RATES = ("mocap_frame_rate", "mocap_framerate", "frame_rate", "framerate", "fps")
 SCALES = ("smpl_scaling",)
+OF_EASYMOCAP = ("Rh", "Th")
+"""Names of the rotation and translation of the posed body (`with_root_at_pelvis`)."""
 POSES = frozenset((*ROTATIONS, *ROOT, *BODY_POSE)) - {"pose"}
 """Names that no other archives have; joints may be called `pose`, too."""
 NAMES = frozenset(
     (*POSES, *HANDS, *LEFT_HAND, *RIGHT_HAND, *POSITIONS, *RATES,
-     *SCALES, "betas", "gender", "dmpls", "surface_model_type", "pose_jaw", "pose_eye",
-     "num_betas", "marker_data", "marker_labels", "mocap_time_length", "trans_vel")
+     *SCALES, *OF_EASYMOCAP, "shapes", "betas", "gender", "dmpls", "surface_model_type",
+     "pose_jaw", "pose_eye", "num_betas", "marker_data", "marker_labels",
+     "mocap_time_length", "trans_vel")
 )  # fmt: skip
 READ_ARRAYS = (
     *ROTATIONS, *ROOT, *BODY_POSE, *HANDS, *LEFT_HAND, *RIGHT_HAND, *POSITIONS, *RATES, *SCALES,
+    *OF_EASYMOCAP,
 )  # fmt: skip
 OF_SMPL = frozenset((*POSITIONS, "betas"))
 """Names of which one is next to a `pose` of SMPL."""
@@ -99,7 +104,8 @@ def open_smpl(
 
     Both layouts of AMASS [1]_ are read, as one array `poses` or in parts (`root_orient`,
     `pose_body`, `pose_hand`), and the names that video models use (`global_orient`,
-    `body_pose`, `transl`, `pose_world`, `pred_rotmat`), as rotation vectors or matrices.
+    `body_pose`, `transl`, `pose_world`, `pred_rotmat`), as rotation vectors or matrices; so are
+    the rotation `Rh` and the translation `Th` of EasyMocap.
     Rotations are exact. Bone lengths depend on a licensed model that is neither read nor
     needed: they are those of an adult, scaled to `height`. The height above the floor depends
     on them too, so the feet are put on the floor. Which way is up is estimated from the body
@@ -143,9 +149,9 @@ def open_smpl(
     if "posed_joints" in arrays and not {*ROTATIONS, *ROOT} & arrays.keys():
         return open_kimodo(path, scale=scale, progress=progress)
     arrays = with_rotation_vectors(
-        arrays, {*ROTATIONS, *ROOT, *BODY_POSE, *HANDS, *LEFT_HAND, *RIGHT_HAND}
+        arrays, {*ROTATIONS, *ROOT, *BODY_POSE, *HANDS, *LEFT_HAND, *RIGHT_HAND, "Rh"}
     )
-    people = split_people(arrays, SIZES)
+    people = [with_root_at_pelvis(path, each) for each in split_people(arrays, SIZES)]
     vectors = [_rotation_vectors(path, person) for person in people]
     rate = _rate(arrays, unwatched)
     listed = tuple(

@@ -200,7 +200,7 @@ def test_unnamed_points_with_y_up_stand(tmp_path):
     points = read_as(tmp_path / "a.npy")
 
     assert np.ptp(points.positions[0, :, 2]) > 1.3
-    assert conventions_of(points).sentence().startswith("Y is up (90% confidence)")
+    assert conventions_of(points).sentence().startswith("Y is up, Z is forward")
 
 
 @pytest.mark.parametrize("axis", [Axis.X, Axis.Z, Axis.MINUS_Y])

@@ -20,8 +20,9 @@ from .points import (
 )
 
 POINT_KEYS = (*LANDMARK_KEYS, *either_case(
-    "keypoints3d", "keypoints_3d", "joints3d", "joints_3d", "joints3D", "pose_keypoints_3d",
-    "pose3d", "pose_3d", "poses_3d", "positions", "joints", "keypoints", "bones", "xyz",
+    "keypoints3d", "keypoints_3d", "joints3d", "joints_3d", "joints3D",
+    "pose_keypoints_3d", "pose3d", "pose_3d", "poses_3d", "positions", "joints", "keypoints",
+    "bones", "points", "xyz",
 ))  # fmt: skip
 """Members with the joints of a person."""
 PEOPLE_KEYS = either_case("instances", "people", "persons", "bodies", "skeletons",
@@ -34,6 +35,8 @@ NAMES_OF_PEOPLE = (*IDENTITY_KEYS, *either_case("name"))
 NUMBER_KEYS = either_case("frame", "frame_id", "frame_number", "frame_index", "frame_idx",
                           "frameId", "frameNumber", "frameIndex")  # fmt: skip
 """Members with the number of a frame."""
+HEADER_KEYS = either_case("header", "meta", "metadata")
+"""Members with the time of a frame, as in messages of ROS."""
 RATE_KEYS = (*either_case("fps", "frame_rate", "framerate", "frameRate"), "FPS")
 NUMBERS_KEYS = either_case("frame_ids", "frameIds", "frame_numbers", "frame_indices")
 """Members with the numbers of all frames of a person."""
@@ -195,8 +198,14 @@ def stamps_of_frame(frame: Mapping[str, Any]) -> dict[str, tuple[float, float | 
     """Return all times that a frame states, and their seconds per unit, by their keys.
 
     Whole seconds with nanoseconds next to them come first, without a key or below one, then
-    names that state the unit, then others.
+    names that state the unit, then others. Times in a header count if the frame has none.
     """
+    headers = [each for each in members(frame, HEADER_KEYS) if isinstance(each, Mapping)]
+    found = (_stamps_of_mapping(each) for each in (frame, *headers))
+    return next(filter(None, found), {})
+
+
+def _stamps_of_mapping(frame: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
     names = {key: name for key in frame if (name := time_name(str(key))) is not None}
     split = {"": _joined_seconds(frame)} | {
         key: _joined_seconds(frame[key]) for key in names if isinstance(frame[key], Mapping)

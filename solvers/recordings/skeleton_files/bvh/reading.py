@@ -128,7 +128,8 @@ def _read_bodies(
     bodies = read_hierarchies(_hierarchy(reader, path), path)
     n_joints = sum(map(len, bodies))
     check_n_joints(path, n_joints)
-    frame_rate, n_announced = _frame_rate(reader)
+    stated_rate, n_announced = _frame_rate(reader)
+    frame_rate = stated_rate or DEFAULT_RATE_HZ
     widths = [sum(len(joint.channels) for joint in joints) for joints in bodies]
     if not sum(widths):
         raise InvalidFileError(f"{path} has no CHANNELS, so nothing in it moves.")
@@ -136,7 +137,7 @@ def _read_bodies(
     if not len(rows):
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
     check_n_poses(path, len(rows), n_joints)
-    _check_header(len(rows), n_announced, frame_rate, progress)
+    _check_header(len(rows), n_announced, stated_rate, progress)
     ends = np.cumsum(widths)
     columns = np.split(rows, ends[:-1], axis=1)
     del rows
@@ -160,7 +161,7 @@ def _read_bodies(
 
 
 def _check_header(
-    n_frames: int, n_announced: int, frame_rate: float, progress: Progress
+    n_frames: int, n_announced: int, frame_rate: float | None, progress: Progress
 ) -> None:
     """Report a number of frames, or a rate, that is probably wrong."""
     if n_frames < MIN_FRAMES_FRACTION * n_announced:
@@ -171,7 +172,12 @@ def _check_header(
                 " short"
             ),
         )
-    if frame_rate < MIN_TYPICAL_RATE_HZ and n_frames > MAX_POSES:
+    if frame_rate is None:
+        if n_frames > 1:
+            progress(
+                0.7, Remark(f"The file has no frame rate; {DEFAULT_RATE_HZ:g} Hz is assumed")
+            )
+    elif frame_rate < MIN_TYPICAL_RATE_HZ and n_frames > MAX_POSES:
         progress(
             0.7,
             Remark(
@@ -205,9 +211,13 @@ def _hierarchy(reader: LineReader, path: Path | str) -> bytes:
     raise InvalidFileError(f"{path} has no MOTION section: it is cut short. Export it again.")
 
 
-def _frame_rate(reader: LineReader) -> tuple[float, int]:
-    """Take the lines before the first frame; return the rate in hertz, and how many follow."""
-    rate, n_frames = DEFAULT_RATE_HZ, 0
+def _frame_rate(reader: LineReader) -> tuple[float | None, int]:
+    """Take the lines before the first frame; return the rate in hertz, and how many follow.
+
+    The rate is None where none is stated, or one that no recording has.
+    """
+    rate: float | None = None
+    n_frames = 0
     while line := reader.peek():
         words = line[0].lower().replace(b":", b" ").split()
         if words[:2] == [b"frame", b"time"] and len(words) == 3:
@@ -222,15 +232,15 @@ def _frame_rate(reader: LineReader) -> tuple[float, int]:
     return rate, n_frames
 
 
-def _rate_from_time(word: str) -> float:
+def _rate_from_time(word: str) -> float | None:
     """Return the common rate whose frame time rounds to `word`: 0.00833333 means 120 Hz."""
     try:
         exact = Decimal(word.replace(",", "."))
         time = float(exact)
     except (InvalidOperation, ValueError):  # sNaN is a decimal, but no float
-        return DEFAULT_RATE_HZ
+        return None
     if not 1e-5 < time < 1e3:
-        return DEFAULT_RATE_HZ
+        return None
     nearest_integer = round(1.0 / time)
     half_digit = 0.51 * 10.0 ** int(exact.as_tuple().exponent)
     for rate, tolerance in [

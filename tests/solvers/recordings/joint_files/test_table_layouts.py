@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics
+from solvers.motion import JointRecording, Tracks, find_humanoid_map, forward_kinematics
 from solvers.recordings.joint_files.table_titles import table_titles
 from solvers.samples import walking_gait
 
@@ -72,6 +72,26 @@ def test_the_right_side_is_no_rotation(read_any, walk):
     assert_is(read_any(table(walk)), walk)
     turned = table(np.concatenate([walk, walk[:, :1]], axis=1), names=[*NAMES, "upperarm_l_r"])
     assert_is(read_any(turned), walk)
+
+
+@pytest.mark.parametrize("side", ["l", "r", "L", "R"])
+def test_one_side_of_a_body_comes_in_as_markers(read_any, walk, collected_messages, side):
+    """Before, points of the right side only were refused as rotations."""
+    parts = ("clavicle", "upperarm", "lowerarm", "hand", "thigh", "calf", "foot", "ball")
+    names = [f"{part}_{side}" for part in parts]
+
+    said, progress = collected_messages
+    recording = read_any(table(walk[:, : len(names)], names=names), progress=progress)
+
+    assert isinstance(recording, Tracks)
+    assert recording.names == tuple(names)
+    other = "left" if side in "rR" else "right"
+    assert any(f"The points lack {other}_ankle" in str(each) for each in said)
+
+
+def test_rotations_of_a_body_are_not_its_right_side(read_any, walk):
+    with pytest.raises(InvalidFileError):
+        read_any(table(walk, names=[f"{name}_r" for name in NAMES]))
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -62,6 +62,12 @@ def test_words_below_the_frames_are_no_frames(read_any):
     assert_has_all_frames(read_any(table({"time": seconds}) + below))
 
 
+def test_last_frames_without_times_are_kept_above_words(read_any):
+    content = table({"time": lambda k: "" if k > F - 3 else seconds(k)}) + "mean;0.5\n"
+
+    assert_has_all_frames(read_any(content))
+
+
 def test_a_short_line_below_words_is_no_frame(read_any):
     content = table({"number": str, "time": seconds}) + ";mean;0.5\nEND\n"
 
@@ -78,12 +84,29 @@ def test_timecode_is_refused(read_any):
         read_any(table({"time": lambda k: f"01:00:{k // 25:02d}:{k % 25:02d}"}))
 
 
-def test_times_of_day_continue_after_midnight(read_any):
-    def clock(frame):
-        time = (86399.0 + frame / RATE_HZ) % 86400.0
-        return f"{time // 3600:02.0f}:{time // 60 % 60:02.0f}:{time % 60:06.3f}"
+def clock(frame):
+    """Return a time of day, two seconds before midnight in the first frame."""
+    time = (86398.0 + frame / RATE_HZ) % 86400.0
+    return f"{time // 3600:02.0f}:{time // 60 % 60:02.0f}:{time % 60:06.3f}"
 
+
+def test_times_of_day_continue_after_midnight(read_any):
     assert_has_all_frames(read_any(table({"time": clock})))
+
+
+@pytest.mark.parametrize("by_marker", [False, True])
+def test_lines_of_markers_continue_after_midnight(read_any, by_marker):
+    """Before, frames of the new day came first, and they were refused for a gap of a day."""
+    lines = [(k, number) for k in range(F) for number in range(len(NAMES))]
+    if by_marker:
+        lines.sort(key=lambda line: line[1])
+    rows = [f"{clock(k)};{NAMES[number]};{k};{number};0.5" for k, number in lines]
+
+    recording = read_any("\n".join(["time;marker;x;y;z", *rows]))
+
+    assert_has_all_frames(recording)
+    steps = np.linalg.norm(np.diff(recording.positions, axis=0), axis=2)
+    assert steps == pytest.approx(steps[0, 0])
 
 
 @pytest.mark.parametrize(("columns", "rate"), [

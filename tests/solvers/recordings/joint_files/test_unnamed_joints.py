@@ -115,6 +115,7 @@ def test_points_in_another_order_are_no_body(tmp_path, walk):
     lambda points: np.moveaxis(points, 0, 2),
     lambda points: points.reshape(len(points), -1),
     lambda points: np.concatenate([points, np.ones_like(points[..., :1])], axis=-1),
+    lambda points: np.concatenate([points, np.zeros_like(points[..., :1])], axis=-1),
 ])  # fmt: skip
 def test_other_orders_of_the_axes_are_understood(tmp_path, walk, make):
     points = ordered(walk, "Human3.6M")
@@ -131,6 +132,29 @@ def test_an_archive_of_joints_is_read(tmp_path, walk):
     recording = read_recording(tmp_path / "joints.npz")
 
     assert np.allclose(recording.tracks.positions[:, :17], points)
+
+
+@pytest.mark.parametrize(
+    ("stated", "rate"),
+    [
+        ({"fps": 60}, 60.0),
+        ({"frame_rate": np.array([23.976])}, 23.976),
+        ({"fps": np.nan}, 30.0),
+        ({"fps": np.ones(4)}, 30.0),
+        ({"fps": "60"}, 30.0),
+    ],
+)
+def test_an_archive_states_its_rate(tmp_path, walk, stated, rate):
+    """Before, joints at 60 Hz were read as 30 Hz."""
+    said = []
+    np.savez(tmp_path / "joints.npz", reconstruction=ordered(walk, "COCO"), **stated)
+
+    recording = read_recording(
+        tmp_path / "joints.npz", progress=lambda _, text="": said.append(str(text))
+    )
+
+    assert recording.frame_rate == pytest.approx(rate, rel=1e-3)
+    assert ("assumed" in " ".join(said)) == (rate == 30.0)
 
 
 @pytest.mark.parametrize("third", [None, 0.0, 0.9])

@@ -75,6 +75,18 @@ def test_spelling_does_not_matter(read, spelled):
     assert_allclose(forward_kinematics(arm).positions[1], SECOND_FRAME, atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("time", "is_assumed"),
+    [("Frame Time: 0\n", True), ("", True), ("Frame Time: 0.0333333\n", False)],
+)
+def test_a_rate_that_is_assumed_is_reported(read, collected_messages, time, is_assumed):
+    read(ARM.replace("Frame Time: 0.0333333\n", time), progress=collected_messages[1])
+
+    assert ("The file has no frame rate; 30 Hz is assumed" in collected_messages[0]) == (
+        is_assumed
+    )
+
+
 @pytest.mark.parametrize("order", ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"])
 def test_any_rotation_order_survives_writing_and_reading(swinging_leg, tmp_path, order):
     write_bvh(swinging_leg, tmp_path / "leg.bvh", order=order)

@@ -1,0 +1,67 @@
+"""Convert the global rotation and translation of EasyMocap to those of SMPL."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ....arrays import Array
+from ....errors import InvalidFileError
+from ....rotations import (
+    multiply,
+    quaternion_from_rotation_vector,
+    rotate,
+    rotation_vector_from_quaternion,
+)
+
+ROTATION, TRANSLATION = "Rh", "Th"
+N_WITHOUT_ROOT = {63, 69}
+"""Numbers of a pose without its root, which newer versions leave out."""
+PELVIS_M = np.array([0.0, -0.226, 0.028])
+"""Pelvis of the model without pose and shape, meters, Y up. By definition of the model, the
+mean of its male and female body: 0.241 and 0.211 below the origin."""
+
+
+def with_root_at_pelvis(path: Path | str, arrays: Mapping[str, Array]) -> dict[str, Array]:
+    """Return the arrays of one person with the root rotation in `poses`, and `transl`.
+
+    EasyMocap rotates the posed body by `Rh` about the origin of the model, and moves it by `Th`
+    [1]_. SMPL rotates it about the pelvis.
+
+    Raises
+    ------
+    InvalidFileError
+        The rotation or translation has another shape than one of each pose.
+
+    References
+    ----------
+    .. [1] https://github.com/zju3dv/EasyMocap/blob/master/doc/02_output.md
+    """
+    arrays = dict(arrays)
+    if not {ROTATION, TRANSLATION} & arrays.keys() or "poses" not in arrays:
+        return arrays
+    poses = arrays["poses"]
+    n_frames = len(poses)
+    poses = poses.reshape(n_frames, -1)
+    vectors = _of_frames(path, arrays.pop(ROTATION, None), n_frames)
+    translation = _of_frames(path, arrays.pop(TRANSLATION, None), n_frames)
+    if poses.shape[1] in N_WITHOUT_ROOT:
+        poses = np.concatenate([np.zeros((n_frames, 3)), poses], axis=1)
+    turns = quaternion_from_rotation_vector(vectors)
+    roots = multiply(turns, quaternion_from_rotation_vector(poses[:, :3]))
+    arrays["poses"] = np.concatenate(
+        [rotation_vector_from_quaternion(roots), poses[:, 3:]], axis=1
+    )
+    arrays["transl"] = translation + rotate(turns, PELVIS_M) - PELVIS_M
+    return arrays
+
+
+def _of_frames(path: Path | str, array: Array | None, n_frames: int) -> Array:
+    """Return three numbers of each frame, 0 where the file has none."""
+    if array is None:
+        return np.zeros((n_frames, 3))
+    if array.shape not in {(n_frames, 3), (n_frames, 1, 3), (1, n_frames, 3)}:
+        raise InvalidFileError(
+            f"{path} has {n_frames} poses but positions of shape {array.shape}."
+        )
+    return array.reshape(n_frames, 3)

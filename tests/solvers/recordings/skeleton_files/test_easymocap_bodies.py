@@ -1,0 +1,58 @@
+"""EasyMocap rotates and moves the posed body as a whole, about the origin of its model."""
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidFileError
+from solvers.motion import forward_kinematics
+from solvers.progress import unwatched
+from solvers.recordings import read_recording
+from solvers.recordings.skeleton_files.smpl import open_smpl
+
+F = 40
+
+
+def save(path, **arrays):
+    np.savez(path, **arrays)
+    return path
+
+
+@pytest.mark.parametrize("n_numbers", [69, 72])
+def test_the_global_turn_and_travel_of_easymocap_are_read(tmp_path, n_numbers):
+    """Before, they were ignored: the body stayed in place and did not turn."""
+    vectors = np.zeros((F, 72))
+    angles = np.linspace(0.0, 1.5, F)
+    travel = np.linspace([0.0, 0.9, 0.0], [2.0, 0.9, 1.0], F)
+
+    path = save(
+        tmp_path / "easymocap.npz", poses=vectors[:, 72 - n_numbers :], Th=travel,
+        Rh=angles[:, None] * [0.0, 1.0, 0.0], shapes=np.zeros((1, 10)),
+    )  # fmt: skip
+    motion = read_recording(path)
+
+    moved = motion.root_positions - motion.root_positions[0]
+    assert np.allclose(moved[:, :2], np.stack([travel[:, 0], -travel[:, 2]], axis=1), atol=0.05)
+    positions, names = forward_kinematics(motion).positions, motion.skeleton.names
+    across = positions[:, names.index("left_hip")] - positions[:, names.index("right_hip")]
+    turned = np.arctan2(across[:, 1], across[:, 0])
+    assert turned - turned[0] == pytest.approx(angles, abs=1e-6)
+
+
+def test_the_body_of_easymocap_turns_about_the_origin_of_the_model(tmp_path):
+    """Who lies is where the pelvis of the model is then, not where its origin is."""
+    path = save(
+        tmp_path / "easymocap.npz", poses=np.zeros((F, 72)), Th=np.zeros((F, 3)),
+        Rh=np.linspace([0.0, 0.0, 0.0], [0.0, 0.0, np.pi / 2.0], F),
+    )  # fmt: skip
+
+    motion = open_smpl(path, on_floor=False).read(0, unwatched)
+
+    moved = motion.root_positions[-1] - motion.root_positions[0]
+    assert moved == pytest.approx((0.226, 0.0, 0.226), abs=1e-6)
+
+
+def test_a_turn_without_one_for_each_pose_is_refused(tmp_path):
+    path = save(tmp_path / "a.npz", poses=np.zeros((F, 72)), Rh=np.zeros((F - 1, 3)))
+
+    with pytest.raises(InvalidFileError, match="has 40 poses but positions of shape"):
+        read_recording(path)
