@@ -91,11 +91,15 @@ def arranging(window: bpy.types.Window) -> Iterator[None]:
 
 
 def _show_tab(area: bpy.types.Area) -> bool:
-    """Open our tab of a sidebar; Blender has the tabs once they were drawn."""
+    """Open our tab of a sidebar.
+
+    Blender has the tabs once they were drawn; until then it knows no tab of this name, or lets
+    none be chosen.
+    """
     sidebar = next((each for each in area.regions if each.type == "UI"), None)
     if sidebar is None:
         return True
-    with suppress(TypeError):
+    with suppress(AttributeError, TypeError):
         sidebar.active_panel_category = tab_name()
         return True
     return False

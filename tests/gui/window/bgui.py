@@ -107,7 +107,7 @@ def open_sidebar(category, width=None):
         try:
             region().active_panel_category = category
             break
-        except TypeError:
+        except (AttributeError, TypeError):
             continue
     redraw()
     yield 0.5
