@@ -139,7 +139,7 @@ failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the 
 contacts: .venv-4.5/ready  ## learn how a foot in contact moves, and print the weights
 	$(PYTHON_4.5) -m tests.training.learn_contacts
 
-BENCHMARKS := denoise first-press contacts markers bvh press live scene import import-corpus roles video \
+BENCHMARKS := denoise first-press contacts markers bvh press live scene import import-corpus roles up-axis video \
   reliability reconstruct postures retrieval retarget variation depth physics gestures retarget-rig farm
 .PHONY: benchmarks $(BENCHMARKS:%=bench-%)
 benchmarks: .venv-4.5/ready  ## run every benchmark, one after another (hours); prints how each ended
@@ -186,6 +186,9 @@ bench-import-corpus: .venv-4.5/ready  ## read every recording of other makers, a
 
 bench-roles: .venv-4.5/ready  ## measure how often the role of a bone is right, by its reason
 	PYTHONPATH=.:tests/fixtures $(PYTHON_4.5) -m tests.benchmarks.importing.bench_role_confidence
+
+bench-up-axis: .venv-4.5/ready  ## measure how often the up axis of points is right
+	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_up_axis $(ARGUMENTS)
 
 bench-video: .venv-4.5/ready  ## measure Clean, Plant Feet and Physics on takes of video models
 	$(PYTHON_4.5) -m tests.benchmarks.video.bench_video $(ARGUMENTS)

@@ -15,7 +15,7 @@ MAX_COVARIANCE = 180.0**2 * 1000.0
 vector is at most 180 degrees long."""
 MIN_EIGENVALUE_RATIO = 1e-9
 """Fraction of the largest element, so that a covariance can be inverted. By definition of
-double precision; learned ones have 3e-7."""
+double precision; learned ones have 7e-7."""
 N_CHANNELS = 3
 """Channels of a joint: its rotation vector. By definition."""
 LAYOUT = ArchiveLayout(
