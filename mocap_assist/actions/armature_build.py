@@ -5,6 +5,7 @@ import numpy as np
 
 from ...solvers.arrays import Array
 from ...solvers.motion import Skeleton
+from ..blender import compat
 from ..blender.data_names import fitting_name
 from ..scene.rig import END
 from ..scene.scene_objects import add_object, in_object_mode
@@ -72,7 +73,16 @@ def build_armature(
         armature.pose.bones[bone].rotation_mode = mode
         if not skeleton.children[joint] and not skeleton.names[joint].endswith("_end"):
             armature.data.bones[bone][END] = True
+    select_root(armature)
     return armature, bone_names
+
+
+def select_root(armature: bpy.types.Object) -> None:
+    """Select the root bone alone, so that the editors show keys of the take."""
+    root = armature.data.bones[0]
+    for bone in armature.pose.bones:
+        compat.select_bone(bone, bone.name == root.name)
+    armature.data.bones.active = root
 
 
 def _add_bones(

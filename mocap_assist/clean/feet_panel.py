@@ -6,6 +6,7 @@ import bpy
 
 from ..actions.contact_keys import FOOT_PROPERTIES, PROPERTIES
 from ..blender.mixins import PanelMixin
+from ..overlays.contacts.switch import draw_contact_switch
 from ..panel_parts.panel_layout import draw_sentence, exists
 from ..panel_parts.visibility import shows_armature
 from ..runtime.selection import selected_armature
@@ -41,4 +42,5 @@ class FeetPanel(PanelMixin):
                 if name in armature:
                     column.prop(armature, f'["{name}"]', text=text)
             draw_sentence(layout, context, HINT)
+            draw_contact_switch(layout, context)
         layout.operator(PLANT, icon="CON_FLOOR")

@@ -19,6 +19,15 @@ CHANGE = "mocap_assist.change_axes"
 SHOW = "mocap_assist.show_depth"
 SAMPLE = "mocap_assist.load_sample"
 WORKSPACE = "mocap_assist.add_workspace"
+SENSOR_NAMES = {
+    "kinect_v1": "Kinect v1",
+    "kinect_v2": "Kinect v2",
+    "azure_kinect": "Azure Kinect",
+    "mediapipe": "MediaPipe",
+    "zed": "ZED",
+    "nuitrack": "Nuitrack",
+}
+"""As their makers write them, in every language; other sensors are not named."""
 
 
 class ImportPanel(PanelMixin):
@@ -74,6 +83,6 @@ def _figures(origin: dict[str, object]) -> str:
     """Return length, rate and sensor of a recording as text."""
     n_frames = origin.get("n_frames", 0)
     parts = [translated(f"{n_frames} frames"), f"{origin.get('frame_rate', 0):.4g} Hz"]
-    if "sensor" in origin:
-        parts.append(str(origin["sensor"]).replace("_", " "))
+    if sensor := SENSOR_NAMES.get(str(origin.get("sensor"))):
+        parts.append(sensor)
     return ", ".join(parts)

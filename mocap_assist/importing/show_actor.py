@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..blender import compat
+from ..actions.armature_build import select_root
 
 IN_CAMERA = "CAMERA"
 
@@ -28,12 +28,4 @@ def show_actor(context: bpy.types.Context) -> None:
         return
     switch(mode="POSE")
     for armature in context.objects_in_mode:
-        _select_root(armature)
-
-
-def _select_root(armature: bpy.types.Object) -> None:
-    """Select the root bone alone, so that the editors show keys of the take."""
-    root = armature.data.bones[0]
-    for bone in armature.pose.bones:
-        compat.select_bone(bone, bone.name == root.name)
-    armature.data.bones.active = root
+        select_root(armature)

@@ -104,7 +104,7 @@ def _record(problem: LiveProblem, progress: Progress, keep: Show) -> None:
                 last_pose = monotonic()
             elif problem.duration_s and monotonic() - last_pose > MAX_SILENCE_S:
                 raise InvalidMotionError(_silence_text(problem.port, listener.state))
-            progress(*_state(recorder.take, listener.state))
+            progress(*_state(recorder, listener.state))
             if not frames:
                 sleep(POLL_INTERVAL_S)
 
@@ -122,9 +122,16 @@ class _Recorder:
     @property
     def is_done(self) -> bool:
         """Whether the duration is over."""
-        if self._rig is None or not self._problem.duration_s:
-            return False
-        return self._n_frames >= self._problem.duration_s * self._rig.frame_rate
+        return bool(self._problem.duration_s) and self.recorded_fraction >= 1.0
+
+    @property
+    def recorded_fraction(self) -> float:
+        """Fraction of the duration that is recorded; 1 for a recording that Esc ends."""
+        if not self._problem.duration_s:
+            return 1.0
+        if self._rig is None:
+            return 0.0
+        return self._n_frames / (self._problem.duration_s * self._rig.frame_rate)
 
     def add(self, frames: Sequence[StreamFrame]) -> bool:
         """Take frames that came together; return whether they show the actor."""
@@ -186,15 +193,17 @@ def recorded_take(previews: Iterable[Any]) -> RecordedTake:
     )
 
 
-def _state(take: LiveTake | PoseTake | None, state: ListenerState) -> tuple[float, str]:
+def _state(recorder: _Recorder, state: ListenerState) -> tuple[float, str]:
     """Return fraction and message of the progress."""
+    take = recorder.take
     if take is None:
         return 0.0, state_text("Waiting for the tracker.", state)
     if take.calibration is None:
         return take.calibrated_fraction, state_text(
             "Measuring the actor: move arms and legs.", state
         )
-    return 1.0, state_text("Recording the actor.", state, take.has_other_body)
+    text = state_text("Recording the actor.", state, take.has_other_body)
+    return recorder.recorded_fraction, text
 
 
 def _silence_text(port: int, state: ListenerState) -> str:

@@ -37,6 +37,9 @@ class StripRow(Enum):
     LEFT_KNEE = "Left Knee"
     RIGHT_KNEE = "Right Knee"
     HIPS = "Hips"
+    ISSUES = "Issues"
+    CHANGED = "Changed"
+    CONTACTS = "Contacts"
 
 
 class Mark(Enum):
@@ -100,6 +103,20 @@ MARKS: Mapping[StripRow, tuple[Mark, ...]] = {
 }
 
 
+GROUPS: Mapping[StripRow, StripRow] = {
+    **dict.fromkeys(ISSUE_ROWS.values(), StripRow.ISSUES),
+    StripRow.FILLED: StripRow.CHANGED,
+    StripRow.CORRECTED: StripRow.CHANGED,
+    **{row: StripRow.CONTACTS for row, _ in CONTACT_ROWS},
+}
+"""For each row the one that shows it, too, in a low editor."""
+LANES: Mapping[Mark, tuple[float, float]] = {
+    **{mark: (0.5, 1.0) for _, mark in CONTACT_ROWS if mark.name.startswith("LEFT")},
+    **{mark: (0.0, 0.5) for _, mark in CONTACT_ROWS if mark.name.startswith("RIGHT")},
+}
+"""Lower and upper end of the contacts of both sides in the row that they share."""
+
+
 class Range(NamedTuple):
     """First and last frame of a range, and what it marks."""
 
@@ -109,6 +126,17 @@ class Range(NamedTuple):
 
 
 Rows = Mapping[StripRow, tuple[Range, ...]]
+
+
+def grouped(rows: Rows) -> Rows:
+    """Return fewer rows: related ones share a row, and one that has none keeps its own."""
+    members: dict[StripRow, list[StripRow]] = {}
+    for row in rows:
+        members.setdefault(GROUPS.get(row, row), []).append(row)
+    return {
+        group if len(found) > 1 else found[0]: sum((rows[row] for row in found), ())
+        for group, found in members.items()
+    }
 
 
 def ranges_of(frames: Array, step: float, mark: Mark) -> tuple[Range, ...]:

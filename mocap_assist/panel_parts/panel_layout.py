@@ -74,8 +74,9 @@ def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, *owners: st
     if job.running and job.owner in owners:
         draw_sentence(layout, context, job.message)  # too long for the bar in some languages
         column = layout.column(align=True)
-        text = f"{job.fraction:.0%}"
-        column.progress(factor=job.fraction, type="BAR", text=text, translate=False)
+        if job.fraction < 1.0:  # else it is done, or goes on until Esc
+            text = f"{job.fraction:.0%}"
+            column.progress(factor=job.fraction, type="BAR", text=text, translate=False)
         column.label(text=translated(job.ending), translate=False)
     return bool(job.running)
 

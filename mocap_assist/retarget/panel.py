@@ -117,6 +117,7 @@ def _draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 def _draw_unbake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     column = layout.column(align=True)
     column.separator()
+    column.label(text="Reduce Keys")
     column.prop(context.scene.mocap_assist.unbake, "tolerance")
     column.prop(context.scene.mocap_assist.unbake, "key_poses")
     column.operator(UNBAKE, icon="KEYFRAME")

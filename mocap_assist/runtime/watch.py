@@ -76,7 +76,7 @@ class Watch:
         state.running, state.fraction, state.message = True, fraction, message
         state.ending = self.ending
         left = time_left(fraction, monotonic() - self._began)
-        parts = [f"{translated(message)} {fraction:.0%}", translated(left)]
+        parts = [f"{translated(message)} {percentage(fraction)}".strip(), translated(left)]
         shown = "   ".join([*filter(None, parts), translated(self.ending)])
 
         def draw(header: bpy.types.Header, context: bpy.types.Context) -> None:
@@ -112,6 +112,11 @@ def cancel_running() -> None:
     """Let the running solve end as Esc does."""
     for watch in _on:
         watch.is_cancelled = True
+
+
+def percentage(fraction: float) -> str:
+    """Return how much is done, or an empty text for work that ends by Esc, or is done."""
+    return f"{fraction:.0%}" if fraction < 1.0 else ""
 
 
 def time_left(fraction: float, elapsed_s: float) -> str:

@@ -6,6 +6,8 @@ import bpy
 
 from ...solvers.depth_scene import ForegroundMethod
 from ..blender.mixins import PanelMixin
+from ..overlays.color_icons import draw_marks
+from ..overlays.marked_ranges import MARKS, StripRow
 from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, split_column
 from ..panel_parts.visibility import shows_all
 from .retracking import why_not_retrack
@@ -59,6 +61,8 @@ def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
 def _draw_correction(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the controls that show and correct a tracked motion."""
     layout.prop(context.window_manager, "mocap_assist_body", toggle=True, icon="MOD_SKIN")
+    if context.window_manager.mocap_assist_body:
+        draw_marks(layout, MARKS[StripRow.CONFIDENCE], columns=3)
     column = split_column(layout)
     for name in ("reach", "watch"):
         column.prop(context.scene.mocap_assist.retrack, name)

@@ -11,6 +11,7 @@ from ..library import source_list
 from ..overlays import color_icons, confidence_switch
 from ..overlays.comparison import raw_curves_switch
 from ..overlays.comparison import switches as overlay_switch
+from ..overlays.contacts import switch as contact_switch
 from ..overlays.strip import switch as strip_switch
 from ..panel_parts import presets
 from ..retarget import bone_highlight, bone_list, rest_preview
@@ -39,6 +40,7 @@ PARTS = (
     export_menu,
     overlay_switch,
     confidence_switch,
+    contact_switch,
     raw_curves_switch,
     strip_switch,
     issue_views,

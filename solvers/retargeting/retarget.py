@@ -68,9 +68,9 @@ class RetargetSettings(Settings):
         minimum=0.0, maximum=0.2, advanced=True, label="Leg Reserve",
     )  # fmt: skip
     travel_smoothing: float = setting(
-        0.5, "Blur that separates travel from the sway of steps; higher leaves more sway on the"
-        " hips",
-        unit="s", minimum=0.0, maximum=10.0, advanced=True, label="Travel Blur",
+        0.5, "Time over which the root path is smoothed; higher leaves more sway of steps on"
+        " the hips",
+        unit="s", minimum=0.0, maximum=10.0, advanced=True, label="Root Smoothing",
     )  # fmt: skip
     turn_root: bool = setting(
         True,

@@ -40,11 +40,14 @@ def set_the_stage():
 
 
 def unfold(wanted):
-    """Show these panels only, unfolded."""
+    """Show these panels only, unfolded, each by itself."""
+    bpy.context.window_manager.mocap_assist_all_panels = True
     for each in [other for other in dir(bpy.types) if other.startswith("MOCAP_PT_")]:
         panel = getattr(bpy.types, each)
         bpy.utils.unregister_class(panel)
         panel.bl_options = set()
+        if each in wanted and hasattr(panel, "bl_parent_id"):
+            del panel.bl_parent_id
         if each not in wanted:
             panel.poll = classmethod(lambda cls, context: False)
         bpy.utils.register_class(panel)

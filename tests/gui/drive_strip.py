@@ -149,7 +149,7 @@ def drag_on_the_strip():
     for kind, picture in (("GRAPH_EDITOR", "3b-dragged.png"), ("DOPESHEET_EDITOR", None)):
         region = bgui.region("WINDOW", kind)
         with bgui.override("WINDOW", kind):
-            found = ours("overlays.strip.reading").strip_of(bpy.context)
+            found = ours("overlays.strip.drawing").fitting_strip(bpy.context)
             bottom, row = ours("overlays.strip.drawing").strip_height(
                 bpy.context, len(found.rows)
             )

@@ -11,6 +11,7 @@ from mathutils import Matrix
 
 from ...actions.markers.holders import holder_of
 from ...blender.redrawing import redraw
+from ..contacts import rings
 from ..strip import drawing as strip
 from ..view_drawing import Color, ViewDrawing, draw_in_front, draw_lines, visible_active
 from . import figures, markers, onion_skin, raw_curves_switch
@@ -62,6 +63,7 @@ def forget() -> None:
     markers.forget()
     raw_curves_switch.forget()
     strip.forget()
+    rings.forget()
 
 
 def draw(context: bpy.types.Context, look: Look) -> None:

@@ -7,8 +7,7 @@ import bpy
 from ...actions.frames import FrameRange
 from ...blender.act_operator import ActOperator
 from ...blender.redrawing import redraw
-from .drawing import EDITORS, MODES, strip_height, visible_frames
-from .reading import strip_of
+from .drawing import EDITORS, MODES, fitting_strip, strip_height, visible_frames
 from .switch import SWITCH
 
 GROUPS = ("clean", "reconstruct")
@@ -125,7 +124,7 @@ def is_on_strip(context: bpy.types.Context, height_px: int) -> bool:
         return False
     if not getattr(context.window_manager, SWITCH):
         return False
-    strip = strip_of(context)
+    strip = fitting_strip(context)
     if strip is None:
         return False
     bottom, row = strip_height(context, len(strip.rows))

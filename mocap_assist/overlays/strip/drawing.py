@@ -9,7 +9,7 @@ import numpy as np
 
 from ....solvers.arrays import Single
 from ...languages import translated
-from ..marked_ranges import COLORS, Range, StripRow
+from ..marked_ranges import COLORS, LANES, Range, StripRow, grouped
 from . import labels, reading
 from .reading import Strip
 
@@ -20,6 +20,9 @@ ROW_HEIGHT_PX, GAP_PX = 13, 3
 """Height of a row, and distance from the border, in pixels at scale 1."""
 MIN_LABELED_PX, MIN_ROW_PX = 10, 2
 """Height below which a row has no label, and its minimum, in pixels at scale 1."""
+MIN_STRIP_PX = 6
+"""Minimum of the height of all rows, in pixels at scale 1: what a Timeline of default height
+has between its keys and its frame numbers."""
 SCROLLER_PX, MARKERS_PX, RULER_PX = 10, 42, 24
 """Height of Blender's scroll bar, of its row of markers, and of its ruler at the top, in pixels
 at scale 1."""
@@ -29,6 +32,8 @@ ROW_INSET = 0.08
 """Distance between two rows, as a fraction of their height."""
 BACKGROUND = (0.06, 0.06, 0.06, 0.7)
 
+_low_strips: dict[int, tuple[Strip, Strip]] = {}
+"""For each strip that one with fewer rows, for low editors."""
 _batches: dict[tuple[int, float], tuple[Strip, Any]] = {}
 """Of ranges, in frames and rows."""
 
@@ -38,13 +43,35 @@ def forget() -> None:
     reading.forget()
     labels.forget()
     _batches.clear()
+    _low_strips.clear()
+
+
+def fitting_strip(context: bpy.types.Context) -> Strip | None:
+    """Return the strip of an editor; related rows share one where labels have no space."""
+    strip = reading.strip_of(context)
+    if strip is None:
+        return None
+    _, height = strip_height(context, len(strip.rows))
+    if height >= MIN_LABELED_PX * context.preferences.system.ui_scale:
+        return strip
+    known = _low_strips.get(id(strip))
+    if known is None or known[0] is not strip:
+        _make_room(_low_strips)
+        known = _low_strips[id(strip)] = strip, strip._replace(rows=grouped(strip.rows))
+    return known[1]
+
+
+def _make_room(store: dict[Any, Any]) -> None:
+    """Drop the oldest entry of a full cache."""
+    if len(store) >= reading.MAX_CACHED:
+        del store[next(iter(store))]
 
 
 def draw_strip(context: bpy.types.Context) -> None:
     """Draw the rows of the active armature where the editor shows their frames."""
     if context.space_data.mode not in MODES:
         return
-    strip = reading.strip_of(context)
+    strip = fitting_strip(context)
     if strip is None:
         return
     scale = context.preferences.system.ui_scale
@@ -94,7 +121,8 @@ def strip_bottom(context: bpy.types.Context, n_rows: int, scale: float) -> float
 def row_height(space: float, n_rows: int, scale: float) -> float:
     """Return the height of a row: less than usual where a low editor has no more space."""
     free = (space - RULER_PX * scale) / n_rows
-    return max(min(ROW_HEIGHT_PX * scale, free), MIN_ROW_PX * scale)
+    smallest = max(MIN_ROW_PX, MIN_STRIP_PX / n_rows)
+    return max(min(ROW_HEIGHT_PX * scale, free), smallest * scale)
 
 
 def _draw_batch(batch: Any, corner: tuple[float, float], unit: tuple[float, float]) -> None:
@@ -112,8 +140,7 @@ def _batch_of(strip: Strip, width: float) -> Any:
     key = id(strip), width
     known = _batches.get(key)
     if known is None or known[0] is not strip:
-        if len(_batches) >= reading.MAX_CACHED:
-            del _batches[next(iter(_batches))]
+        _make_room(_batches)
         known = _batches[key] = strip, _make_batch(strip, width)
     return known[1]
 
@@ -136,15 +163,18 @@ def rectangles_of(strip: Strip, width: float) -> tuple[Single, Single]:
     counted from the bottom. Rectangles of the background, one for each row, come first. A range
     is at least `width` frames wide.
     """
-    found = [(strip.first, strip.last, row, BACKGROUND) for row in _heights(strip)]
-    found += [(each.first, each.last, row, COLORS[each.mark]) for row, each in _ranges(strip)]
-    first, last, bottom = np.array([each[:3] for each in found], np.float32).T
+    found = [(strip.first, strip.last, row, row + 1.0, BACKGROUND) for row in _heights(strip)]
+    found += [
+        (each.first, each.last, row + low, row + high, COLORS[each.mark])
+        for row, each, (low, high) in _ranges(strip)
+    ]
+    first, last, bottom, top = np.array([each[:4] for each in found], np.float32).T
     middle = 0.5 * (first + last)
     half = 0.5 * np.maximum(last - first + strip.step, width)
     left, right = middle - half, middle + half
-    low, high = bottom + ROW_INSET, bottom + 1.0 - ROW_INSET
+    low, high = bottom + ROW_INSET, top - ROW_INSET
     corners = np.stack([left, low, right, low, left, high, right, high], axis=1)
-    colors = np.array([each[3] for each in found], np.float32)
+    colors = np.array([each[4] for each in found], np.float32)
     painted = np.repeat(colors[:, None], 4, axis=1)
     return np.ascontiguousarray(corners.reshape(-1, 4, 2), np.float32), painted
 
@@ -153,8 +183,9 @@ def _heights(strip: Strip) -> Iterator[float]:
     yield from range(len(strip.rows) - 1, -1, -1)
 
 
-def _ranges(strip: Strip) -> Iterator[tuple[float, Range]]:
-    rows: list[StripRow] = list(strip.rows)
-    for height, row in zip(_heights(strip), rows, strict=True):
+def _ranges(strip: Strip) -> Iterator[tuple[float, Range, tuple[float, float]]]:
+    """Yield the height of each range's row, the range, and its lower and upper end in there."""
+    for height, row in zip(_heights(strip), strip.rows, strict=True):
         for each in strip.rows[row]:
-            yield height, each
+            is_shared = row is StripRow.CONTACTS
+            yield height, each, LANES.get(each.mark, (0.0, 1.0)) if is_shared else (0.0, 1.0)

@@ -95,7 +95,7 @@ def strip_of(context: bpy.types.Context) -> Strip | None:
         return None
     shown = context.scene.mocap_assist
     is_checked = shown.checked == source[0].name
-    block = (armature.session_uid, source[0].session_uid, source[1].handle)
+    block = _block(armature, source)
     bones = _selected(armature)
     key = _StripKey(
         block, bones, shown.report if is_checked else "", len(shown.issues) * is_checked
@@ -107,6 +107,19 @@ def strip_of(context: bpy.types.Context) -> Strip | None:
         _make_room(_strips)
         _strips[key] = None if keys is None else strip_from(keys, frozenset(bones), issues)
     return _strips[key]
+
+
+def contacts_of(armature: bpy.types.Object) -> tuple[Array, ...] | None:
+    """Return the contact keys of an armature's action, as in `ActionKeys`, if it has any."""
+    source = reliability_source(armature)
+    if source is None:
+        return None
+    keys = _keys_of(_block(armature, source), armature, source)
+    return keys.contacts if keys is not None and any(map(len, keys.contacts)) else None
+
+
+def _block(armature: bpy.types.Object, source: Source) -> tuple[int, int, int]:
+    return armature.session_uid, source[0].session_uid, source[1].handle
 
 
 def _keys_of(

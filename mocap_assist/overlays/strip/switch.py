@@ -7,6 +7,7 @@ from bpy.types import SpaceDopeSheetEditor, SpaceGraphEditor
 
 from ...blender.redrawing import redraw
 from ...panel_parts.panel_layout import draw_sentence
+from ...runtime.selection import selected_armature
 from ..color_icons import draw_marks
 from ..marked_ranges import MARKS, StripRow
 from .drawing import EDITORS, draw_strip
@@ -19,8 +20,13 @@ _handles: list[tuple[Any, Any]] = []
 
 
 def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the switch and, while it is on, the colors of the rows that the strip has now."""
+    """Draw the switch and, while it is on, the colors of the rows that the strip has now.
+
+    Markers have no strip.
+    """
     manager = context.window_manager
+    if selected_armature(context) is None:
+        return
     layout.prop(manager, SWITCH)
     if not manager.mocap_assist_strip:
         return

@@ -89,7 +89,8 @@ def joint_recording(
         positions = resampler.positions(positions)
         states = None if states is None else resampler.states(states)
         confidence = None if confidence is None else resampler.confidence(confidence)
-    progress(1.0, READING if times is None else Remark(f"Resampled to {frame_rate:.4g} Hz"))
+    uneven = f"Resampled to {frame_rate:.4g} Hz from its time stamps"
+    progress(1.0, READING if times is None else Remark(uneven))
     unit = default_unit if scale is None else scale
     positions *= unit  # a copy of the argument
     axes = conventions or FileConventions(*SENSOR_AXES.get(sensor, ("Z", "-Y")))

@@ -211,7 +211,7 @@ def _remarks(
 ) -> list[str]:
     remarks = []
     if layout.times is not None and not settings.frame_rate:
-        remarks.append(f"Resampled to {frames.frame_rate:.4g} Hz")
+        remarks.append(f"Resampled to {frames.frame_rate:.4g} Hz from its time stamps")
     if not is_good.all():
         first = layout.depth[int(np.argmin(is_good))]
         remarks.append(

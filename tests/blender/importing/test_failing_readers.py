@@ -163,11 +163,12 @@ def test_warnings_of_readers_are_reported_in_a_window_and_by_a_script(
     assert wait(operator, window) == {"FINISHED"}
 
     ((_, message),) = window.reports
-    assert "40 frames at 30 Hz. " in message and message.count("Resampled to 30 Hz. ") == 1
+    assert "40 frames at 30 Hz. " in message
+    assert message.count("Resampled to 30 Hz from its time stamps. ") == 1
     assert operator.note == message
     figures = operator._job.transaction.end(blank.context).figures
-    assert figures[0]["warnings"].startswith("Resampled to 30 Hz.")
+    assert figures[0]["warnings"].startswith("Resampled to 30 Hz from its time stamps.")
     assert not figures[1]["warnings"]
     for _ in range(2):  # read, or remembered
         operator.execute(blank.context)
-        assert window.reports[-1][1].count("Resampled to 30 Hz.") == 1
+        assert window.reports[-1][1].count("Resampled to 30 Hz from its time stamps.") == 1

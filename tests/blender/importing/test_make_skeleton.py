@@ -43,6 +43,8 @@ def test_a_c3d_becomes_a_cleaned_armature(blank, holder, tracks, load, recording
 
     armature = blank.context.object
     assert armature.type == "ARMATURE"
+    is_selected = load("mocap_assist.blender.compat").is_selected
+    assert [bone.name for bone in armature.pose.bones if is_selected(bone)] == ["hips"]
     assert {child.name: child.animation_data.action for child in markers_of(holder)} == cleaned
     assert markers.keys() == cleaned.keys()
     skeleton = load("solvers.recordings").read_acclaim(recordings / "mocap" / "05_13.amc")

@@ -2,6 +2,7 @@
 
 import socket
 import threading
+from types import SimpleNamespace
 
 import kinect_walks
 import numpy as np
@@ -212,6 +213,16 @@ def test_pose_is_restored_when_the_display_ends(rig, blank, load):
     assert tuple(hips.location) == (1.0, 1.0, 1.0)
     shown.close()
     np.testing.assert_allclose(np.array(hips.matrix_basis), np.array(before), atol=1e-6)
+
+
+@pytest.mark.parametrize(("duration_s", "fraction"), [(2.0, 0.25), (0.5, 1.0), (0.0, 1.0)])
+def test_progress_is_the_recorded_fraction_of_the_duration(load, duration_s, fraction):
+    solve = load("mocap_assist.live.solve_live_take")
+    recorder = solve._Recorder(SimpleNamespace(duration_s=duration_s), print)
+    recorder._rig, recorder._n_frames = SimpleNamespace(frame_rate=RATE_HZ), 15
+
+    assert recorder.recorded_fraction == fraction
+    assert recorder.is_done is (duration_s == 0.5)
 
 
 @pytest.mark.parametrize("rig", ["Mixamo"], indirect=True)

@@ -162,7 +162,8 @@ def test_each_reports_warnings_of_readers(blank, command, tmp_path):
     ]
     assert (figures["joints"], figures["frame_rate_hz"]) == (3, 30.0)
     assert figures["warnings"] == (
-        "Resampled to 30 Hz. Never observed: C. The parents of the joints are unknown"
+        "Resampled to 30 Hz from its time stamps. Never observed: C."
+        " The parents of the joints are unknown"
     )
 
 

@@ -72,6 +72,13 @@ def test_time_left_is_in_minutes_or_seconds(load):
     assert time_left(0.5, 1.9) == ""
 
 
+def test_work_that_esc_ends_has_no_percentage(load):
+    percentage = load("mocap_assist.runtime.watch").percentage
+
+    assert percentage(0.25) == "25%"
+    assert percentage(1.0) == ""
+
+
 def test_cancel_needs_a_running_solve(blank):
     with pytest.raises(RuntimeError, match="No solve is running"):
         blank.ops.mocap_assist.cancel_solve()

@@ -114,6 +114,11 @@ def test_confidence_is_shown_for_tracked_armatures(tracked, load):
 def test_panel_shows_options_for_the_selection(points, tracked, blank, draw):
     assert {"mocap_assist.retrack", "mocap_assist_body", "reach"} <= set(draw("MOCAP_PT_track"))
     assert "mocap_assist.track_depth" not in draw("MOCAP_PT_track")
+    manager, legend = blank.context.window_manager, {"Low", "Medium", "High"}
+    manager.mocap_assist_body = not manager.mocap_assist_body
+    is_drawn = legend <= set(draw("MOCAP_PT_track"))
+    manager.mocap_assist_body = not manager.mocap_assist_body
+    assert is_drawn != (legend <= set(draw("MOCAP_PT_track")))
     blank.context.view_layer.objects.active = points
     assert {"mocap_assist.track_depth", "watch", "keep_on_esc"} <= set(draw("MOCAP_PT_track"))
     assert "mocap_assist.retrack" not in draw("MOCAP_PT_track")

@@ -70,3 +70,13 @@ def test_panel_shows_the_source_of_the_selected_take(blank, draw, load, tmp_path
     assert [first, *rest[:2]] == [IMPORT, "stroll.bvh", "25 frames, 25 Hz"]
     assert " ".join(rest[2:-1]) == "Y is up, Z is forward, lengths are in centimeters."
     assert rest[-1] == "mocap_assist.change_axes"
+
+
+def test_panel_names_sensors_as_their_makers_do(load):
+    figures = load("mocap_assist.importing.panel")._figures
+    origin = {"n_frames": 49, "frame_rate": 30.0}
+
+    assert figures(origin | {"sensor": "kinect_v2"}) == "49 frames, 30 Hz, Kinect v2"
+    assert figures(origin | {"sensor": "other"}) == "49 frames, 30 Hz"
+    sensors = {each.value for each in load("solvers.motion").Sensor}
+    assert sensors - {"other"} == set(load("mocap_assist.importing.panel").SENSOR_NAMES)

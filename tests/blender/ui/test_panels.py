@@ -131,6 +131,24 @@ def test_running_solve_shows_its_progress_in_its_panel(blank, draw, actor, owner
     assert "Esc cancels" in shown[PANELS[owner]]
 
 
+def test_settings_of_unbake_have_a_heading(draw, actor):
+    shown = draw("MOCAP_PT_retarget")
+
+    assert shown.index("Reduce Keys") < shown.index("tolerance")
+
+
+def test_work_that_esc_ends_has_no_bar(blank, draw, actor):
+    job = blank.context.window_manager.mocap_assist_job
+    job.running, job.fraction, job.message, job.owner = True, 1.0, "Working", "clean"
+    try:
+        shown = draw("MOCAP_PT_clean")
+    finally:
+        job.running = False
+
+    assert "Working" in shown
+    assert "100%" not in shown
+
+
 def test_checked_take_lists_its_issues_with_buttons(blank, draw, actor):
     assert "mocap_assist.jump_to_issue" not in draw("MOCAP_PT_check")
     found = blank.context.scene.mocap_assist

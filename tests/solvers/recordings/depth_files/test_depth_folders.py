@@ -75,7 +75,7 @@ def test_gaps_in_times_become_empty_frames_with_a_remark(tmp_path, depth):
         assert_allclose(recording.frame(frame), expected * np.ones((6, 8)), rtol=1e-6)
     assert recording.color(6).max() == 0
     assert "3 frames have no image, frame 5 first; they are empty." in text
-    assert any(sentence.startswith("Resampled to 30 Hz") for sentence in text)
+    assert any(each.startswith("Resampled to 30 Hz from its time stamps") for each in text)
 
 
 def test_times_that_run_backwards_are_refused(tmp_path, depth):

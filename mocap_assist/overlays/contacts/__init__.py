@@ -1,0 +1,1 @@
+"""Rings on the floor while feet, hands, knees or hips are down."""

@@ -1,0 +1,112 @@
+"""Rings on the floor under feet, hands, knees and hips while they are down, as plain arrays."""
+
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from mathutils import Vector
+from numpy.typing import NDArray
+
+from ....solvers.arrays import Array, Single
+from ....solvers.errors import InvalidMotionError
+from ...rigs.target_read import find_roles
+from ..marked_ranges import COLORS, CONTACT_ROWS
+from ..strip.reading import contacts_of
+
+ROLES = (
+    ("leftFoot", "leftToes"),
+    ("rightFoot", "rightToes"),
+    ("leftHand",),
+    ("rightHand",),
+    ("leftLowerLeg",),
+    ("rightLowerLeg",),
+    ("hips",),
+)
+"""In the order of the contact keys: the roles whose bones are down."""
+N_SEGMENTS = 16
+"""Number of lines of a ring. It bounds the time of a drawing."""
+RADIUS = 0.6
+"""Radius of a ring relative to the bones of a foot. Chosen by hand: above 0.5, so that a foot
+that lies flat is within its ring."""
+
+_turns = np.linspace(0.0, 2.0 * np.pi, N_SEGMENTS + 1)
+_circle = np.stack([np.cos(_turns), np.sin(_turns), np.zeros(N_SEGMENTS + 1)], axis=1)
+_bones: dict[int, tuple[tuple[str, ...], ...]] = {}
+
+
+class Rings(NamedTuple):
+    """Rings in the scene, as lines."""
+
+    lines: Single
+    """Shape (n_lines, 2, 3)."""
+    colors: Single
+    """Of their ends, shape (n_lines, 2, 4)."""
+
+
+def forget() -> None:
+    """Clear the cache, so that the next drawing reads again."""
+    _bones.clear()
+
+
+def rings_at(armature: bpy.types.Object, frame: float) -> Rings | None:
+    """Return a ring for each part of the body that is down at a frame, if one is."""
+    contacts = contacts_of(armature)
+    if contacts is None:
+        return None
+    standing = [is_down(keys, frame) for keys in contacts]
+    if not any(standing):
+        return None
+    bones = [
+        tuple(name for name in names if name in armature.pose.bones)  # renamed since then?
+        for names in _bones_of(armature)
+    ]
+    feet = bones[0] or bones[1]
+    lines, colors = [], []
+    for is_standing, names, (_, mark) in zip(standing, bones, CONTACT_ROWS, strict=True):
+        if is_standing and names:
+            points = _circle * _radius(armature, feet or names) + _under(armature, names)
+            lines.append(np.stack([points[:-1], points[1:]], axis=1))
+            colors.append(np.full((N_SEGMENTS, 2, 4), COLORS[mark]))
+    if not lines:
+        return None
+    return Rings(
+        np.concatenate(lines).astype(np.float32), np.concatenate(colors).astype(np.float32)
+    )
+
+
+def is_down(keys: Array, frame: float) -> bool:
+    """Return whether a part is down at a frame; keys, shape (n_keys, 2), hold until the next.
+
+    It is not before the first key.
+    """
+    last = int(np.searchsorted(keys[:, 0], frame, side="right")) - 1
+    return last >= 0 and bool(keys[last, 1] > 0.5)
+
+
+def _bones_of(armature: bpy.types.Object) -> tuple[tuple[str, ...], ...]:
+    """Return the bones of each part; none for parts that are not recognized."""
+    if armature.session_uid not in _bones:
+        try:
+            joints = find_roles(armature).joints
+        except InvalidMotionError:
+            joints = {}
+        _bones[armature.session_uid] = tuple(
+            tuple(joints[role] for role in roles if role in joints) for roles in ROLES
+        )
+    return _bones[armature.session_uid]
+
+
+def _radius(armature: bpy.types.Object, names: tuple[str, ...]) -> float:
+    """Return the radius in the scene of a ring around bones."""
+    length = sum(armature.data.bones[name].length for name in names)
+    return float(RADIUS * length * armature.matrix_world.median_scale)
+
+
+def _under(armature: bpy.types.Object, names: tuple[str, ...]) -> NDArray[np.float64]:
+    """Return the point of the scene below the middle of bones, at the height of their end."""
+    ends: list[Vector] = []
+    for name in names:
+        bone = armature.pose.bones[name]
+        ends += [armature.matrix_world @ bone.head, armature.matrix_world @ bone.tail]
+    points = np.array(ends)
+    return np.append(points[:, :2].mean(axis=0), points[:, 2].min())
