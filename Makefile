@@ -35,9 +35,10 @@ help:  ## this list
 
 .PHONY: test lint test-source-4.5 test-source-5.2 test-blender test-blender-4.5 test-blender-5.2
 .PHONY: test-wheel
+# The longest first, so that both cores are busy to the end.
 test: environments  ## every check and test below, on Blender 4.5 and 5.2, two at a time
 	@$(SUBMAKE) --output-sync=target --keep-going \
-	    test-source-4.5 test-blender-4.5 test-blender-5.2 test-source-5.2 lint test-wheel
+	    test-source-5.2 test-source-4.5 test-blender-5.2 test-blender-4.5 lint test-wheel
 	@if [ -e .venv-5.2/ready ]; then echo "All is well, on Blender 4.5 and 5.2."; \
 	else echo "$(NO_5.2)"; echo "All is well, on Blender 4.5."; fi
 

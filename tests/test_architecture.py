@@ -16,8 +16,9 @@ MAY_IMPORT = {
     "operators": {"mocap_assist", "solvers"},
 }
 COMMON_PACKAGES = {
-    "archives", "arrays", "depth_scene", "errors", "faults", "feet", "files", "json_text",
-    "motion", "motion_fitting", "npz_members", "progress", "rotations", "settings", "signals",
+    "archives", "arrays", "depth_scene", "errors", "faults", "feet", "files",
+    "import_on_demand", "json_text", "motion", "motion_fitting", "npz_members", "progress",
+    "rotations", "settings", "signals",
 }  # fmt: skip
 FAMILIES = [
     folder.name

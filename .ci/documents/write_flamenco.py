@@ -59,7 +59,7 @@ def main() -> None:
 def job_type(verb: str) -> str:
     """Return the job type of a verb."""
     text = SOURCE.read_text(encoding="utf-8")
-    options = options_of(VERBS[verb].add_options)
+    options = options_of(VERBS[verb].work().add_options)
     added = "".join(f"    {setting(option)},\n" for option in options)
     rows = "".join(f"  {option.dest}: {json.dumps(kind_of(option))},\n" for option in options)
     changes = (

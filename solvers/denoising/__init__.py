@@ -13,25 +13,30 @@ True
 'RightArm is missing for 1.00 s.'
 """
 
-from ..feet import Planted, PlantSettings, plant_feet
-from .denoise import Denoised, denoise
-from .denoise_settings import PART_STRENGTHS, DenoiseMethod, DenoiseSettings
-from .limits import JointLimitsSettings, clamp_to_limits, learn_joint_limits, limit_excess
-from .quality import (
-    Issue,
-    IssueSettings,
-    Quality,
-    QualitySettings,
-    compare_quality,
-    find_worst_issues,
-    measure_quality,
-)
-from .window_priors import (
-    FilterBases,
-    FilterBasesSettings,
-    learn_filter_bases,
-    load_filter_bases,
-)
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from ..feet import Planted, PlantSettings, plant_feet
+    from .denoise import Denoised, denoise
+    from .denoise_settings import PART_STRENGTHS, DenoiseMethod, DenoiseSettings
+    from .limits import JointLimitsSettings, clamp_to_limits, learn_joint_limits, limit_excess
+    from .quality import (
+        Issue,
+        IssueSettings,
+        Quality,
+        QualitySettings,
+        compare_quality,
+        find_worst_issues,
+        measure_quality,
+    )
+    from .window_priors import (
+        FilterBases,
+        FilterBasesSettings,
+        learn_filter_bases,
+        load_filter_bases,
+    )
 
 __all__ = [
     "PART_STRENGTHS",
@@ -58,3 +63,5 @@ __all__ = [
     "measure_quality",
     "plant_feet",
 ]
+
+import_on_demand(__name__)

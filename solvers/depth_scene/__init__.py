@@ -1,11 +1,16 @@
 """The scene of a depth recording: camera, floor, foreground and actor."""
 
-from .actor import Actor, find_actor
-from .camera import Camera
-from .camera_checks import check_intrinsics
-from .floor import LEVEL, FloorPlane, find_floor
-from .foreground import ForegroundMethod, ForegroundSettings
-from .recording import ColorImage, DepthImage, DepthRecording
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .actor import Actor, find_actor
+    from .camera import Camera
+    from .camera_checks import check_intrinsics
+    from .floor import LEVEL, FloorPlane, find_floor
+    from .foreground import ForegroundMethod, ForegroundSettings
+    from .recording import ColorImage, DepthImage, DepthRecording
 
 __all__ = [
     "LEVEL",
@@ -21,3 +26,5 @@ __all__ = [
     "find_actor",
     "find_floor",
 ]
+
+import_on_demand(__name__)

@@ -12,37 +12,42 @@
 2
 """
 
-from .body import (
-    BodyModel,
-    MotionPrior,
-    default_body,
-    learn_motion_prior,
-    load_body_model,
-    load_motion_prior,
-)
-from .capturing import (
-    CalibrationSettings,
-    Capture,
-    CaptureSettings,
-    RefineBodySettings,
-    Retracked,
-    RetrackSettings,
-    calibrate_body,
-    capture,
-    refine_body,
-    retrack,
-)
-from .detection import DetectedPose, DetectorSettings, detect_pose
-from .forest import PixelForest, load_pixel_forest
-from .forest_training import (
-    PixelForestSettings,
-    SkinnedBody,
-    load_skinned_body,
-    train_pixel_forest,
-)
-from .published import REGISTRATION_TRACKER, track_pose_by_edges
-from .terms import TrackerSettings
-from .tracking import TrackedMotion, track_pose
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .body import (
+        BodyModel,
+        MotionPrior,
+        default_body,
+        learn_motion_prior,
+        load_body_model,
+        load_motion_prior,
+    )
+    from .capturing import (
+        CalibrationSettings,
+        Capture,
+        CaptureSettings,
+        RefineBodySettings,
+        Retracked,
+        RetrackSettings,
+        calibrate_body,
+        capture,
+        refine_body,
+        retrack,
+    )
+    from .detection import DetectedPose, DetectorSettings, detect_pose
+    from .forest import PixelForest, load_pixel_forest
+    from .forest_training import (
+        PixelForestSettings,
+        SkinnedBody,
+        load_skinned_body,
+        train_pixel_forest,
+    )
+    from .published import REGISTRATION_TRACKER, track_pose_by_edges
+    from .terms import TrackerSettings
+    from .tracking import TrackedMotion, track_pose
 
 __all__ = [
     "REGISTRATION_TRACKER",
@@ -76,3 +81,5 @@ __all__ = [
     "track_pose_by_edges",
     "train_pixel_forest",
 ]
+
+import_on_demand(__name__)

@@ -1,11 +1,16 @@
 """Foot-skate cleanup: hold planted feet in place."""
 
-from .body_supports import find_supports
-from .legs import SIDES, LegJoints, find_foot_joints, find_legs
-from .live_planting import LivePlanting, PlantedPose
-from .plant_feet import Planted, plant_feet
-from .plant_settings import PlantSettings
-from .sole import HEEL_FRACTION, sole_points
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .body_supports import find_supports
+    from .legs import SIDES, LegJoints, find_foot_joints, find_legs
+    from .live_planting import LivePlanting, PlantedPose
+    from .plant_feet import Planted, plant_feet
+    from .plant_settings import PlantSettings
+    from .sole import HEEL_FRACTION, sole_points
 
 __all__ = [
     "HEEL_FRACTION",
@@ -21,3 +26,5 @@ __all__ = [
     "plant_feet",
     "sole_points",
 ]
+
+import_on_demand(__name__)

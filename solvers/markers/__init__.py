@@ -6,13 +6,18 @@
 ('CMU 41', 'Anna:', 'Anna:LFWT')
 """
 
-from .constrain_clusters import ConstrainedMarkers, constrain_clusters
-from .marker_sets import MarkerSet, find_marker_set
-from .marker_sticks import find_marker_sticks
-from .model_outputs import find_model_outputs
-from .rigid_clusters import Cluster, ClusterSettings, find_rigid_clusters
-from .solve_skeleton import SolvedSkeleton, SolveSettings, solve_skeleton
-from .unswap import Swap, Unswapped, UnswapSettings, unswap_markers
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .constrain_clusters import ConstrainedMarkers, constrain_clusters
+    from .marker_sets import MarkerSet, find_marker_set
+    from .marker_sticks import find_marker_sticks
+    from .model_outputs import find_model_outputs
+    from .rigid_clusters import Cluster, ClusterSettings, find_rigid_clusters
+    from .solve_skeleton import SolvedSkeleton, SolveSettings, solve_skeleton
+    from .unswap import Swap, Unswapped, UnswapSettings, unswap_markers
 
 __all__ = [
     "Cluster",
@@ -32,3 +37,5 @@ __all__ = [
     "solve_skeleton",
     "unswap_markers",
 ]
+
+import_on_demand(__name__)

@@ -8,54 +8,59 @@
 [0.3, 0.0, 1.4]
 """
 
-from .humanoid import (
-    BODY_PARTS,
-    HUMANOID_ROLES,
-    HumanoidMap,
-    Reason,
-    RoleEvidence,
-    canonical_rotations,
-    contact_probabilities,
-    contacts_of_points,
-    describe_low_confidence,
-    detect_contacts,
-    evidence_figures,
-    explain_roles,
-    find_humanoid_map,
-    foot_points,
-    from_canonical,
-    joint_parts,
-    leg_length,
-    motion_from_points,
-    read_humanoid_map,
-    roles_by_name,
-    skeleton_from_points,
-    t_pose_alignment,
-    transfer_motion,
-    write_humanoid_map,
-)
-from .skeletons import (
-    SENSOR_JOINTS,
-    Alignment,
-    AxisName,
-    FileConventions,
-    JointLimits,
-    JointRecording,
-    Motion,
-    ReachSettings,
-    Sensor,
-    Skeleton,
-    Tracks,
-    WorldPoses,
-    forward_kinematics,
-    joint_parents,
-    local_rotations,
-    reach,
-    resample,
-    unit_name,
-    warp,
-    world_poses,
-)
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .humanoid import (
+        BODY_PARTS,
+        HUMANOID_ROLES,
+        HumanoidMap,
+        Reason,
+        RoleEvidence,
+        canonical_rotations,
+        contact_probabilities,
+        contacts_of_points,
+        describe_low_confidence,
+        detect_contacts,
+        evidence_figures,
+        explain_roles,
+        find_humanoid_map,
+        foot_points,
+        from_canonical,
+        joint_parts,
+        leg_length,
+        motion_from_points,
+        read_humanoid_map,
+        roles_by_name,
+        skeleton_from_points,
+        t_pose_alignment,
+        transfer_motion,
+        write_humanoid_map,
+    )
+    from .skeletons import (
+        SENSOR_JOINTS,
+        Alignment,
+        AxisName,
+        FileConventions,
+        JointLimits,
+        JointRecording,
+        Motion,
+        ReachSettings,
+        Sensor,
+        Skeleton,
+        Tracks,
+        WorldPoses,
+        forward_kinematics,
+        joint_parents,
+        local_rotations,
+        reach,
+        resample,
+        unit_name,
+        warp,
+        world_poses,
+    )
 
 __all__ = [
     "BODY_PARTS",
@@ -103,3 +108,5 @@ __all__ = [
     "world_poses",
     "write_humanoid_map",
 ]
+
+import_on_demand(__name__)

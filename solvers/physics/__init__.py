@@ -7,9 +7,14 @@
 'The simulated body followed the complete take.'
 """
 
-from .engine import NoPhysicsError
-from .settings import Ground, SimulateSettings
-from .simulate import Simulated, apply_strength, simulate
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .engine import NoPhysicsError
+    from .settings import Ground, SimulateSettings
+    from .simulate import Simulated, apply_strength, simulate
 
 __all__ = [
     "Ground",
@@ -19,3 +24,5 @@ __all__ = [
     "apply_strength",
     "simulate",
 ]
+
+import_on_demand(__name__)

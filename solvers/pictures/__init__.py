@@ -8,16 +8,21 @@
 (3, 'uint8')
 """
 
-from .canvas import SERIES, Canvas, lighten_color
-from .curves import CurveSettings, draw_curves
-from .picture import Picture, stack_pictures
-from .stick_figures import (
-    StickFigureSettings,
-    ViewDirection,
-    draw_stick_figures,
-    project_to_view,
-)
-from .table import draw_table
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .canvas import SERIES, Canvas, lighten_color
+    from .curves import CurveSettings, draw_curves
+    from .picture import Picture, stack_pictures
+    from .stick_figures import (
+        StickFigureSettings,
+        ViewDirection,
+        draw_stick_figures,
+        project_to_view,
+    )
+    from .table import draw_table
 
 __all__ = [
     "SERIES",
@@ -33,3 +38,5 @@ __all__ = [
     "project_to_view",
     "stack_pictures",
 ]
+
+import_on_demand(__name__)

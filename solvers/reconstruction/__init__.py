@@ -21,33 +21,38 @@
 True
 """
 
-from .joint_rotations import Reconstruction
-from .live_actor import LiveActor, measure_actor
-from .live_reconstructor import LivePose, LiveReconstructor, ObservedFrame
-from .pose_completion import PostureSettings, reconstruct_postures
-from .pose_library import (
-    PostureLibrary,
-    PostureLibrarySettings,
-    build_posture_library,
-    load_posture_library,
-)
-from .reconstruct import ReconstructMethod, ReconstructSettings, reconstruct
-from .reliability import (
-    Reliability,
-    ReliabilityMethod,
-    ReliabilitySettings,
-    measure_reliability,
-)
-from .residual_correction import (
-    CorrectionMethod,
-    CorrectionSettings,
-    ResidualMethod,
-    ResidualPrior,
-    ResidualPriorSettings,
-    correct_postures,
-    learn_residual_prior,
-    load_residual_prior,
-)
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .joint_rotations import Reconstruction
+    from .live_actor import LiveActor, measure_actor
+    from .live_reconstructor import LivePose, LiveReconstructor, ObservedFrame
+    from .pose_completion import PostureSettings, reconstruct_postures
+    from .pose_library import (
+        PostureLibrary,
+        PostureLibrarySettings,
+        build_posture_library,
+        load_posture_library,
+    )
+    from .reconstruct import ReconstructMethod, ReconstructSettings, reconstruct
+    from .reliability import (
+        Reliability,
+        ReliabilityMethod,
+        ReliabilitySettings,
+        measure_reliability,
+    )
+    from .residual_correction import (
+        CorrectionMethod,
+        CorrectionSettings,
+        ResidualMethod,
+        ResidualPrior,
+        ResidualPriorSettings,
+        correct_postures,
+        learn_residual_prior,
+        load_residual_prior,
+    )
 
 __all__ = [
     "CorrectionMethod",
@@ -78,3 +83,5 @@ __all__ = [
     "reconstruct",
     "reconstruct_postures",
 ]
+
+import_on_demand(__name__)

@@ -12,55 +12,60 @@
 (30, 30.0)
 """
 
-from .conventions import ALL_BODIES, Bodies, Body
-from .depth_files import (
-    CameraOrientation,
-    DepthSettings,
-    detect_depth_format,
-    is_depth_folder,
-    read_depth,
-)
-from .folders import (
-    depth_takes_in,
-    describe_no_recording,
-    may_contain_motion,
-    one_path_per_take,
-    recordings_in,
-    takes_in,
-)
-from .formats import detect_format
-from .joint_files import (
-    read_freemocap,
-    read_kinect_csv,
-    read_msr_action3d,
-    read_ui_prmd,
-    read_ui_prmd_pair,
-    write_joint_csv,
-    write_joint_json,
-)
-from .joints import read_joints, write_joints
-from .marker_files import read_c3d, read_trc, write_c3d, write_trc
-from .read_as import open_as, questions_of, read_as, settle
-from .read_recording import (
-    is_depth_recording,
-    list_bodies,
-    open_bodies,
-    read_motion_or_tracks,
-    read_recording,
-    read_tracked,
-)
-from .reading_settings import (
-    DEFAULT_READING,
-    Axis,
-    FloorPlacement,
-    FloorPlacementSettings,
-    ReadingSettings,
-    Unit,
-)
-from .recording_figures import recording_figures
-from .refuse_stand_ins import refuse_stand_ins
-from .scene_suffixes import SCENE_SUFFIXES, is_scene_file, suffix_by_content
-from .skeleton_files import read_acclaim, read_bvh, write_bvh
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .conventions import ALL_BODIES, Bodies, Body
+    from .depth_files import (
+        CameraOrientation,
+        DepthSettings,
+        detect_depth_format,
+        is_depth_folder,
+        read_depth,
+    )
+    from .folders import (
+        depth_takes_in,
+        describe_no_recording,
+        may_contain_motion,
+        one_path_per_take,
+        recordings_in,
+        takes_in,
+    )
+    from .formats import detect_format
+    from .joint_files import (
+        read_freemocap,
+        read_kinect_csv,
+        read_msr_action3d,
+        read_ui_prmd,
+        read_ui_prmd_pair,
+        write_joint_csv,
+        write_joint_json,
+    )
+    from .joints import read_joints, write_joints
+    from .marker_files import read_c3d, read_trc, write_c3d, write_trc
+    from .read_as import open_as, questions_of, read_as, settle
+    from .read_recording import (
+        is_depth_recording,
+        list_bodies,
+        open_bodies,
+        read_motion_or_tracks,
+        read_recording,
+        read_tracked,
+    )
+    from .reading_settings import (
+        DEFAULT_READING,
+        Axis,
+        FloorPlacement,
+        FloorPlacementSettings,
+        ReadingSettings,
+        Unit,
+    )
+    from .recording_figures import recording_figures
+    from .refuse_stand_ins import refuse_stand_ins
+    from .scene_suffixes import SCENE_SUFFIXES, is_scene_file, suffix_by_content
+    from .skeleton_files import read_acclaim, read_bvh, write_bvh
 
 __all__ = [
     "ALL_BODIES",
@@ -116,3 +121,5 @@ __all__ = [
     "write_joints",
     "write_trc",
 ]
+
+import_on_demand(__name__)

@@ -11,12 +11,17 @@
 60
 """
 
-from .error_points import find_error_points
-from .key_curves import KeyCurve, fit_curve
-from .reduce_keys import SparseMotion, UnbakeSettings, load_sparse_motion, reduce_keys
-from .retarget import LiveRetargeting, RetargetSettings, RootMotion, retarget
-from .root_motion import GroundPath, ground_path
-from .rotation_channels import RotationChannels
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .error_points import find_error_points
+    from .key_curves import KeyCurve, fit_curve
+    from .reduce_keys import SparseMotion, UnbakeSettings, load_sparse_motion, reduce_keys
+    from .retarget import LiveRetargeting, RetargetSettings, RootMotion, retarget
+    from .root_motion import GroundPath, ground_path
+    from .rotation_channels import RotationChannels
 
 __all__ = [
     "GroundPath",
@@ -34,3 +39,5 @@ __all__ = [
     "reduce_keys",
     "retarget",
 ]
+
+import_on_demand(__name__)

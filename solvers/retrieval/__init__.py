@@ -8,17 +8,22 @@
 'slow'
 """
 
-from .find_in_libraries import FoundClip, find_in_libraries
-from .find_similar import find_similar
-from .index import Clip, ClipEntry, DescribedClip, Match, Origin, describe_clip
-from .library import (
-    ClipLibrary,
-    build_clip_library,
-    libraries_in,
-    load_clip_library,
-    open_clip_library,
-)
-from .search import FindMethod, FindSettings
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .find_in_libraries import FoundClip, find_in_libraries
+    from .find_similar import find_similar
+    from .index import Clip, ClipEntry, DescribedClip, Match, Origin, describe_clip
+    from .library import (
+        ClipLibrary,
+        build_clip_library,
+        libraries_in,
+        load_clip_library,
+        open_clip_library,
+    )
+    from .search import FindMethod, FindSettings
 
 __all__ = [
     "Clip",
@@ -38,3 +43,5 @@ __all__ = [
     "load_clip_library",
     "open_clip_library",
 ]
+
+import_on_demand(__name__)

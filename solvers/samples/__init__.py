@@ -7,11 +7,16 @@
 (True, 20)
 """
 
-from .corruption import CorruptionSettings, corrupt
-from .gait import GaitSettings, walking_gait
-from .noisy_walk import noisy_walk
-from .performance import Performance, PerformanceSettings, perform_gestures
-from .walker import walker_skeleton
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .corruption import CorruptionSettings, corrupt
+    from .gait import GaitSettings, walking_gait
+    from .noisy_walk import noisy_walk
+    from .performance import Performance, PerformanceSettings, perform_gestures
+    from .walker import walker_skeleton
 
 __all__ = [
     "CorruptionSettings",
@@ -24,3 +29,5 @@ __all__ = [
     "walker_skeleton",
     "walking_gait",
 ]
+
+import_on_demand(__name__)

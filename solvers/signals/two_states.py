@@ -33,20 +33,32 @@ def two_state_probabilities(
     .. [1] Rabiner (1989). A tutorial on hidden Markov models and selected applications in
        speech recognition. Proceedings of the IEEE 77(2). doi:10.1109/5.18626
     """
-    begin, end = _changes(1.0 / frame_rate, begin_rate, end_rate)
-    ratios = _likelihood_ratios(evidence)
-    limit = np.exp(MAX_LOG_ODDS)
-    past = np.empty_like(ratios)
-    filtered = TwoStateFilter(begin_rate, end_rate)
-    for frame, each in enumerate(evidence):
-        past[frame] = filtered.odds(each, 1.0 / frame_rate)
+    changes = _changes(1.0 / frame_rate, begin_rate, end_rate)
+    n_sequences = int(np.prod(evidence.shape[1:]))
+    ratios = _likelihood_ratios(evidence).reshape(len(evidence), n_sequences)
     result = np.empty_like(ratios)
-    future = np.ones(ratios.shape[1:])
-    for frame in range(len(ratios) - 1, -1, -1):
-        result[frame] = past[frame] * future / (1.0 + past[frame] * future)
-        later = np.clip(ratios[frame] * future, 1.0 / limit, limit)
+    for column in range(n_sequences):
+        result[:, column] = _probabilities(
+            ratios[:, column].tolist(), begin_rate / end_rate, *changes
+        )
+    return result.reshape(evidence.shape)
+
+
+def _probabilities(ratios: list[float], prior: float, begin: float, end: float) -> list[float]:
+    """Return the probabilities of one sequence, in floats: a long take has many short steps."""
+    largest = float(np.exp(MAX_LOG_ODDS))
+    smallest = 1.0 / largest
+    past, odds = [], prior
+    for ratio in ratios:
+        found = min(max(odds * ratio, smallest), largest)
+        past.append(found)
+        odds = (begin + (1.0 - end) * found) / (1.0 - begin + end * found)
+    result, future = [], 1.0
+    for ratio, before in zip(reversed(ratios), reversed(past), strict=True):
+        result.append(before * future / (1.0 + before * future))
+        later = min(max(ratio * future, smallest), largest)
         future = (end + (1.0 - end) * later) / (1.0 - begin + begin * later)
-    return result
+    return result[::-1]
 
 
 class TwoStateFilter:

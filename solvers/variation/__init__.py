@@ -8,14 +8,19 @@
 5
 """
 
-from .borrow_variation import borrow_variation
-from .curves import Partition
-from .learn_variation import learn_variation_model
-from .loops import resample_loop
-from .measure_variation import measure_variation
-from .synthesize import Variant, draw_variants, synthesize
-from .variation_model import VariationModel, load_variation_model
-from .vary_settings import VaryMethod, VarySettings
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .borrow_variation import borrow_variation
+    from .curves import Partition
+    from .learn_variation import learn_variation_model
+    from .loops import resample_loop
+    from .measure_variation import measure_variation
+    from .synthesize import Variant, draw_variants, synthesize
+    from .variation_model import VariationModel, load_variation_model
+    from .vary_settings import VaryMethod, VarySettings
 
 __all__ = [
     "Partition",
@@ -31,3 +36,5 @@ __all__ = [
     "resample_loop",
     "synthesize",
 ]
+
+import_on_demand(__name__)

@@ -1,40 +1,45 @@
 """Combine the solver families into complete workflows, from a recording to a result."""
 
-from .capture_recording import CapturedMotion, capture_actor, capture_recording
-from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
-from .fix_chains import ChainResult
-from .fix_report import (
-    UNKNOWN,
-    MotionFromJoints,
-    TakeFigures,
-    TakeOrigin,
-    describe_missing_points,
-    drop_missing_points,
-    figure_texts,
-    find_origin,
-    measure_take,
-)
-from .fix_take import FixedTake, FixSettings, fix_take
-from .index_files import IndexReport, index_files
-from .live import (
-    LiveMotion,
-    LiveSession,
-    LiveTake,
-    LiveTakeSettings,
-    PoseTake,
-    SessionUpdate,
-)
-from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
-from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
-from .postures_from_clips import posture_library_from_clips
-from .reconstruct_from_library import (
-    LibraryPostures,
-    postures_from_library,
-    reconstruct_from_library,
-)
-from .reconstruct_motion import RebuiltMotion, reconstruct_motion
-from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
-from .vary_motions import Variants, vary_motions
+from typing import TYPE_CHECKING
+
+from ..import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .capture_recording import CapturedMotion, capture_actor, capture_recording
+    from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
+    from .fix_chains import ChainResult
+    from .fix_report import (
+        UNKNOWN,
+        MotionFromJoints,
+        TakeFigures,
+        TakeOrigin,
+        describe_missing_points,
+        drop_missing_points,
+        figure_texts,
+        find_origin,
+        measure_take,
+    )
+    from .fix_take import FixedTake, FixSettings, fix_take
+    from .index_files import IndexReport, index_files
+    from .live import (
+        LiveMotion,
+        LiveSession,
+        LiveTake,
+        LiveTakeSettings,
+        PoseTake,
+        SessionUpdate,
+    )
+    from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
+    from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
+    from .postures_from_clips import posture_library_from_clips
+    from .reconstruct_from_library import (
+        LibraryPostures,
+        postures_from_library,
+        reconstruct_from_library,
+    )
+    from .reconstruct_motion import RebuiltMotion, reconstruct_motion
+    from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
+    from .vary_motions import Variants, vary_motions
 
 __all__ = [
     "UNKNOWN",
@@ -80,3 +85,5 @@ __all__ = [
     "reconstruct_recording",
     "vary_motions",
 ]
+
+import_on_demand(__name__)

@@ -5,7 +5,7 @@ The verbs stand in `contract_verbs.py`; to add one, add a line there.
 
 from dataclasses import fields, is_dataclass
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -36,21 +36,21 @@ every_verb_that_returns_a_motion = pytest.mark.parametrize(
 
 @every_verb
 def test_solver_does_not_change_or_alias_its_input(name):
-    motion = damaged(name)
-    rotations, positions = motion.rotations.copy(), motion.root_positions.copy()
+    solved, motion = first_solve(name), damaged(name)
 
-    result = VERBS[name].call(motion, unwatched)
-
-    assert np.array_equal(motion.rotations, rotations, equal_nan=True)
-    assert np.array_equal(motion.root_positions, positions, equal_nan=True)
-    for value in values_in(result):
-        for array in (motion.rotations, motion.root_positions):
+    assert np.array_equal(solved.given.rotations, motion.rotations, equal_nan=True)
+    assert np.array_equal(solved.given.root_positions, motion.root_positions, equal_nan=True)
+    for value in values_in(solved.result):
+        for array in (solved.given.rotations, solved.given.root_positions):
             assert not (isinstance(value, np.ndarray) and np.shares_memory(value, array))
 
 
 @every_verb
 def test_solver_repeats_its_result(name):
-    first, again = values_in(default_result(name)), values_in(new_result(name))
+    """Whether or not anything listens to its progress."""
+    first = values_in(first_solve(name).result)
+
+    again = values_in(VERBS[name].call(damaged(name), unwatched))
 
     assert len(first) == len(again) > 0
     for one, other in zip(first, again, strict=True):
@@ -59,9 +59,7 @@ def test_solver_repeats_its_result(name):
 
 @every_verb_that_reports
 def test_solver_progress_rises_from_0_to_1(name):
-    fractions = []
-
-    VERBS[name].call(damaged(name), lambda fraction, message="": fractions.append(fraction))
+    fractions = first_solve(name).fractions
 
     assert fractions[-1] == pytest.approx(1.0)
     assert fractions[0] >= 0.0 and (np.diff(fractions) >= -1e-12).all()
@@ -84,7 +82,7 @@ def test_solver_stops_when_cancelled(name, report):
 
 @every_verb
 def test_solver_is_equivariant_to_translation_and_rotation(name):
-    verb, here = VERBS[name], default_result(name)
+    verb, here = VERBS[name], first_solve(name).result
 
     there = verb.call(carried(damaged(name)), unwatched)
 
@@ -122,13 +120,21 @@ def test_solver_does_not_add_jitter_to_a_clean_take(name):
     assert jitter(result) < jitter(walk) + 770.0
 
 
+class Solve(NamedTuple):
+    """A solve whose input and reports were kept."""
+
+    given: Motion
+    """The very object that the verb was called with."""
+    result: Any
+    fractions: list[float]
+
+
 @cache
-def default_result(name: str) -> Any:
-    return new_result(name)
-
-
-def new_result(name: str) -> Any:
-    return VERBS[name].call(damaged(name), unwatched)
+def first_solve(name: str) -> Solve:
+    """Solve the damaged take, once for the laws that can share a solve."""
+    given, fractions = damaged(name), []
+    result = VERBS[name].call(given, lambda fraction, message="": fractions.append(fraction))
+    return Solve(given, result, fractions)
 
 
 def jitter(recording: Motion | Tracks) -> float:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...progress import Progress
-from ...recordings import recordings_in
 
 
 @dataclass(frozen=True)
@@ -75,19 +74,27 @@ def prepare_nothing(arguments: argparse.Namespace, progress: Progress) -> None:
 
 
 @dataclass(frozen=True)
-class Verb:
-    """A verb: its options, its preparation for a run, and its work on each task."""
+class VerbWork:
+    """What a verb does: its options, its preparation for a run, and its work on each task."""
 
-    help: str
     add_options: Callable[[argparse.ArgumentParser], None]
     perform: Callable[[Task, Any, Progress], Outcome]
     """Called with a task and the result of `prepare`."""
+    list_recordings: Callable[[Path], list[Path]] | None = None
+    """Returns the recordings in a folder that it can read; None for those of all formats."""
+    prepare: Callable[[argparse.Namespace, Progress], Any] = prepare_nothing
+    """Called once per run; its picklable result is passed to all tasks."""
+
+
+@dataclass(frozen=True)
+class Verb:
+    """A verb of the command line; picklable."""
+
+    help: str
+    work: Callable[[], VerbWork]
+    """Imports and returns what the verb does, so that a run imports no other verb."""
     makes: OutputKind = OutputKind.FILES
     writes_motions: bool = False
     """Whether it always writes motions of skeletons."""
     writes_joints: bool = False
     """Whether it can also write tracked joints."""
-    list_recordings: Callable[[Path], list[Path]] = recordings_in
-    """Returns the recordings in a folder that it can read."""
-    prepare: Callable[[argparse.Namespace, Progress], Any] = prepare_nothing
-    """Called once per run; its picklable result is passed to all tasks."""

@@ -1,22 +1,27 @@
 """Perform a verb on many files: tasks, records, workers, progress and report."""
 
-from .batch import (
-    FinishedTask,
-    already_made,
-    draw_task,
-    has_called_hook,
-    made_record,
-    note_other_builds,
-    record_end,
-    report_folder,
-    share,
-    task_entries,
-    verb_name,
-)
-from .parallel import run_tasks, until_released, workers_for
-from .report import PAGE, PICTURE, has_picture, picture_file, remove_picture, write_report
-from .screen import Screen, escape_undecodable_names, printable
-from .tasks import check_output_folder, find_inputs, shared_tasks, tasks_of
+from typing import TYPE_CHECKING
+
+from ...import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .batch import (
+        FinishedTask,
+        already_made,
+        draw_task,
+        has_called_hook,
+        made_record,
+        note_other_builds,
+        record_end,
+        report_folder,
+        share,
+        task_entries,
+        verb_name,
+    )
+    from .parallel import run_tasks, until_released, workers_for
+    from .report import PAGE, PICTURE, has_picture, picture_file, remove_picture, write_report
+    from .screen import Screen, escape_undecodable_names, printable
+    from .tasks import check_output_folder, find_inputs, shared_tasks, tasks_of
 
 __all__ = [
     "PAGE",
@@ -47,3 +52,5 @@ __all__ = [
     "workers_for",
     "write_report",
 ]
+
+import_on_demand(__name__)

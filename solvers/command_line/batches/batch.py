@@ -64,7 +64,7 @@ def _work(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Finished
 def _perform(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Outcome:
     """Perform a task; figures that cannot be written as JSON count as its failure."""
     remarks: list[Remark] = []
-    outcome = verb.perform(task, prepared, collect_remarks(progress, remarks))
+    outcome = verb.work().perform(task, prepared, collect_remarks(progress, remarks))
     added = [f"{remark.rstrip('.')}." for remark in remarks if remark not in outcome.text]
     text = "\n".join([outcome.text, *added])
     outcome = replace(outcome, text=text, remarks=(*outcome.remarks, *added))

@@ -9,6 +9,7 @@ from pathlib import Path
 from ...errors import InvalidFileError, InvalidSettingError
 from ...faults import Failure, attempt
 from ...files import is_missing, real_path
+from ...recordings import recordings_in
 from ..arguments import (
     FOR_JOINTS,
     FOR_MOTIONS,
@@ -96,7 +97,7 @@ def _file_tasks(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
         return _tasks_without_folder(verb, arguments)
     if folder.exists() and not folder.is_dir():
         raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
-    listed = find_inputs(arguments, folder, verb.list_recordings)
+    listed = find_inputs(arguments, folder, verb.work().list_recordings or recordings_in)
     found = [
         (each, of_body, ending)
         for each in listed

@@ -1,15 +1,20 @@
 """Run batches on many machines: workers of a Dask cluster, and jobs for render farms."""
 
-from .batch_jobs import add_flamenco_options, job_of_batch
-from .cluster import cluster_workers
-from .flamenco_jobs import (
-    COMMAND,
-    FlamencoJob,
-    FlamencoSettings,
-    SubmittedJob,
-    check_job,
-)
-from .job_types import texts_of_settings
+from typing import TYPE_CHECKING
+
+from ...import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .batch_jobs import add_flamenco_options, job_of_batch
+    from .cluster import cluster_workers
+    from .flamenco_jobs import (
+        COMMAND,
+        FlamencoJob,
+        FlamencoSettings,
+        SubmittedJob,
+        check_job,
+    )
+    from .job_types import texts_of_settings
 
 __all__ = [
     "COMMAND",
@@ -22,3 +27,5 @@ __all__ = [
     "job_of_batch",
     "texts_of_settings",
 ]
+
+import_on_demand(__name__)

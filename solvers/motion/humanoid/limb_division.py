@@ -25,8 +25,6 @@ figure 4.1)."""
 MIN_SPREAD_FRACTION = 0.03
 """Of the height, below which the rest pose is folded up and does not show a direction. Chosen
 by hand on the rigs of `tests/solvers/motion`."""
-
-
 FOOT_MISFIT = 0.25
 """Added to the misfit, the logarithm of a length, of an ankle that ends a leg of four joints or
 more, whose last one is rather the toes, and of one after a bone that points away from the leg,
@@ -34,6 +32,14 @@ which is the foot. Chosen by hand on the rigs of `tests/solvers/motion`."""
 MAX_SHANK_COSINE = 0.7
 """Cosine between a bone and the leg above it, up to which it is a foot. Chosen by hand on the
 rigs of `tests/solvers/motion`: 45 degrees; feet stand at 60 to 90 degrees to the shank."""
+
+MAX_HUMAN_ANGLE_DEG = 60.0
+"""Between trunk and legs in the rest pose of a person, who stands; animals stand at 90. Chosen
+by hand on the rigs of `tests/solvers/motion`."""
+ALONG_ONE_AXIS = -np.cos(np.radians(20.0))
+"""Cosine between trunk and legs, of 160 degrees, below which both point one way from
+the hips: a rest pose of bones along one axis. Chosen by hand on the rigs of
+`tests/solvers/motion`."""
 
 
 def path_length(skeleton: Skeleton, joints: Sequence[int]) -> float:
@@ -51,6 +57,17 @@ def distances_from_midline(skeleton: Skeleton, limbs: MirroredLimbs, side: int) 
     limb, other = limbs.limbs[side], limbs.limbs[1 - side]
     positions = skeleton.rest_positions
     return np.asarray(np.linalg.norm(positions[limb] - positions[other], axis=1) / 2)
+
+
+def is_human_angle(cosine: float) -> bool:
+    """Whether trunk and legs at this angle stand, or lie along one axis as if folded up."""
+    return bool(cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)) or cosine < ALONG_ONE_AXIS)
+
+
+def is_folded(skeleton: Skeleton, limbs: MirroredLimbs, height: float) -> bool:
+    """Whether both limbs lie in the same place, as where all bones have one direction."""
+    spread = distances_from_midline(skeleton, limbs, 0).max()
+    return bool(spread < MIN_SPREAD_FRACTION * height)
 
 
 def divide_leg(

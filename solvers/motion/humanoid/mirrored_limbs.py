@@ -117,3 +117,9 @@ class _Tree(NamedTuple):
         )
         limbs = max(below, key=lambda limbs: self.lengths[limbs[0]].sum(), default=([], []))
         return [one, *limbs[0]], [other, *limbs[1]]
+
+
+def are_separate(skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs) -> bool:
+    """Whether two pairs of limbs share no joint and start from different joints."""
+    shared = legs.joints(skeleton) & arms.joints(skeleton)
+    return legs.branch != arms.branch and not shared.any()

@@ -1,7 +1,8 @@
 """Assign humanoid roles to joints by the tree and the lengths of the bones."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache, lru_cache
 from itertools import product
 from typing import NamedTuple
 
@@ -11,13 +12,14 @@ from ...arrays import Array
 from ..skeletons import Skeleton
 from .limb_division import (
     MIN_SPREAD_FRACTION,
-    distances_from_midline,
     divide_arm,
     divide_leg,
+    is_folded,
+    is_human_angle,
     path_length,
     without_end_sites,
 )
-from .mirrored_limbs import MirroredLimbs, find_mirrored_limbs
+from .mirrored_limbs import MirroredLimbs, are_separate, find_mirrored_limbs
 from .names import sides_of_names
 
 TRUNK_FRACTION = 0.288
@@ -42,14 +44,10 @@ N_REFINED = 8
 MAX_OTHER_LIMB_FRACTION = 0.6
 """Length, relative to the legs, above which a third pair of limbs is no skirt or hair. Chosen
 by hand on the rigs of `tests/solvers/motion`."""
-MAX_HUMAN_ANGLE_DEG = 60.0
-"""Between trunk and legs in the rest pose of a person, who stands; animals stand at 90. Chosen
-by hand on the rigs of `tests/solvers/motion`."""
-ALONG_ONE_AXIS = -np.cos(np.radians(20.0))
-"""Cosine between trunk and legs, of 160 degrees, below which both point one way from
-the hips: a rest pose of bones along one axis. Chosen by hand on the rigs of
-`tests/solvers/motion`."""
-
+REMEMBERED_STRUCTURES = 8
+"""It bounds the memory. A press asks for those of its source and its target, several times."""
+LegMisfit = Callable[[tuple[int, ...], float], float]
+"""Returns how far a leg is from that of a person of a height."""
 FACE_OR_TIP = re.compile(r"end|top|tip|nub|jaw|eye|face|hair|hat|頭先", re.IGNORECASE)
 """Names of what lies beyond the head."""
 
@@ -85,17 +83,35 @@ def roles_by_structure(skeleton: Skeleton) -> Structure:
     Sides follow the names, where they have any; else the toes show where the rest pose faces,
     or else -Y. Fingers get no role.
     """
+    return _find_structure(skeleton.names, skeleton.parents, skeleton.offsets.tobytes())
+
+
+@lru_cache(maxsize=REMEMBERED_STRUCTURES)
+def _find_structure(
+    names: tuple[str, ...], parents: tuple[int, ...], offsets: bytes
+) -> Structure:
+    """Return the structure; the roles and their evidence ask for that of the same skeleton."""
+    skeleton = Skeleton(names, parents, np.frombuffer(offsets).reshape(-1, 3))
     pairs = find_mirrored_limbs(skeleton)
+
+    @cache
+    def leg_misfit(leg: tuple[int, ...], height: float) -> float:
+        """The same for all arms that are tried with a leg."""
+        return divide_leg(skeleton, leg, height)[1]
+
     rough = [
-        _match(skeleton, legs, arms, ROUGH_FACTORS)
+        _match(skeleton, legs, arms, ROUGH_FACTORS, leg_misfit)
         for legs, arms in product(pairs, (*pairs, None))
-        if arms is None or _are_separate(skeleton, legs, arms)
+        if arms is None or are_separate(skeleton, legs, arms)
     ]
     if not rough:
         return Structure({}, 0.0, 0.0)
     rough.sort(key=lambda match: match.misfit)
     match = min(
-        (_match(skeleton, each.legs, each.arms, HEIGHT_FACTORS) for each in rough[:N_REFINED]),
+        (
+            _match(skeleton, each.legs, each.arms, HEIGHT_FACTORS, leg_misfit)
+            for each in rough[:N_REFINED]
+        ),
         key=lambda match: match.misfit,
     )
     limbed = _LimbedSkeleton(skeleton, match)
@@ -109,28 +125,30 @@ def roles_by_structure(skeleton: Skeleton) -> Structure:
     )
 
 
-def _are_separate(skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs) -> bool:
-    """Whether two pairs of limbs share no joint and start from different joints."""
-    shared = legs.joints(skeleton) & arms.joints(skeleton)
-    return legs.branch != arms.branch and not shared.any()
-
-
 def _match(
-    skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs | None, factors: Array
+    skeleton: Skeleton,
+    legs: MirroredLimbs,
+    arms: MirroredLimbs | None,
+    factors: Array,
+    leg_misfit: LegMisfit,
 ) -> _BestLimbs:
     """Return these legs and arms with the height that fits them best."""
     guess = np.mean([path_length(skeleton, leg) for leg in legs.limbs]) / LEG_PATH_FRACTION
     heights = np.maximum(guess, 1e-9) * factors
-    misfits = [_misfit(skeleton, legs, arms, height) for height in heights]
+    misfits = [_misfit(skeleton, legs, arms, height, leg_misfit) for height in heights]
     best = int(np.argmin(misfits))
     return _BestLimbs(legs, arms, float(heights[best]), misfits[best])
 
 
 def _misfit(
-    skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs | None, height: float
+    skeleton: Skeleton,
+    legs: MirroredLimbs,
+    arms: MirroredLimbs | None,
+    height: float,
+    leg_misfit: LegMisfit,
 ) -> float:
     """Return how far limbs and trunk are from those of a person of this height."""
-    limbs = [divide_leg(skeleton, leg, height)[1] for leg in legs.limbs]
+    limbs = [leg_misfit(tuple(leg), height) for leg in legs.limbs]
     if arms is None:
         return float(np.mean([*limbs, 1.0, 1.0])) + 1.0
     limbs += [divide_arm(skeleton, arms, side, height)[1] for side in (0, 1)]
@@ -147,20 +165,9 @@ def _may_stand(skeleton: Skeleton, legs: MirroredLimbs, trunk: Array, height: fl
     positions = skeleton.rest_positions
     along = positions[legs.branch] - positions[[leg[-1] for leg in legs.limbs]].mean(axis=0)
     lengths = np.linalg.norm(trunk), np.linalg.norm(along)
-    if min(lengths) < MIN_SPREAD_FRACTION * height or _is_folded(skeleton, legs, height):
+    if min(lengths) < MIN_SPREAD_FRACTION * height or is_folded(skeleton, legs, height):
         return True
     return is_human_angle(float(trunk @ along / np.prod(lengths)))
-
-
-def is_human_angle(cosine: float) -> bool:
-    """Whether trunk and legs at this angle stand, or lie along one axis as if folded up."""
-    return bool(cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)) or cosine < ALONG_ONE_AXIS)
-
-
-def _is_folded(skeleton: Skeleton, limbs: MirroredLimbs, height: float) -> bool:
-    """Whether both limbs lie in the same place, as where all bones have one direction."""
-    spread = distances_from_midline(skeleton, limbs, 0).max()
-    return bool(spread < MIN_SPREAD_FRACTION * height)
 
 
 def _count_other_limbs(
@@ -218,7 +225,7 @@ class _LimbedSkeleton:
         """Return up and forward in the rest pose; +Z and None where it does not show them."""
         up = np.array([0.0, 0.0, 1.0])
         legs, height = self.match.legs, self.match.height
-        if _is_folded(self.skeleton, legs, height) or not all(self.legs):
+        if is_folded(self.skeleton, legs, height) or not all(self.legs):
             return up, None
         ankles = self.positions[[leg[-1] for leg in self.legs]].mean(axis=0)
         toes = self.positions[[leg[-1] for leg in legs.limbs]].mean(axis=0) - ankles

@@ -7,8 +7,7 @@ from itertools import pairwise, product
 import numpy as np
 
 from ..skeletons import Skeleton
-from .limb_division import MIN_SPREAD_FRACTION
-from .structure import is_human_angle
+from .limb_division import MIN_SPREAD_FRACTION, is_human_angle
 
 LIMBS = (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand"))
 ALL_PARTS = (("Toes", *LIMBS[0]), ("Shoulder", *LIMBS[1]))

@@ -1,29 +1,34 @@
 """Skeletons, motions and tracks, the data that all families exchange, and kinematics."""
 
-from .body_trackers import NUITRACK, ZED_BODIES
-from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
-from .file_conventions import AxisName, FileConventions, unit_name
-from .frame_rate import MAX_FRAME_RATE_HZ, check_frame_rate
-from .ground import GROUND_WINDOW_S, MAX_CLIMB_M, ground_level
-from .joint_limits import ROTATION_VECTOR, JointLimits
-from .joint_recording import INFERRED, TRACKED, JointRecording
-from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
-from .limb_ik import ReachSettings, reach
-from .mediapipe import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
-from .motion import Motion
-from .point_layouts import LAYOUTS
-from .resampling import resample
-from .shot_boundaries import (
-    MIN_SHOT_S,
-    describe_shots,
-    find_shot_boundaries,
-    is_short_shot,
-    shot_ranges,
-)
-from .skeleton import MIN_BONE_M, Skeleton
-from .still_joints import still_joints
-from .tracks import Tracks
-from .warping import Alignment, warp
+from typing import TYPE_CHECKING
+
+from ...import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .body_trackers import NUITRACK, ZED_BODIES
+    from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
+    from .file_conventions import AxisName, FileConventions, unit_name
+    from .frame_rate import MAX_FRAME_RATE_HZ, check_frame_rate
+    from .ground import GROUND_WINDOW_S, MAX_CLIMB_M, ground_level
+    from .joint_limits import ROTATION_VECTOR, JointLimits
+    from .joint_recording import INFERRED, TRACKED, JointRecording
+    from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
+    from .limb_ik import ReachSettings, reach
+    from .mediapipe import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
+    from .motion import Motion
+    from .point_layouts import LAYOUTS
+    from .resampling import resample
+    from .shot_boundaries import (
+        MIN_SHOT_S,
+        describe_shots,
+        find_shot_boundaries,
+        is_short_shot,
+        shot_ranges,
+    )
+    from .skeleton import MIN_BONE_M, Skeleton
+    from .still_joints import still_joints
+    from .tracks import Tracks
+    from .warping import Alignment, warp
 
 __all__ = [
     "BODY_POINTS",
@@ -70,3 +75,5 @@ __all__ = [
     "warp",
     "world_poses",
 ]
+
+import_on_demand(__name__)

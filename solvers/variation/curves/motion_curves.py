@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...motion import Motion, Skeleton
@@ -137,14 +138,22 @@ def unwrap_rotation_vectors(vectors: Array) -> Array:
     flip a joint by more than `MAX_FRAME_ROTATION_RAD`; neither vector is near then. Repeated
     flips would wind the joint up without bound, so it takes the shorter vector there.
     """
-    result = vectors.copy()
-    for frame in range(1, len(result)):
-        length = np.linalg.norm(result[frame], axis=-1, keepdims=True)
-        other = result[frame] * (1.0 - 2.0 * np.pi / np.where(length > 0.0, length, np.inf))
-        distance_same = np.linalg.norm(
-            result[frame] - result[frame - 1], axis=-1, keepdims=True
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    others = vectors * (1.0 - 2.0 * np.pi / np.where(length > 0.0, length, np.inf))
+    after_same, after_other = (
+        _other_is_nearer(each, vectors, others) for each in (vectors, others)
+    )
+    chosen = np.zeros(vectors.shape[:-1], dtype=bool)
+    for frame in range(1, len(vectors)):
+        chosen[frame] = np.where(
+            chosen[frame - 1], after_other[frame - 1], after_same[frame - 1]
         )
-        distance_other = np.linalg.norm(other - result[frame - 1], axis=-1, keepdims=True)
-        is_nearer = (distance_other < distance_same) & (distance_other < MAX_FRAME_ROTATION_RAD)
-        result[frame] = np.where(is_nearer, other, result[frame])
-    return result
+    return np.where(chosen[..., None], others, vectors)
+
+
+def _other_is_nearer(before: Array, vectors: Array, others: Array) -> NDArray[np.bool_]:
+    """Return whether the other vector of each frame continues a frame before, by joint."""
+    to_same, to_other = (
+        np.linalg.norm(each[1:] - before[:-1], axis=-1) for each in (vectors, others)
+    )
+    return np.asarray((to_other < to_same) & (to_other < MAX_FRAME_ROTATION_RAD))

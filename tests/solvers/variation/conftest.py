@@ -1,5 +1,8 @@
 """Fixtures: walks that differ, and a model of them."""
 
+from collections.abc import Callable
+from functools import cache
+
 import pytest
 
 from solvers.motion import Motion
@@ -24,12 +27,19 @@ def walks() -> list[Motion]:
 
 
 @pytest.fixture(scope="session")
-def model(walks) -> VariationModel:
-    return learn_variation_model(walks)
+def learned_with(walks) -> Callable[[VaryMethod], VariationModel]:
+    """Return the model of the walks by a method, learned once for all tests."""
+    return cache(
+        lambda method: learn_variation_model(walks, settings=VarySettings(method=method))
+    )
+
+
+@pytest.fixture(scope="session")
+def model(learned_with) -> VariationModel:
+    return learned_with(VaryMethod.MIXTURE)
 
 
 @pytest.fixture(scope="session", params=VaryMethod, ids=lambda method: method.value)
-def learned(request, walks) -> tuple[VariationModel, VarySettings]:
+def learned(request, learned_with) -> tuple[VariationModel, VarySettings]:
     """Return a model for each method, and the settings that go with it."""
-    settings = VarySettings(method=request.param)
-    return learn_variation_model(walks, settings=settings), settings
+    return learned_with(request.param), VarySettings(method=request.param)

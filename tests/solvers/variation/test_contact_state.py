@@ -14,7 +14,6 @@ from solvers.variation import (
     VarySettings,
     borrow_variation,
     draw_variants,
-    learn_variation_model,
 )
 from solvers.variation.contact_state import (
     MAX_CONTACT_TIME_S,
@@ -59,9 +58,8 @@ def test_touch_down_is_halfway_when_examples_mix_equally(model):
 
 
 @pytest.mark.parametrize("method", [VaryMethod.MIXTURE, VaryMethod.COREGIONALISED])
-def test_contacts_equal_those_of_the_example_at_zero_amount(method, walks):
-    settings = VarySettings(method=method, amount=0.0)
-    model = learn_variation_model(walks, settings=settings)
+def test_contacts_equal_those_of_the_example_at_zero_amount(method, walks, learned_with):
+    settings, model = VarySettings(method=method, amount=0.0), learned_with(method)
 
     copy = draw_variants(model, 1, settings=settings)[0]
 
@@ -85,9 +83,12 @@ def test_variants_keep_the_mean_contact_duration(walks, model):
         assert variant.contacts.mean() == pytest.approx(contact_fraction, abs=0.1)
 
 
-def test_contacts_are_unknown_with_the_published_method(walks):
-    settings = VarySettings(method=VaryMethod.PUBLISHED)
-    model = learn_variation_model(walks, settings=settings)
+def test_contacts_are_unknown_with_the_published_method(learned_with):
+    settings, model = (
+        VarySettings(method=VaryMethod.PUBLISHED),
+        learned_with(VaryMethod.PUBLISHED),
+    )
+
     assert draw_variants(model, 1, settings=settings)[0].contacts is None
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.motion import forward_kinematics, resample
+from solvers.motion import Motion, forward_kinematics, resample
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.variation import (
     VaryMethod,
@@ -17,6 +17,7 @@ from solvers.variation import (
 from solvers.variation.align_examples import positions_in_body_frame
 from solvers.variation.curves.motion_curves import headings_from_motion
 
+LIMBS = ("Leg", "Foot", "Toe", "Arm")
 EVERY = [VaryMethod.MIXTURE, VaryMethod.COREGIONALISED]
 
 
@@ -30,6 +31,13 @@ def with_rotation(motion, joint, axis, angles):
     index = motion.skeleton.names.index(joint)
     rotations[:, index] = multiply(about(axis, angles), rotations[:, index])
     return motion.with_poses(rotations)
+
+
+def with_limbs_only(motion):
+    names = motion.skeleton.names
+    kept = [0, *(n for n, name in enumerate(names) if any(part in name for part in LIMBS))]
+    skeleton = motion.skeleton.select(kept)
+    return Motion(skeleton, motion.rotations[:, kept], motion.root_positions, motion.frame_rate)
 
 
 def passing(motion, exponent):
@@ -107,31 +115,29 @@ def test_variants_keep_several_rotations_in_place(method, walks):
         assert np.ptp(headings_from_motion(variant.motion)) == pytest.approx(expected, rel=0.1)
 
 
-def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
+def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks, model):
     """A thigh rotated by 180 degrees for five frames: other frames are as without it."""
     angles = np.zeros(walks[1].n_frames)
     angles[25:30], angles[30:] = np.pi, 2.0 * np.pi
     broken = with_rotation(walks[1], "LeftUpLeg", (0.0, 0.0, 1.0), angles)
-    plain, odd = (
-        learn_variation_model([walks[0], one, *walks[2:]]) for one in (walks[1], broken)
-    )
+    odd = learn_variation_model([walks[0], broken, *walks[2:]])
 
-    differences = np.abs(odd.joints[1] - plain.joints[1]).max(axis=(1, 2))
+    differences = np.abs(odd.joints[1] - model.joints[1]).max(axis=(1, 2))
 
     assert differences[:15].max() < 0.6
     assert differences[45:].max() < 0.6
     assert odd.warning.startswith(
         "LeftUpLeg of example 2 rotates by 180 degrees within a frame at 0.42 s"
     )
-    assert not plain.warning
+    assert not model.warning
 
 
-def test_model_is_the_same_at_twice_the_frame_rate(walks):
+def test_model_is_the_same_at_twice_the_frame_rate(walks, model):
     """Rate and length differ: variants have the same speed and distance."""
     resampled = [walks[0], *(resample(walk, 150.0) for walk in walks[1:])]
     reference, mixed = (
-        [one.motion for one in draw_variants(learn_variation_model(some), 8)]
-        for some in (walks, resampled)
+        [one.motion for one in draw_variants(some, 8)]
+        for some in (model, learn_variation_model(resampled))
     )
 
     assert {one.frame_rate for one in mixed} == {60.0}
@@ -146,8 +152,8 @@ def test_model_is_the_same_at_twice_the_frame_rate(walks):
 
 @pytest.mark.parametrize("method", VaryMethod)
 def test_learning_accepts_twenty_thousand_frames(method, walks):
-    """A repeated walk: many frames and their kernels are equal."""
-    walk = walks[0]
+    """A repeated walk of hips and limbs: many frames and their kernels are equal."""
+    walk = with_limbs_only(walks[0])
     rotations = np.tile(walk.rotations, (400, 1, 1))[:20_000]
     positions = np.tile(walk.root_positions, (400, 1))[:20_000]
     long = replace(walk, rotations=rotations, root_positions=positions, frame_rate=400.0)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.variation import learn_variation_model
 from solvers.variation.curves.partitions import ROOT_ROW
 from solvers.variation.mixing_kernel import MixingKernel
 from solvers.variation.mixtures import draw_mixing_weights, mix_deviations
@@ -55,8 +54,7 @@ def test_weights_of_arms_differ_more_than_those_of_legs(model, rng):
     assert differences[0] > 1.3 * differences[1]
 
 
-def test_weights_of_a_loop_are_periodic(walks, rng):
-    model = learn_variation_model(walks)
+def test_weights_of_a_loop_are_periodic(model, rng):
     assert model.loops
 
     weights = draw_mixing_weights(model, 50, rng)

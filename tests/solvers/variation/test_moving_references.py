@@ -66,8 +66,8 @@ def test_moving_reference_of_a_loop_is_periodic():
     assert_allclose(ends, 1.0, atol=1e-6)
 
 
-def test_narrow_joints_need_no_moving_reference(walks):
-    assert learn_variation_model(walks).moving_references is None
+def test_narrow_joints_need_no_moving_reference(model):
+    assert model.moving_references is None
 
 
 def test_windmill_survives_copying_and_saving(walks, tmp_path):

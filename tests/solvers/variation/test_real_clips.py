@@ -26,7 +26,7 @@ def clips(request, recordings):
 
 
 def test_variants_are_near_the_examples_but_not_copies(clips):
-    variants = synthesize(learn_variation_model(clips), 20)
+    variants = synthesize(learn_variation_model(clips), 10)
 
     assert 0.65 < measure_variation(variants) / measure_variation(clips) < 1.4
     # Body positions jerk more than joint angles: .9 to 1.1 in docs/benchmarks/variation.md.

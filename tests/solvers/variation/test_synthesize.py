@@ -15,7 +15,6 @@ from solvers.variation import (
     Partition,
     VaryMethod,
     VarySettings,
-    learn_variation_model,
     measure_variation,
     synthesize,
 )
@@ -66,8 +65,8 @@ def test_variant_is_the_example_at_zero_amount(learned, walks):
 
 
 @pytest.mark.parametrize("method", [VaryMethod.MIXTURE, VaryMethod.COREGIONALISED])
-def test_variation_grows_with_the_amount(method, walks):
-    model = learn_variation_model(walks, settings=VarySettings(method=method))
+def test_variation_grows_with_the_amount(method, learned_with):
+    model = learned_with(method)
     found = [
         measure_variation(drawn(model, 8, settings=VarySettings(method=method, amount=amount)))
         for amount in (0.25, 0.5, 1.0, 2.0)

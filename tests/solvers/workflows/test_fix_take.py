@@ -49,8 +49,13 @@ def camera_walk():
     return tracked_walk(vocabulary, true_positions(samples, posture_joints))
 
 
-def test_skeleton_is_cleaned_and_its_feet_are_planted(fixed, noisy):
-    planted = plant_feet(denoise(noisy).recording)
+@pytest.fixture(scope="module")
+def clean(noisy):
+    return denoise(noisy).recording
+
+
+def test_skeleton_is_cleaned_and_its_feet_are_planted(fixed, clean):
+    planted = plant_feet(clean)
 
     assert fixed.origin is TakeOrigin.SKELETON
     assert_allclose(fixed.recording.rotations, planted.motion.rotations, atol=1e-9)
@@ -102,11 +107,11 @@ def test_steps_report_what_was_done(fixed):
     assert "filled 3 gaps" in text and "Plant Feet" in text
 
 
-def test_feet_stay_as_they_are_on_request(noisy):
+def test_feet_stay_as_they_are_on_request(noisy, clean):
     result = fix_take(noisy, settings=FixSettings(plant_feet=False))
 
     assert result.chain.planted is None
-    assert_allclose(result.recording.rotations, denoise(noisy).recording.rotations, atol=1e-9)
+    assert_allclose(result.recording.rotations, clean.rotations, atol=1e-9)
 
 
 def test_contacts_of_the_animator_are_used(noisy):
@@ -210,13 +215,12 @@ def test_take_without_observations_is_refused(walk):
         fix_take(nothing)
 
 
-def test_spikes_that_are_left_are_reported(noisy):
-    result = fix_take(noisy)
-    n_left = result.after.n_spikes
+def test_spikes_that_are_left_are_reported(fixed):
+    n_left = fixed.after.n_spikes
 
     assert n_left == 1  # a thigh in the last two frames
-    assert result.steps[-1].startswith("1 spike is left")
-    assert result.figures()["steps"] == list(result.steps)
+    assert fixed.steps[-1].startswith("1 spike is left")
+    assert fixed.figures()["steps"] == list(fixed.steps)
 
 
 def test_number_of_issues_shows_that_check_lists_no_more():

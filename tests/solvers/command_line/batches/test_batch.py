@@ -112,7 +112,7 @@ def test_parallel_jobs_name_the_failed_file_and_do_the_others(
 DEADLY = """
 import os, sys
 from solvers.command_line.run import run
-from solvers.command_line.arguments import OutputKind, Outcome, Verb
+from solvers.command_line.arguments import OutputKind, Outcome, Verb, VerbWork
 
 def no_options(parser):
     pass
@@ -122,8 +122,11 @@ def perform(task, prepared, progress):
         os._exit(9)
     return Outcome("Done.")
 
+def work():
+    return VerbWork(no_options, perform)
+
 if __name__ == "__main__":
-    verb = Verb("Die of some files.", no_options, perform, OutputKind.WORDS)
+    verb = Verb("Die of some files.", work, OutputKind.WORDS)
     sys.exit(run({"die": verb}, sys.argv[1:], "deadly"))
 """
 

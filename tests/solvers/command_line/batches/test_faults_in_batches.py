@@ -4,7 +4,14 @@ import json
 
 import pytest
 
-from solvers.command_line.arguments import Outcome, OutputKind, Verb, add_reading_options, write
+from solvers.command_line.arguments import (
+    Outcome,
+    OutputKind,
+    Verb,
+    VerbWork,
+    add_reading_options,
+    write,
+)
 from solvers.command_line.run import run
 from solvers.progress import unwatched
 from solvers.recordings import read_bvh
@@ -17,7 +24,7 @@ def perform(capsys):
     """Run a verb that does this to each file; returns exit status, stdout and stderr."""
 
     def call(work, *words, makes=OutputKind.FILES):
-        verb = Verb("Test.", add_reading_options, work, makes)
+        verb = Verb("Test.", lambda: VerbWork(add_reading_options, work), makes)
         status = run({"test": verb}, ["test", *map(str, words)], "solvers")
         return status, *capsys.readouterr()
 

@@ -200,7 +200,7 @@ def use_workers(monkeypatch):
 
     def use(workers):
         monkeypatch.setattr(
-            "solvers.command_line.run.workers_for", lambda tasks: nullcontext(workers)
+            "solvers.command_line.run_verb.workers_for", lambda tasks: nullcontext(workers)
         )
 
     return use

@@ -128,7 +128,7 @@ def test_options_of_one_verb_are_words_of_its_command(compiled):
         "denoise", "--manifest", "m", "--output-folder", "o", "--shard", "1/1", "--report",
     ]  # fmt: skip
     parser = argparse.ArgumentParser()
-    VERBS["denoise"].add_options(parser)
+    VERBS["denoise"].work().add_options(parser)
     parsed = parser.parse_args(words[9:])
     assert parsed.train == [Path("a.bvh"), Path("b c.bvh")]
     assert (parsed.strength, parsed.feet) == (0.5, False)
@@ -138,7 +138,7 @@ def test_options_of_one_verb_are_words_of_its_command(compiled):
 
 def test_words_of_a_submitted_job_are_those_of_the_script(compiled):
     """`words_of` serves verbs without a job type of their own, and the scripts the others."""
-    add_options = VERBS["denoise"].add_options
+    add_options = VERBS["denoise"].work().add_options
     options = options_of(add_options)
     words = ["--train", "/a.bvh", "/b #'c.bvh", "--body=two words", "--no-feet", "--unswap"]
 
