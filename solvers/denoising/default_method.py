@@ -14,7 +14,12 @@ from .averaging import (
 )
 from .channels import Channels, Estimate
 from .limb_gaps import load_body_relation, predict_limbs
-from .motion_model import MixtureSmoother, estimate_channel_noise, load_motion_mixture
+from .motion_model import (
+    MixtureSmoother,
+    channel_deviation,
+    estimate_joint_noise,
+    load_motion_mixture,
+)
 from .outliers import confirm_outliers, find_bursts
 from .window_estimates import estimate_in_groups
 from .window_priors import FilterBases
@@ -58,11 +63,13 @@ def apply_default_method(
     is_good = known & ~outliers
     estimate = replace(estimate, inliers=np.where(known, ~outliers, estimate.inliers))
     complete = np.where(is_good, noisy, estimate.values)
-    noise = estimate_channel_noise(np.where(is_good, noisy, np.nan), MIN_NOISE)
+    covariances = estimate_joint_noise(np.where(is_good, noisy, np.nan), MIN_NOISE)
+    noise = channel_deviation(covariances)
     spline = smooth_by_spline(complete)
     factors = noise_factors(noise, complete, [estimate, spline], is_good)
-    noise = np.maximum(noise * factors, MIN_NOISE)
-    by_mixture = MixtureSmoother(noise, frame_rate, mixture)
+    covariances *= np.square(factors[::3])[:, None, None]
+    noise = channel_deviation(covariances)
+    by_mixture = MixtureSmoother(covariances, frame_rate, mixture)
     averaged, weights = average_estimates(
         noisy,
         estimate,

@@ -3,6 +3,7 @@
 from .gaussian_smoothing import CausalSmoother, smooth_gaussian, smooth_to_the_ends
 from .linear_gaps import fill_gaps, fill_rotation_gaps
 from .noise import (
+    DIFFERENCE_EFFICIENCY,
     DIFFERENCE_GAIN,
     DIFFERENCE_ORDER,
     MAD_TO_SIGMA,
@@ -17,6 +18,7 @@ from .spikes import find_runs, fit_lowess
 from .two_states import TwoStateFilter, two_state_probabilities
 
 __all__ = [
+    "DIFFERENCE_EFFICIENCY",
     "DIFFERENCE_GAIN",
     "DIFFERENCE_ORDER",
     "MAD_TO_SIGMA",

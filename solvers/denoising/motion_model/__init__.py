@@ -1,6 +1,6 @@
 """Model of joint movement within half a second: a mixture learned from many recordings."""
 
-from .channel_noise import MAX_CONSTANT_RANGE, estimate_channel_noise
+from .joint_noise import MAX_CONSTANT_RANGE, channel_deviation, estimate_joint_noise
 from .learn_mixture import learn_motion_mixture
 from .motion_mixture import N_CHANNELS, SHIPPED, MotionMixture, load_motion_mixture
 from .principal_axes import principal_axes
@@ -13,7 +13,8 @@ __all__ = [
     "SHIPPED",
     "MixtureSmoother",
     "MotionMixture",
-    "estimate_channel_noise",
+    "channel_deviation",
+    "estimate_joint_noise",
     "learn_motion_mixture",
     "load_motion_mixture",
     "principal_axes",

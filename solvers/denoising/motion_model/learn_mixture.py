@@ -56,7 +56,7 @@ def extract_windows(motions: Sequence[Motion]) -> Array:
         values = encode(motion, None).values
         values = values[:, values.std(axis=0).max(axis=-1) > MIN_MOVEMENT]
         centered = values - values.mean(axis=0)
-        axes = principal_axes(centered, np.ones(centered.shape[1:]))
+        axes = principal_axes(centered, np.tile(np.eye(N_CHANNELS), (centered.shape[1], 1, 1)))
         along_axes = np.einsum("tjc,jac->tja", centered, axes.from_channels)
         starts = np.arange(0, len(values) - WINDOW_FRAMES + 1, HOP_FRAMES)
         windows = np.stack([along_axes[start : start + WINDOW_FRAMES] for start in starts])

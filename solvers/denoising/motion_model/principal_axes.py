@@ -16,7 +16,7 @@ MIN_VARIANCE = np.finfo(float).tiny
 class PrincipalAxes(NamedTuple):
     """The principal axes of each joint's movement, that of the largest movement first.
 
-    They are orthogonal where the noise of a joint's channels is equal. Otherwise they are
+    They are orthogonal where the noise of a joint is equal along all axes. Otherwise they are
     oblique, so that the noise along one of them is independent of that along the others.
     """
 
@@ -37,19 +37,21 @@ def principal_axes(samples: Array, noise: Array) -> PrincipalAxes:
     Parameters
     ----------
     samples : shape (n_frames, n_joints, 3), without NaN
-    noise : shape (n_joints, 3)
-        Standard deviation of each channel, above zero.
+    noise : shape (n_joints, 3, 3)
+        Covariance of a joint's channels, positive definite.
     """
-    whitened = (samples - samples.mean(axis=0)) / noise
+    factor = np.linalg.cholesky(noise)
+    whiten = np.linalg.inv(factor)
+    whitened = np.einsum("tjc,jac->tja", samples - samples.mean(axis=0), whiten)
     products = np.einsum("tjc,tjd->jcd", whitened, whitened)
     scale = np.maximum(np.einsum("jcc->j", products), MIN_VARIANCE)
     movement, axes = np.linalg.eigh(products + scale[:, None, None] * TIE_BREAK)
-    lengths = np.linalg.norm(noise[..., None] * axes, axis=1)
+    lengths = np.linalg.norm(factor @ axes, axis=1)
     order = np.argsort(-movement * lengths**2, axis=1, kind="stable")
     axes = np.take_along_axis(axes, order[:, None], axis=2)
     lengths = np.take_along_axis(lengths, order, axis=1)
     return PrincipalAxes(
-        noise[..., None] * axes / lengths[:, None],
-        (axes / noise[..., None] * lengths[:, None]).transpose(0, 2, 1),
+        factor @ axes / lengths[:, None],
+        axes.transpose(0, 2, 1) @ whiten * lengths[..., None],
         np.square(lengths),
     )

@@ -10,6 +10,7 @@ import numpy as np
 from ...arrays import Array
 from ..channels import Smoothed
 from ..window_priors import Windows
+from .joint_noise import channel_deviation
 from .motion_mixture import N_CHANNELS, MotionMixture
 from .principal_axes import principal_axes
 
@@ -57,8 +58,8 @@ class MixtureSmoother:
 
     Attributes
     ----------
-    noise : shape (n_channels,)
-        Standard deviation, degrees or centimeters; see `estimate_channel_noise`.
+    noise : shape (n_joints, 3, 3)
+        Covariance, square degrees or centimeters; see `estimate_joint_noise`.
     frame_rate : float, Hz
     mixture : MotionMixture
 
@@ -84,7 +85,7 @@ class MixtureSmoother:
             return None
         average, shape = samples.mean(axis=0), (len(samples), -1, N_CHANNELS)
         centered = (samples - average).reshape(shape)
-        axes = principal_axes(centered, self.noise.reshape(-1, N_CHANNELS))
+        axes = principal_axes(centered, self.noise)
         along_axes = np.einsum("tjc,jac->tja", centered, axes.from_channels)
         filters = [self._build_filters(variance / self._density) for variance in axes.variance]
         smoothed, leverage = (
@@ -93,10 +94,10 @@ class MixtureSmoother:
         )
         values = np.einsum("tja,jca->tjc", smoothed, axes.to_channels).reshape(samples.shape)
         values += average
-        products = axes.to_channels * axes.from_channels.transpose(0, 2, 1)
-        leverage = np.einsum("tja,jca->tjc", leverage, products).reshape(samples.shape)
-        leverage = np.minimum(leverage, MAX_LEVERAGE)
-        return Smoothed(values, (samples - values) / (1.0 - leverage), leverage * self.noise**2)
+        freedom = np.einsum("tja,ja,jca->tjc", leverage, axes.variance, axes.to_channels**2)
+        freedom = freedom.reshape(samples.shape)
+        leverage = np.minimum(freedom / channel_deviation(self.noise) ** 2, MAX_LEVERAGE)
+        return Smoothed(values, (samples - values) / (1.0 - leverage), freedom)
 
     def _average_windows(
         self, samples: Array, filters: Sequence[_JointFilters]

@@ -14,7 +14,13 @@ from scipy.ndimage import median_filter
 
 from ...arrays import Array
 from ...signals import fill_channel_gaps, find_runs
-from ..motion_model import N_CHANNELS, MotionMixture, estimate_channel_noise, principal_axes
+from ..motion_model import (
+    N_CHANNELS,
+    MotionMixture,
+    channel_deviation,
+    estimate_joint_noise,
+    principal_axes,
+)
 from ..window_priors import Windows
 from .predictive_density import PredictiveDensity, RunDensity, with_rare_movement
 from .single_outliers import OUTLIER_DENSITY
@@ -180,7 +186,7 @@ def _select(
     """Return the samples of the candidates that are likelier to be errors than movement."""
     frame_ratio, n_frames = frame_rate / mixture.frame_rate, len(noisy)
     length = round(mixture.window * frame_ratio)
-    noise = estimate_channel_noise(complete, MIN_NOISE)
+    noise = channel_deviation(estimate_joint_noise(complete, MIN_NOISE))
     if n_frames < length:  # the rest of the window is not observed
         added = ((0, length - n_frames), (0, 0))
         noisy = np.pad(noisy, added, constant_values=np.nan)
@@ -228,7 +234,7 @@ def _robust_axes(samples: Array) -> Array:
     centered = samples - np.median(samples, axis=0)
     lengths = np.linalg.norm(centered, axis=1, keepdims=True)
     directions = centered / np.maximum(lengths, MIN_LENGTH)
-    axes = principal_axes(directions[:, None], np.ones((1, N_CHANNELS)))
+    axes = principal_axes(directions[:, None], np.eye(N_CHANNELS)[None])
     return np.asarray(axes.to_channels[0])
 
 

@@ -144,7 +144,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "denoising/outliers/single_outliers.MIN_OUTLIER_RATE",
         "denoising/window_estimates/smoothness.MIN_POWER",
         "denoising/motion_model/*.MAX_LEVERAGE",
-        "denoising/motion_model/channel_noise.MAX_CONSTANT_RANGE",
+        "denoising/motion_model/joint_noise.MAX_CONSTANT_RANGE",
         "denoising/averaging/remaining_noise.MIN_NOISE",
         "denoising/averaging/average_estimates.RIDGE",
         "denoising/window_priors/filter_bases.MIN_ANY_DEVIATION",

@@ -41,6 +41,11 @@ def mixture(rng):
     )
 
 
+def equal_noise(n_joints: int = 1, deviation: float = 1.0) -> np.ndarray:
+    """Covariances of noise that is equal along all axes."""
+    return np.tile(deviation**2 * np.eye(3), (n_joints, 1, 1))
+
+
 def basis() -> np.ndarray:
     return idct(np.eye(WINDOW), axis=0, norm="ortho")
 
@@ -97,39 +102,40 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
     assert_allclose(density.max_gain, np.log(shifted / continued), rtol=1e-6)
 
 
+@pytest.mark.parametrize("turn", [np.eye(3), AXES])
 @pytest.mark.parametrize("noise", [[0.7, 0.7, 0.7], [1.5, 0.7, 0.1]])
-def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng, noise):
+def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng, noise, turn):
     samples = 5.0 * rng.normal(size=(WINDOW, 3))
     samples -= samples.mean(axis=0)
-    variance = np.diag(np.square(noise))
+    variance = turn @ np.diag(np.square(noise)) @ turn.T
     movement, axes = eigh(samples.T @ samples, variance)
     axes = variance @ axes
     lengths = np.linalg.norm(axes, axis=0)
     axes = (axes / lengths)[:, np.argsort(-movement * lengths**2)]
 
-    smoothed = MixtureSmoother(np.array(noise), 30.0, mixture)(samples)
+    smoothed = MixtureSmoother(variance[None], 30.0, mixture)(samples)
 
     assert smoothed is not None
     flat, of_noise = samples.T.ravel(), np.kron(variance, np.eye(WINDOW))
-    densities, means, leverages = [], [], []
+    densities, means, variances = [], [], []
     for component, weight in enumerate(mixture.weights):
         covariance = frame_covariance(mixture, component, 0.0, axes) + of_noise
         densities.append(np.log(weight) + multivariate_normal.logpdf(flat, cov=covariance))
         means.append(flat - of_noise @ np.linalg.solve(covariance, flat))
-        leverages.append(1.0 - np.diag(of_noise @ np.linalg.inv(covariance)))
+        variances.append(np.diag(of_noise - of_noise @ np.linalg.solve(covariance, of_noise)))
     shares = softmax(densities)
     expected = np.average(means, axis=0, weights=shares).reshape(3, WINDOW).T
     assert_allclose(smoothed.values, expected, atol=1e-6)
-    leverage = np.average(leverages, axis=0, weights=shares).reshape(3, WINDOW).T
-    assert_allclose(smoothed.variance, np.square(noise) * leverage, rtol=1e-6)
+    variance = np.average(variances, axis=0, weights=shares).reshape(3, WINDOW).T
+    assert_allclose(smoothed.variance, variance, rtol=1e-6)
 
 
 @pytest.mark.parametrize("axes", [AXES, np.eye(3)[[2, 0, 1]]])
 def test_axes_of_a_rigs_joints_change_nothing(mixture, rng, axes):
     """Neither does it matter what the other joints do."""
     samples, other = np.cumsum(rng.normal(size=(2, 4 * WINDOW, 3)), axis=1)
-    smooth = MixtureSmoother(np.full(3, 0.7), 30.0, mixture)
-    smooth_two = MixtureSmoother(np.full(6, 0.7), 30.0, mixture)
+    smooth = MixtureSmoother(equal_noise(1, 0.7), 30.0, mixture)
+    smooth_two = MixtureSmoother(equal_noise(2, 0.7), 30.0, mixture)
 
     smoothed, both = smooth(samples), smooth_two(np.hstack([other, samples @ axes]))
 
@@ -144,7 +150,7 @@ def test_rounding_does_not_choose_the_axes_of_a_circle(rng):
     """A joint that moves equally along two axes, and not along the third."""
     phases = np.arange(60) * (2.0 * np.pi / 30.0)
     circle = 20.0 * np.stack([np.cos(phases), np.sin(phases), 0.0 * phases], axis=1)
-    smooth = MixtureSmoother(np.ones(3), 30.0, load_motion_mixture())
+    smooth = MixtureSmoother(equal_noise(), 30.0, load_motion_mixture())
 
     smoothed, again = smooth(circle), smooth(circle + 1e-12 * rng.normal(size=circle.shape))
 
@@ -174,7 +180,7 @@ def test_same_movement_at_any_rate(rate):
     wave = 20.0 * np.sin(2.0 * np.pi * time[:, None] * np.array([0.5, 0.7, 0.3]))
     noisy = wave + rng.normal(size=wave.shape)
 
-    smoothed = MixtureSmoother(np.ones(3), rate, load_motion_mixture())(noisy)
+    smoothed = MixtureSmoother(equal_noise(), rate, load_motion_mixture())(noisy)
 
     assert smoothed is not None
     error = np.sqrt(((smoothed.values - wave) ** 2).mean())
@@ -184,7 +190,7 @@ def test_same_movement_at_any_rate(rate):
 
 
 def test_takes_shorter_than_a_window_are_left_to_others(mixture):
-    assert MixtureSmoother(np.ones(3), 30.0, mixture)(np.zeros((WINDOW - 1, 3))) is None
+    assert MixtureSmoother(equal_noise(), 30.0, mixture)(np.zeros((WINDOW - 1, 3))) is None
 
 
 def test_learned_mixture_comes_back_from_its_file(tmp_path, swinging_leg):

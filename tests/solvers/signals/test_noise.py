@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solvers.denoising import denoise
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
-from solvers.signals.noise import estimate_noise, shrink_noise
+from solvers.signals.noise import DIFFERENCE_EFFICIENCY, estimate_noise, shrink_noise
 
 
 def test_rough_noise_estimates_the_noise_without_the_motion(rng):
@@ -16,6 +16,13 @@ def test_rough_noise_estimates_the_noise_without_the_motion(rng):
     found = estimate_noise(smooth + rng.normal(scale=[0.5, 3.0], size=(2000, 2)))
 
     assert_allclose(found, [0.5, 3.0], rtol=0.1)
+
+
+def test_efficiency_of_the_estimate_is_that_of_white_noise(rng):
+    """The logarithm of a standard deviation from n samples has the variance 1 / (2 n)."""
+    logs = np.log(estimate_noise(rng.normal(size=(200, 2000))))
+
+    assert_allclose(0.5 / 200 / logs.var(), DIFFERENCE_EFFICIENCY, rtol=0.12)
 
 
 def test_random_differences_of_channels_are_shrunk(rng):

@@ -1,0 +1,65 @@
+"""The noise of each joint of a take."""
+
+import numpy as np
+
+from ...arrays import Array
+from ...signals import DIFFERENCE_EFFICIENCY, DIFFERENCE_ORDER, estimate_noise, shrink_noise
+
+MAX_CONSTANT_RANGE = 1e-7
+"""Degrees or centimeters over which a channel that stands still varies. Guards against rounding
+errors."""
+MIN_FREE_NOISE = 0.01
+"""Fraction of a joint's largest noise below which the joint cannot turn about an axis. By
+definition: a hundredth of the noise changes no estimate."""
+MAX_EQUAL_RATIO = 3.0
+"""Noise along an axis, relative to the mean of the joint, above which it is the axis's own.
+Chosen by hand: with fast movement the ratio is up to 2."""
+
+
+def estimate_joint_noise(samples: Array, minimum: float) -> Array:
+    """Return the covariance of the noise of each joint's channels, shape (n_joints, 3, 3).
+
+    The noise of a joint is equal along its axes, unless it is much larger along one of them.
+    Axes about which the joint cannot turn, as those of a knee that only bends, do not count.
+    Joints that stand still do not count for the others; they get the others' noise.
+
+    Parameters
+    ----------
+    samples : shape (n_frames, 3 n_joints)
+        NaN where missing.
+    minimum : float
+        Smallest noise, degrees or centimeters.
+    """
+    joints = samples.reshape(len(samples), -1, 3)
+    axes = _noise_axes(joints)
+    along = np.einsum("tjc,jca->tja", joints, axes)
+    known = np.isfinite(along)
+    highest = np.where(known, along, -np.inf).max(axis=0)
+    moves = highest - np.where(known, along, np.inf).min(axis=0) > MAX_CONSTANT_RANGE
+    noise = estimate_noise(along.reshape(samples.shape)).reshape(-1, 3)
+    is_free = moves & (noise > MIN_FREE_NOISE * noise.max(axis=1, keepdims=True))
+    noise = np.maximum(noise, minimum)
+    n_free = is_free.sum(axis=1)
+    mean = np.exp(np.where(is_free, np.log(noise), 0.0).sum(axis=1) / np.maximum(n_free, 1))
+    differences = np.diff(along, DIFFERENCE_ORDER, axis=0)
+    n_samples = n_free * np.isfinite(differences).all(axis=2).sum(axis=0)
+    mean = np.maximum(shrink_noise(mean, n_samples, DIFFERENCE_EFFICIENCY), minimum)[:, None]
+    noise = np.where(noise > MAX_EQUAL_RATIO * mean, noise, mean)
+    return np.asarray(np.einsum("jca,ja,jda->jcd", axes, np.square(noise), axes))
+
+
+def channel_deviation(noise: Array) -> Array:
+    """Return the standard deviation of each channel, shape (3 n_joints,), from covariances."""
+    return np.asarray(np.sqrt(np.einsum("jcc->jc", noise)).ravel())
+
+
+def _noise_axes(joints: Array) -> Array:
+    """Return the principal axes of the directions of third differences, shape (n_joints, 3, 3).
+
+    Columns are unit vectors.
+    """
+    differences = np.diff(joints, DIFFERENCE_ORDER, axis=0)
+    lengths = np.linalg.norm(differences, axis=2, keepdims=True)
+    known = lengths > MAX_CONSTANT_RANGE
+    unit = np.where(known, differences / np.where(known, lengths, 1.0), 0.0)
+    return np.asarray(np.linalg.eigh(np.einsum("tjc,tjd->jcd", unit, unit))[1])

@@ -1,0 +1,90 @@
+"""The noise of a joint: one figure for all axes it turns about, found while the joint moves."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
+
+from solvers.denoising.motion_model import channel_deviation, estimate_joint_noise
+
+N_FRAMES, N_JOINTS, MINIMUM = 400, 12, 1e-3
+TURN = Rotation.from_rotvec([0.5, -0.8, 0.3]).as_matrix()
+
+
+@pytest.fixture
+def movement():
+    """Slow swings of joints with three channels, shape (N_FRAMES, N_JOINTS, 3)."""
+    time = np.arange(N_FRAMES)[:, None, None] / 30.0
+    rates = np.linspace(0.2, 0.8, 3 * N_JOINTS).reshape(N_JOINTS, 3)
+    return 20.0 * np.sin(2.0 * np.pi * rates * time)
+
+
+def estimated(joints: np.ndarray) -> np.ndarray:
+    return estimate_joint_noise(joints.reshape(len(joints), -1), MINIMUM)
+
+
+def test_noise_of_all_axes_is_one_figure(movement, rng):
+    noise = estimated(movement + rng.normal(scale=2.0, size=movement.shape))
+
+    assert_allclose(noise, 4.0 * np.tile(np.eye(3), (N_JOINTS, 1, 1)), atol=0.6)
+    assert np.ptp(channel_deviation(noise[:1])) < 1e-9
+
+
+def test_joint_of_one_axis_has_the_noise_of_this_axis(movement, rng):
+    """A knee that only bends, about an axis that is none of its channels."""
+    knee, axis = 3, TURN[:, 0]
+    noisy = movement + rng.normal(scale=2.0, size=movement.shape)
+    noisy[:, knee] = (noisy[:, knee] @ axis)[:, None] * axis
+
+    noise = estimated(noisy)
+
+    assert_allclose(np.sqrt(axis @ noise[knee] @ axis), 2.0, rtol=0.15)
+
+
+def test_joint_keeps_its_much_larger_noise_about_one_axis(movement, rng):
+    forearm, axis = 5, TURN[:, 1]
+    noisy = movement + rng.normal(scale=0.5, size=movement.shape)
+    noisy[:, forearm] += rng.normal(scale=8.0, size=(N_FRAMES, 1)) * axis
+
+    noise = estimated(noisy)
+
+    assert_allclose(np.sqrt(axis @ noise[forearm] @ axis), 8.0, rtol=0.2)
+    assert np.sqrt(TURN[:, 0] @ noise[forearm] @ TURN[:, 0]) < 2.0
+
+
+def test_noisier_joint_keeps_its_own_noise(movement, rng):
+    hand = 7
+    scale = np.full((N_JOINTS, 1), 0.5)
+    scale[hand] = 3.0
+
+    deviation = channel_deviation(estimated(movement + scale * rng.normal(size=movement.shape)))
+
+    assert_allclose(deviation.reshape(N_JOINTS, 3)[hand], 3.0, rtol=0.15)
+    assert_allclose(np.delete(deviation.reshape(N_JOINTS, 3), hand, axis=0), 0.5, rtol=0.1)
+
+
+def test_axes_of_a_rigs_joints_turn_the_noise(movement, rng):
+    noisy = movement + rng.normal(size=movement.shape)
+    noisy[:, 2] += rng.normal(scale=6.0, size=(N_FRAMES, 1)) * TURN[:, 1]
+
+    noise, turned = estimated(noisy), estimated(noisy @ TURN)
+
+    assert_allclose(turned, TURN.T @ noise @ TURN, atol=1e-9)
+
+
+def test_still_joint_gets_the_noise_of_the_others(movement, rng):
+    noisy = movement + rng.normal(scale=2.0, size=movement.shape)
+    noisy[:, 4] = 10.0
+
+    assert_allclose(channel_deviation(estimated(noisy))[12:15], 2.0, rtol=0.1)
+
+
+@pytest.mark.parametrize("n_frames", [1, 3, 4, 12])
+def test_short_and_empty_takes_have_the_least_noise_or_more(n_frames, rng):
+    noisy = rng.normal(size=(n_frames, 2, 3))
+    noisy[:, 1] = np.nan
+
+    noise = estimated(noisy)
+
+    assert np.isfinite(noise).all()
+    assert (np.linalg.eigvalsh(noise) > 0.9 * MINIMUM**2).all()
