@@ -76,3 +76,42 @@ def test_panel_has_the_switch_and_the_colors_of_the_sides(blank, draw, stepping)
         assert "Left Foot" not in draw("MOCAP_PT_feet")
     finally:
         blank.context.window_manager.mocap_assist_contacts = True
+
+
+def test_only_contact_keys_are_read(blank, load, markers, stepping, monkeypatch):
+    """A 3D View cannot wait for all keys of a long action after each edit."""
+    reading = load("mocap_assist.overlays.strip.reading")
+    monkeypatch.setattr(reading, "read_action", None)
+
+    assert len(rings(blank, markers, stepping, 40)) == 2
+
+
+def test_contact_begins_at_a_key_between_frames(markers):
+    """Blender stores 10.1 as 10.100000381."""
+    keys = np.array([[1.0, 0.0], [np.float32(10.1), 1.0]])
+
+    assert not markers.is_in_contact(keys, 10.0)
+    assert markers.is_in_contact(keys, 10.1)
+
+
+def test_armature_that_lost_its_bones_has_no_rings(blank, markers, stepping):
+    blank.context.view_layer.objects.active = stepping
+    blank.ops.object.mode_set(mode="EDIT")
+    for bone in list(stepping.data.edit_bones):
+        stepping.data.edit_bones.remove(bone)
+    blank.ops.object.mode_set(mode="OBJECT")
+
+    assert rings(blank, markers, stepping, 40) == []
+
+
+def test_rings_follow_deleted_and_undone_keys(blank, load, markers, stepping):
+    compat = load("mocap_assist.blender.compat")
+    assert len(rings(blank, markers, stepping, 40)) == 2
+    animation = stepping.animation_data
+    bag = compat.channelbag(animation.action, animation.action_slot)
+    bag.fcurves.remove(bag.fcurves.find('["mocap_contact_left"]'))
+    load("mocap_assist.overlays.comparison.drawing").refresh()  # as after the edit
+
+    assert len(rings(blank, markers, stepping, 40)) == 1
+    blank.data.actions.remove(animation.action)
+    assert rings(blank, markers, stepping, 40) == []
