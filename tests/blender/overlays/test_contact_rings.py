@@ -13,7 +13,7 @@ def markers(load):
 
 @pytest.fixture
 def stepping(load, actor):
-    """Left foot down from frame 10 to 20, both from 31 on, the hips in the first 5."""
+    """Left foot in contact from frame 10 to 20, both from 31 on, the hips in the first 5."""
     contacts = np.zeros((60, 7), bool)
     contacts[9:20, 0] = contacts[30:, :2] = True
     contacts[:5, 6] = True
@@ -37,7 +37,7 @@ def rings(blank, markers, armature, frame):
     ]
 
 
-def test_ring_lies_flat_under_the_foot_that_is_down(blank, load, markers, stepping):
+def test_ring_lies_flat_under_the_foot_in_contact(blank, load, markers, stepping):
     stepping.location = (5.0, 2.0, 1.0)
     stepping.scale = (2.0, 2.0, 2.0)
     ((points, color),) = rings(blank, markers, stepping, 15)
@@ -50,7 +50,7 @@ def test_ring_lies_flat_under_the_foot_that_is_down(blank, load, markers, steppi
     assert_allclose(points[:, :2].mean(axis=0), np.mean(ends, axis=0)[:2], atol=1e-5)
 
 
-def test_each_part_that_is_down_has_a_ring(blank, markers, stepping):
+def test_each_part_in_contact_has_a_ring(blank, markers, stepping):
     numbers = [len(rings(blank, markers, stepping, frame)) for frame in (1, 8, 20, 21, 40, 60)]
 
     assert numbers == [1, 0, 1, 0, 2, 2]
