@@ -19,7 +19,10 @@ class PackageOnDemand(ModuleType):
         home = self.__dict__["_homes"].get(name)
         if home is None:
             raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
-        value = getattr(import_module(home, self.__name__), name)
+        try:
+            value = getattr(import_module(home, self.__name__), name)
+        except AttributeError as error:  # `from package import name` would not show its cause
+            raise ImportError(f"{self.__name__} cannot import {name!r}: {error}") from error
         setattr(self, name, value)
         return value
 
@@ -42,6 +45,8 @@ class PackageOnDemand(ModuleType):
 def import_on_demand(package: str) -> None:
     """Import what a package's block `if TYPE_CHECKING:` imports, each name on first use.
 
+    A package that is reloaded imports them again.
+
     Type checkers and readers see ordinary imports there. Nothing changes for who uses the
     package: `from solvers.denoising import denoise` imports what `denoise` needs.
 
@@ -59,5 +64,7 @@ def import_on_demand(package: str) -> None:
         if isinstance(each, ast.ImportFrom)
         for alias in each.names
     }
+    for name in homes:
+        module.__dict__.pop(name, None)
     module.__dict__["_homes"] = homes
     module.__class__ = PackageOnDemand

@@ -109,7 +109,7 @@ GROUPS: Mapping[StripRow, StripRow] = {
     StripRow.CORRECTED: StripRow.CHANGED,
     **{row: StripRow.CONTACTS for row, _ in CONTACT_ROWS},
 }
-"""For each row the one that shows it, too, in a low editor."""
+"""For each row, the one that replaces it in an editor without space for all rows."""
 LANES: Mapping[Mark, tuple[float, float]] = {
     **{mark: (0.5, 1.0) for _, mark in CONTACT_ROWS if mark.name.startswith("LEFT")},
     **{mark: (0.0, 0.5) for _, mark in CONTACT_ROWS if mark.name.startswith("RIGHT")},
@@ -129,7 +129,7 @@ Rows = Mapping[StripRow, tuple[Range, ...]]
 
 
 def grouped(rows: Rows) -> Rows:
-    """Return fewer rows: related ones share a row, and one that has none keeps its own."""
+    """Join related rows; a row without another of its group stays as it is."""
     members: dict[StripRow, list[StripRow]] = {}
     for row in rows:
         members.setdefault(GROUPS.get(row, row), []).append(row)

@@ -1,13 +1,15 @@
 """A command and a button import the solvers first: what they do not need must wait."""
 
+import importlib
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from types import ModuleType
 
 import pytest
 
-import solvers.denoising
-import solvers.feet
-import solvers.recordings
+import solvers
 from solvers.command_line.verbs import VERBS
 
 SLOW = ("scipy.signal", "scipy.stats", "mujoco", "PIL", "matplotlib", "sklearn")
@@ -110,13 +112,91 @@ def test_reading_needs_no_scipy():
     assert "scipy" not in modules
 
 
-@pytest.mark.parametrize("package", [solvers.denoising, solvers.feet, solvers.recordings])
-def test_all_public_names_of_a_package_can_be_used(package):
-    assert set(package.__all__) <= set(dir(package))
-    for name in package.__all__:
-        assert getattr(package, name) is not None
+ROOT = Path(solvers.__file__).parent
+ON_DEMAND = [
+    ".".join(file.parent.relative_to(ROOT.parent).parts)
+    for file in sorted(ROOT.rglob("__init__.py"))
+    if "import_on_demand(__name__)" in file.read_text(encoding="utf-8")
+]
+INIT = """
+from typing import TYPE_CHECKING
+from solvers.import_on_demand import import_on_demand
+if TYPE_CHECKING:
+    from .work import Work
+    from .check import check
+__all__ = ["Work", "check"]
+import_on_demand(__name__)
+"""
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    """A package on demand with a class `Work`, whose module the test may write again."""
+    folder = tmp_path / "lazy_package"
+    folder.mkdir()
+    (folder / "__init__.py").write_text(INIT)
+    (folder / "work.py").write_text("class Work: pass")
+    (folder / "check.py").write_text("def check(): pass")
+    monkeypatch.syspath_prepend(tmp_path)
+    yield folder
+    for name in [name for name in sys.modules if name.split(".")[0] == "lazy_package"]:
+        del sys.modules[name]
+
+
+@pytest.mark.parametrize("name", ON_DEMAND)
+def test_all_public_names_of_a_package_can_be_used(name):
+    found = importlib.import_module(name)
+
+    assert set(found.__all__) <= set(dir(found))
+    for public in found.__all__:
+        assert not isinstance(getattr(found, public), ModuleType)
     with pytest.raises(AttributeError, match="has no attribute 'denois'"):
-        _ = package.denois
+        _ = found.denois
+
+
+def test_fault_of_a_module_is_shown_where_a_name_of_it_is_imported(package):
+    (package / "work.py").write_text("import math\nmath.no_such_function")
+
+    with pytest.raises(ImportError, match="no attribute 'no_such_function'"):
+        from lazy_package import Work  # noqa: F401
+
+
+@pytest.mark.filterwarnings("ignore:Cannot set an attribute:ImportWarning")
+def test_name_without_a_definition_is_not_its_module(package):
+    """Python takes the module of that name where an attribute is missing."""
+    (package / "check.py").write_text("")
+
+    with pytest.raises(ImportError, match="lazy_package cannot import 'check'"):
+        from lazy_package import check  # noqa: F401
+
+
+def test_reloaded_package_has_the_new_names(package):
+    found = importlib.import_module("lazy_package")
+    former = found.Work, found.check
+    for name in ("lazy_package.work", "lazy_package.check"):
+        del sys.modules[name]
+
+    importlib.reload(found)
+
+    assert found.Work is not former[0] and found.check is not former[1]
+
+
+def test_star_imports_the_public_names(package):
+    names = {}
+    exec("from lazy_package import *", names)
+
+    assert {"Work", "check"} == {name for name in names if not name.startswith("__")}
+    assert not isinstance(names["check"], ModuleType)
+
+
+def test_threads_that_use_a_name_first_get_one_object(package):
+    (package / "work.py").write_text("import time\ntime.sleep(0.05)\nclass Work: pass")
+    found = importlib.import_module("lazy_package")
+
+    with ThreadPoolExecutor(8) as threads:
+        classes = set(threads.map(lambda _: found.Work, range(8)))
+
+    assert len(classes) == 1
 
 
 def test_a_function_is_found_where_its_module_has_the_same_name():

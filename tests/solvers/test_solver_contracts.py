@@ -124,7 +124,7 @@ class Solve(NamedTuple):
     """A solve whose input and reports were kept."""
 
     given: Motion
-    """The very object that the verb was called with."""
+    """The object that the verb was called with, not a copy."""
     result: Any
     fractions: list[float]
 

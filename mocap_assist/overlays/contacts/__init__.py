@@ -1,1 +1,1 @@
-"""Rings on the floor while feet, hands, knees or hips are down."""
+"""Rings on the floor under feet, hands, knees and hips in contact."""

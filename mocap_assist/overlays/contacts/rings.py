@@ -1,4 +1,4 @@
-"""Rings on the floor under feet, hands, knees and hips while they are down, as plain arrays."""
+"""Rings on the floor under feet, hands, knees and hips in contact, as plain arrays."""
 
 from typing import NamedTuple
 
@@ -22,15 +22,15 @@ ROLES = (
     ("rightLowerLeg",),
     ("hips",),
 )
-"""In the order of the contact keys: the roles whose bones are down."""
+"""In the order of the contact keys: the roles of the bones of each part."""
 N_SEGMENTS = 16
 """Number of lines of a ring. It bounds the time of a drawing."""
 RADIUS = 0.6
 """Radius of a ring relative to the bones of a foot. Chosen by hand: above 0.5, so that a foot
 that lies flat is within its ring."""
 
-_turns = np.linspace(0.0, 2.0 * np.pi, N_SEGMENTS + 1)
-_circle = np.stack([np.cos(_turns), np.sin(_turns), np.zeros(N_SEGMENTS + 1)], axis=1)
+_angles = np.linspace(0.0, 2.0 * np.pi, N_SEGMENTS + 1)
+_circle = np.stack([np.cos(_angles), np.sin(_angles), np.zeros(N_SEGMENTS + 1)], axis=1)
 _bones: dict[int, tuple[tuple[str, ...], ...]] = {}
 
 
@@ -49,11 +49,11 @@ def forget() -> None:
 
 
 def rings_at(armature: bpy.types.Object, frame: float) -> Rings | None:
-    """Return a ring for each part of the body that is down at a frame, if one is."""
+    """Return a ring for each part of the body in contact at a frame; None without any."""
     contacts = contacts_of(armature)
     if contacts is None:
         return None
-    standing = [is_down(keys, frame) for keys in contacts]
+    standing = [is_in_contact(keys, frame) for keys in contacts]
     if not any(standing):
         return None
     bones = [
@@ -74,12 +74,13 @@ def rings_at(armature: bpy.types.Object, frame: float) -> Rings | None:
     )
 
 
-def is_down(keys: Array, frame: float) -> bool:
-    """Return whether a part is down at a frame; keys, shape (n_keys, 2), hold until the next.
+def is_in_contact(keys: Array, frame: float) -> bool:
+    """Return whether a part is in contact at a frame; keys hold until the next one.
 
-    It is not before the first key.
+    Keys have shape (n_keys, 2). Before the first key there is no contact. Frames of keys are
+    32-bit numbers, and so is the frame that they are compared with.
     """
-    last = int(np.searchsorted(keys[:, 0], frame, side="right")) - 1
+    last = int(np.searchsorted(keys[:, 0], np.float64(np.float32(frame)), side="right")) - 1
     return last >= 0 and bool(keys[last, 1] > 0.5)
 
 

@@ -1,4 +1,4 @@
-"""Switch of the rings under feet that are down; it is on the window manager."""
+"""Switch of the rings under feet in contact; it is on the window manager."""
 
 import bpy
 import gpu

@@ -33,7 +33,7 @@ ROW_INSET = 0.08
 BACKGROUND = (0.06, 0.06, 0.06, 0.7)
 
 _low_strips: dict[int, tuple[Strip, Strip]] = {}
-"""For each strip that one with fewer rows, for low editors."""
+"""For each strip, the one whose related rows are joined, for editors of low height."""
 _batches: dict[tuple[int, float], tuple[Strip, Any]] = {}
 """Of ranges, in frames and rows."""
 

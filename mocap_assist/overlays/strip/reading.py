@@ -73,12 +73,14 @@ class _StripKey(NamedTuple):
 
 _actions: dict[tuple[int, int, int], ActionKeys | None] = {}
 _strips: dict[_StripKey, Strip | None] = {}
+_contacts: dict[tuple[int, int, int], tuple[Array, ...]] = {}
 
 
 def forget() -> None:
     """Clear the caches, so that the next drawing reads again."""
     _actions.clear()
     _strips.clear()
+    _contacts.clear()
 
 
 def strip_of(context: bpy.types.Context) -> Strip | None:
@@ -110,12 +112,20 @@ def strip_of(context: bpy.types.Context) -> Strip | None:
 
 
 def contacts_of(armature: bpy.types.Object) -> tuple[Array, ...] | None:
-    """Return the contact keys of an armature's action, as in `ActionKeys`, if it has any."""
+    """Return the contact keys of an armature's action, as in `ActionKeys`, if it has any.
+
+    Other keys are not read: a long action has many, and the 3D View would wait for them after
+    each edit.
+    """
     source = reliability_source(armature)
     if source is None:
         return None
-    keys = _keys_of(_block(armature, source), armature, source)
-    return keys.contacts if keys is not None and any(map(len, keys.contacts)) else None
+    block = _block(armature, source)
+    if block not in _contacts:
+        _make_room(_contacts)
+        _contacts[block] = tuple(contact_keys(*source))
+    keys = _contacts[block]
+    return keys if any(map(len, keys)) else None
 
 
 def _block(armature: bpy.types.Object, source: Source) -> tuple[int, int, int]:

@@ -44,8 +44,9 @@ N_REFINED = 8
 MAX_OTHER_LIMB_FRACTION = 0.6
 """Length, relative to the legs, above which a third pair of limbs is no skirt or hair. Chosen
 by hand on the rigs of `tests/solvers/motion`."""
-REMEMBERED_STRUCTURES = 8
-"""It bounds the memory. A press asks for those of its source and its target, several times."""
+MAX_CACHED = 8
+"""Number of cached structures. It bounds the memory. A press uses those of its source and its
+target several times."""
 LegMisfit = Callable[[tuple[int, ...], float], float]
 """Returns how far a leg is from that of a person of a height."""
 FACE_OR_TIP = re.compile(r"end|top|tip|nub|jaw|eye|face|hair|hat|頭先", re.IGNORECASE)
@@ -83,20 +84,21 @@ def roles_by_structure(skeleton: Skeleton) -> Structure:
     Sides follow the names, where they have any; else the toes show where the rest pose faces,
     or else -Y. Fingers get no role.
     """
-    return _find_structure(skeleton.names, skeleton.parents, skeleton.offsets.tobytes())
+    found = _find_structure(skeleton.names, skeleton.parents, skeleton.offsets.tobytes())
+    return found._replace(joints=dict(found.joints))  # the cached one stays as it is
 
 
-@lru_cache(maxsize=REMEMBERED_STRUCTURES)
+@lru_cache(maxsize=MAX_CACHED)
 def _find_structure(
     names: tuple[str, ...], parents: tuple[int, ...], offsets: bytes
 ) -> Structure:
-    """Return the structure; the roles and their evidence ask for that of the same skeleton."""
+    """Return the structure; cached, since roles and their evidence use that of one skeleton."""
     skeleton = Skeleton(names, parents, np.frombuffer(offsets).reshape(-1, 3))
     pairs = find_mirrored_limbs(skeleton)
 
     @cache
     def leg_misfit(leg: tuple[int, ...], height: float) -> float:
-        """The same for all arms that are tried with a leg."""
+        """Return the misfit; cached, since each leg is tried with many arms."""
         return divide_leg(skeleton, leg, height)[1]
 
     rough = [

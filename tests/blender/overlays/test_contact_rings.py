@@ -13,7 +13,7 @@ def markers(load):
 
 @pytest.fixture
 def stepping(load, actor):
-    """Left foot down from frame 10 to 20, both from 31 on, the hips in the first 5."""
+    """Left foot in contact from frame 10 to 20, both from 31 on, the hips in the first 5."""
     contacts = np.zeros((60, 7), bool)
     contacts[9:20, 0] = contacts[30:, :2] = True
     contacts[:5, 6] = True
@@ -37,7 +37,7 @@ def rings(blank, markers, armature, frame):
     ]
 
 
-def test_ring_lies_flat_under_the_foot_that_is_down(blank, load, markers, stepping):
+def test_ring_lies_flat_under_the_foot_in_contact(blank, load, markers, stepping):
     stepping.location = (5.0, 2.0, 1.0)
     stepping.scale = (2.0, 2.0, 2.0)
     ((points, color),) = rings(blank, markers, stepping, 15)
@@ -50,7 +50,7 @@ def test_ring_lies_flat_under_the_foot_that_is_down(blank, load, markers, steppi
     assert_allclose(points[:, :2].mean(axis=0), np.mean(ends, axis=0)[:2], atol=1e-5)
 
 
-def test_each_part_that_is_down_has_a_ring(blank, markers, stepping):
+def test_each_part_in_contact_has_a_ring(blank, markers, stepping):
     numbers = [len(rings(blank, markers, stepping, frame)) for frame in (1, 8, 20, 21, 40, 60)]
 
     assert numbers == [1, 0, 1, 0, 2, 2]
@@ -76,3 +76,42 @@ def test_panel_has_the_switch_and_the_colors_of_the_sides(blank, draw, stepping)
         assert "Left Foot" not in draw("MOCAP_PT_feet")
     finally:
         blank.context.window_manager.mocap_assist_contacts = True
+
+
+def test_only_contact_keys_are_read(blank, load, markers, stepping, monkeypatch):
+    """A 3D View cannot wait for all keys of a long action after each edit."""
+    reading = load("mocap_assist.overlays.strip.reading")
+    monkeypatch.setattr(reading, "read_action", None)
+
+    assert len(rings(blank, markers, stepping, 40)) == 2
+
+
+def test_contact_begins_at_a_key_between_frames(markers):
+    """Blender stores 10.1 as 10.100000381."""
+    keys = np.array([[1.0, 0.0], [np.float32(10.1), 1.0]])
+
+    assert not markers.is_in_contact(keys, 10.0)
+    assert markers.is_in_contact(keys, 10.1)
+
+
+def test_armature_that_lost_its_bones_has_no_rings(blank, markers, stepping):
+    blank.context.view_layer.objects.active = stepping
+    blank.ops.object.mode_set(mode="EDIT")
+    for bone in list(stepping.data.edit_bones):
+        stepping.data.edit_bones.remove(bone)
+    blank.ops.object.mode_set(mode="OBJECT")
+
+    assert rings(blank, markers, stepping, 40) == []
+
+
+def test_rings_follow_deleted_and_undone_keys(blank, load, markers, stepping):
+    compat = load("mocap_assist.blender.compat")
+    assert len(rings(blank, markers, stepping, 40)) == 2
+    animation = stepping.animation_data
+    bag = compat.channelbag(animation.action, animation.action_slot)
+    bag.fcurves.remove(bag.fcurves.find('["mocap_contact_left"]'))
+    load("mocap_assist.overlays.comparison.drawing").refresh()  # as after the edit
+
+    assert len(rings(blank, markers, stepping, 40)) == 1
+    blank.data.actions.remove(animation.action)
+    assert rings(blank, markers, stepping, 40) == []
