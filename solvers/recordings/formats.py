@@ -65,14 +65,17 @@ from .marker_files import (
 from .numpy_files import is_frame_npy, is_point_archive, open_npy, open_point_archive
 from .refuse_stand_ins import REFUSALS
 from .skeleton_files import (
+    is_frame_smpl_json,
     is_kimodo,
     is_mvnx,
     is_smpl,
+    is_smpl_json,
     is_vrma,
     open_bvh,
     open_kimodo,
     open_mvnx,
     open_smpl,
+    open_smpl_json,
     read_acclaim,
     read_vrma,
 )
@@ -118,6 +121,14 @@ FORMATS = (
         open_smpl,
         has_skeleton=True,
         lacks_bones=True,
+    ),
+    Format(
+        "SMPL parameters in JSON",
+        is_smpl_json,
+        open_smpl_json,
+        has_skeleton=True,
+        lacks_bones=True,
+        is_one_frame=is_frame_smpl_json,
     ),
     Format("Kimodo", is_kimodo, open_kimodo, has_skeleton=True),
     Format("Xsens MVNX", is_mvnx, open_mvnx, has_skeleton=True),

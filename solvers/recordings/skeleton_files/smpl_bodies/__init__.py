@@ -2,12 +2,50 @@
 
 from .easymocap import with_root_at_pelvis
 from .joints import BODY, FINGERS, smpl_joints
+from .parameters import (
+    ALL_ROTATIONS,
+    BODY_SCALES,
+    N_BODY,
+    N_HAND,
+    N_WITH_COMPONENTS,
+    NAMES,
+    OF_CAMERA,
+    OF_SMPL,
+    POSES,
+    POSITIONS,
+    RATES,
+    READ_ARRAYS,
+    ROOT,
+    ROTATIONS,
+    SCALES,
+    SIZES,
+    member,
+    rotation_vectors,
+)
 from .people import split_people
 from .rotations import with_rotation_vectors
 
 __all__ = [
+    "ALL_ROTATIONS",
     "BODY",
+    "BODY_SCALES",
     "FINGERS",
+    "NAMES",
+    "N_BODY",
+    "N_HAND",
+    "N_WITH_COMPONENTS",
+    "OF_CAMERA",
+    "OF_SMPL",
+    "POSES",
+    "POSITIONS",
+    "RATES",
+    "READ_ARRAYS",
+    "ROOT",
+    "ROTATIONS",
+    "SCALES",
+    "SIZES",
+    "member",
+    "rotation_vectors",
     "smpl_joints",
     "split_people",
     "with_root_at_pelvis",

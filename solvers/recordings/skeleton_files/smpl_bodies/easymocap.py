@@ -14,19 +14,24 @@ from ....rotations import (
     rotation_vector_from_quaternion,
 )
 
-ROTATION, TRANSLATION = "Rh", "Th"
+ROTATION, TRANSLATION, SCALE = "Rh", "Th", "scale"
 N_WITHOUT_ROOT = {63, 69}
 """Numbers of a pose without its root, which newer versions leave out."""
+N_OF_SMPL_X = {87}
+"""Numbers of a pose of its SMPL-X."""
 PELVIS_M = np.array([0.0, -0.226, 0.028])
 """Pelvis of the model without pose and shape, meters, Y up. By definition of the model, the
 mean of its male and female body: 0.241 and 0.211 below the origin."""
+PELVIS_OF_SMPL_X_M = np.array([0.003, -0.351, 0.012])
+"""The same of SMPL-X, by definition of its neutral body."""
 
 
 def with_root_at_pelvis(path: Path | str, arrays: Mapping[str, Array]) -> dict[str, Array]:
     """Return the arrays of one person with the root rotation in `poses`, and `transl`.
 
     EasyMocap rotates the posed body by `Rh` about the origin of the model, and moves it by `Th`
-    [1]_. SMPL rotates it about the pelvis.
+    [1]_. SMPL rotates it about the pelvis. `scale` is the size of the body relative to that of
+    the model.
 
     Raises
     ------
@@ -47,12 +52,15 @@ def with_root_at_pelvis(path: Path | str, arrays: Mapping[str, Array]) -> dict[s
     translation = _of_frames(path, arrays.pop(TRANSLATION, None), n_frames)
     if poses.shape[1] in N_WITHOUT_ROOT:
         poses = np.concatenate([np.zeros((n_frames, 3)), poses], axis=1)
+    pelvis = PELVIS_OF_SMPL_X_M if poses.shape[1] in N_OF_SMPL_X else PELVIS_M
+    if SCALE in arrays and arrays[SCALE].size:
+        pelvis = pelvis * arrays[SCALE].flat[0]
     turns = quaternion_from_rotation_vector(vectors)
     roots = multiply(turns, quaternion_from_rotation_vector(poses[:, :3]))
     arrays["poses"] = np.concatenate(
         [rotation_vector_from_quaternion(roots), poses[:, 3:]], axis=1
     )
-    arrays["transl"] = translation + rotate(turns, PELVIS_M) - PELVIS_M
+    arrays["transl"] = translation + rotate(turns, pelvis) - pelvis
     return arrays
 
 
