@@ -28,6 +28,8 @@ NAME_KEYS = either_case("name", "joint", "joint_name", "jointName", "bone", "bon
 """Members with the name of a joint, where joints are objects in a list."""
 POSITION_KEYS = either_case("position", "pos", "translation", "location", "transform", "matrix")
 """Members with the position of a joint, or with the matrix of its pose."""
+INNER_KEYS = ("xyz", "v", "value")
+"""Members of a position with its coordinates, as in the structures of the Azure Kinect."""
 CONFIDENCE_KEYS = ("visibility", "presence", "score", "confidence")
 MAX_CONFIDENCE = 100.0
 """Confidence in percent, by definition; larger numbers are something else."""
@@ -73,7 +75,8 @@ def points_of(joints: Any, key: str = "") -> Points | None:
         confidence = np.array([_confidence_of(joint) for joint in joints])
     if array.shape[1] == 4:
         array = without_undetected(array)
-    if not names and key in LANDMARK_KEYS and len(array) == N_POINTS:
+    has_visibility = any("visibility" in joint for joint in objects)
+    if not names and len(array) == N_POINTS and (key in LANDMARK_KEYS or has_visibility):
         names = BODY_POINTS
     return Points(array, confidence, names)
 
@@ -98,6 +101,8 @@ def position_of(joint: Any) -> Any:
         return [None] * 3
     if isinstance(joint, Mapping):
         inner = next(members(joint, POSITION_KEYS), joint)
+        if isinstance(inner, Mapping):
+            inner = next(members(inner, INNER_KEYS), inner)
         if isinstance(inner, Mapping):
             lower = {str(key).lower(): value for key, value in inner.items()}
             axes = [f"{each}{axis}" for each in ("", "camera") for axis in "xyz"]
