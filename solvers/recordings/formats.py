@@ -11,12 +11,16 @@ from .containers import (
     ZIP_MEMBER,
     as_utf8,
     check_folder_access,
+    find_separator,
     is_c3d,
+    is_missing,
     json_length,
+    split_cells,
 )
 from .format_description import Format, one_body
 from .joint_files import (
     MAX_TITLE_LINES,
+    MIN_POINTS,
     is_azure_csv,
     is_azure_json,
     is_frame_json,
@@ -104,10 +108,17 @@ def _is_trc(head: bytes) -> bool:
 
 
 def _is_wide_table(head: bytes) -> bool:
-    """Return whether a head is text with long lines of cells; JSON has no such lines."""
+    """Return whether a head is text with long or blank lines of cells; JSON has none."""
     is_text = len(head) >= HEAD_BYTES - len(BYTE_ORDER_MARK) and b"\0" not in head
     is_json = head.lstrip()[:1] in {b"{", b"["}
-    return is_text and not is_json and len(head.splitlines()) <= MAX_TITLE_LINES
+    lines = head.splitlines()
+    return is_text and not is_json and (len(lines) <= MAX_TITLE_LINES or _is_blank(lines[-2]))
+
+
+def _is_blank(line: bytes) -> bool:
+    """Return whether most cells of a line are blank, as those of points that come later."""
+    cells = split_cells(line, find_separator(line))
+    return len(cells) >= MIN_POINTS and sum(map(is_missing, cells)) > len(cells) / 2
 
 
 FORMATS = (

@@ -32,6 +32,7 @@ from ..point_bodies import (
     column_of_times,
     completed_times,
     coordinate_of_title,
+    groups_by_suffix,
     missing_limbs,
     names_of_positions,
     numbered_axes,
@@ -41,7 +42,14 @@ from ..point_bodies import (
     stand_body,
     time_name,
 )
-from .table_titles import MAX_TITLE_LINES, MIN_POINTS, N_SAMPLED_LINES, table_titles
+from .long_columns import is_frame_title, number_of_frame
+from .table_titles import (
+    MAX_TITLE_LINES,
+    MIN_POINTS,
+    N_PEEKED_LINES,
+    N_SAMPLED_LINES,
+    table_titles,
+)
 
 
 class _Columns(NamedTuple):
@@ -52,6 +60,8 @@ class _Columns(NamedTuple):
     """Column of x, y and z of each point, shape (n_points, 3)."""
     time: int | None
     times: TimeCells
+    frame: int | None
+    """Column of the numbers of frames."""
     unit: float | None
     """Meters, by the titles; None if they do not say it."""
     width: int
@@ -95,9 +105,13 @@ def open_point_table(
     check_scale(scale)
     reader = LineReader(path)
     reader.skip_blank_lines()
-    first = reader.peek(MAX_TITLE_LINES + N_SAMPLED_LINES)
+    first = reader.peek(MAX_TITLE_LINES + N_PEEKED_LINES)
     header = table_titles(first, _has_points)
-    columns = _columns(header.titles, header.cells(first)) if header else None
+    columns = (
+        _columns(header.titles, header.cells(first[: MAX_TITLE_LINES + N_SAMPLED_LINES]))
+        if header
+        else None
+    )
     if header is None or columns is None:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
     reader.take(header.n_lines)
@@ -109,6 +123,7 @@ def open_point_table(
         within(progress, 0.0, 0.8),
         converters={
             **ignored_columns(columns.width, {*columns.positions.flat}),
+            **({} if columns.frame is None else {columns.frame: number_of_frame}),
             **({} if columns.time is None else {columns.time: columns.times}),
         },
         prepare=header.expand,
@@ -118,7 +133,7 @@ def open_point_table(
     times = None if columns.time is None else _times(rows[:, columns.time], columns, progress)
     points = rows[:, columns.positions.astype(int)]
     if times is None and header.rate is not None:
-        times = np.arange(len(points)) / header.rate
+        times = _numbers(rows, columns) / header.rate
     unit = columns.unit if scale is None else scale
     people = _people(columns.names, points, progress) if np.isfinite(points).any() else []
     duration = len(points) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
@@ -139,7 +154,7 @@ def open_point_table(
         mine = points[:, person.columns]
         return recording_of_points(path, person.names, mine, times, unit, progress)
 
-    return Bodies(str(path), listed, read)
+    return Bodies(str(path), listed if len(listed) > 1 else (), read)
 
 
 def _times(times: Array, columns: _Columns, progress: Progress) -> Array | None:
@@ -148,15 +163,29 @@ def _times(times: Array, columns: _Columns, progress: Progress) -> Array | None:
     return completed_times(over_midnight(times * second), progress)
 
 
+def _numbers(rows: Array, columns: _Columns) -> Array:
+    """Return the numbers of frames from 0, those of the file if they increase."""
+    counted = np.arange(len(rows), dtype=np.float64)
+    if columns.frame is None:
+        return counted
+    numbers = rows[:, columns.frame]
+    increases = len(rows) > 1 and bool((np.diff(numbers) >= 1.0).all())
+    return np.asarray(numbers - numbers[0]) if increases else counted
+
+
 def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[MarkerSubject]:
-    """Return the people whose names begin those of the points; empty for a single one."""
+    """Return the people whose names begin or end those of the points; empty for one of all.
+
+    Of points called like both ends of bones, one person has those where bones start.
+    """
     people, others = list[MarkerSubject](), list[str]()
-    for each in split_subjects(names):
+    by_suffix = [MarkerSubject(*group) for group in groups_by_suffix(names)]
+    for each in by_suffix or split_subjects(names):
         if body_of_named_points(each.names, points[:, each.columns]) is None:
             others.append(each.name)
         else:
             people.append(each)
-    if len(people) < 2:
+    if len(people) < 2 and not (people and len(by_suffix) == 1):
         return []
     if others:
         progress(
@@ -245,6 +274,7 @@ def _columns(titles: Sequence[str], cells: Sequence[Sequence[str]] = ()) -> _Col
         return None
     time = column_of_times(titles, cells)
     times = TimeCells((time_name(titles[time]) if time is not None else None) or TimeName(None))
+    frame = next((at for at, title in enumerate(titles) if is_frame_title(title)), None)
     unit = meters_from_unit_name(units.pop()) if len(units) == 1 else None
     positions = np.array([[axes[axis] for axis in "xyz"] for axes in points.values()])
-    return _Columns(tuple(points), positions, time, times, unit, len(titles))
+    return _Columns(tuple(points), positions, time, times, frame, unit, len(titles))

@@ -23,6 +23,7 @@ from .point_titles import (
     names_of_positions,
     numbered_axes,
 )
+from .suffixes import groups_by_suffix
 from .time_units import (
     TimeCells,
     TimeName,
@@ -47,6 +48,7 @@ __all__ = [
     "column_of_times",
     "completed_times",
     "coordinate_of_title",
+    "groups_by_suffix",
     "has_layout",
     "is_quantity",
     "is_world",

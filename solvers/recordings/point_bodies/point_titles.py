@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ...motion import roles_by_name
 
 SIGNS = r"[\s_.:\-|/\[(]"
-KINDS = r"pos(?:ition)?|loc(?:ation)?|translat(?:e|ion)|tr?|world"
+KINDS = r"pos(?:i(?:tion)?)?|loc(?:ation)?|translat(?:e|ion)|tr?|world"
 COORDINATE = re.compile(
     rf"(?P<name>.*?)(?:{SIGNS}+(?:{KINDS}))?{SIGNS}*(?P<axis>[xyz]|(?<=\[)[012])[)\]]?"
     r"(?:_+(?:world|global))?(?:\s*[(\[](?P<unit>\w+)[)\]]|_(?P<ending>mm?|cm))?",
@@ -22,7 +22,7 @@ NUMBERED_AXIS = re.compile(r"(?P<name>.+?)[_.\-](?P<axis>[0-3])")
 """A title such as `nose_0`, where all points have the same three numbers."""
 NO_POSITION = re.compile(
     r"(rotations?|rotate|quat(ernion)?|euler|orientation|velocit(y|ies)|accelerations?|torque"
-    r"|speed|angles?|winkel|drehung|geschwindigkeit|beschleunigung|vitesse|acc[ée]l[ée]ration"
+    r"|speed|velo|angles?|winkel|drehung|geschwindigkeit|beschleunigung|vitesse|acc[ée]l[ée]ration"
     r"|[áa]ngulo|rotaci[óo]n|orientaci[óo]n|velocidad|aceleraci[óo]n"
     r"|(^|[\s_.:\-])(rot|orient|scale\w*|(ang|lin)?(vel|acc)|ang|omega|force|moment|gyro?|mag"
     r"|std|error|deg(rees?)?|rad(ians?)?)"
@@ -35,6 +35,10 @@ NO_LENGTH = re.compile(
 )
 """Units of other quantities than positions."""
 LETTER = re.compile(r"(?P<name>.+)[\s_.:\-](?P<letter>[a-z])", re.IGNORECASE)
+LOCAL = re.compile(r"(?:^|[\s_.:\-])[Ll]ocal|(?<=[a-z\d])Local|(?:^|[\s_.:\-])[Rr]elative")
+"""Begin of the word for positions relative to the parent bone."""
+MIN_IN_ROOM = 8
+"""Points without that word, from which those with it are left out. By definition a body."""
 QUANTITIES = frozenset("qrvawp")
 """Letters of quantities: quaternion, rotation, velocity, acceleration, turn rate, position.
 The right side, or one of points from A to Z, has the same letter."""
@@ -74,6 +78,8 @@ def names_of_positions(names: Collection[str]) -> list[str]:
 
     `hand_r` is the right hand if there is a `hand_l`, or if a body with it has a `hand_l`.
     """
+    in_room = [name for name in names if not LOCAL.search(name)]
+    names = in_room if len(in_room) >= MIN_IN_ROOM else names
     letters: dict[str, set[str]] = {}
     matches = {name: LETTER.fullmatch(name) for name in names}
     for match in filter(None, matches.values()):

@@ -181,6 +181,26 @@ def test_a_cell_that_is_no_vector_is_refused(read_any, walk, cell):
         read_any(table_of_vectors(walk, spoil))
 
 
+@pytest.mark.parametrize("n_empty", [150, 2500])
+@pytest.mark.parametrize("late", [slice(0, 12), slice(0, 1)])
+def test_vectors_may_be_missing_in_many_frames_first(read_any, walk, n_empty, late):
+    """Before, a joint that came after 100 frames was left out, or the format unknown."""
+    missing = np.zeros(len(NAMES), dtype=bool)
+    missing[late] = True
+    vector = "[{:.4f} {:.4f} {:.4f}]"
+    rows = [
+        ["" if missing[at] and k < n_empty else vector.format(*walk[k % F, at])
+         for at in range(len(NAMES))]
+        for k in range(n_empty + F)
+    ]  # fmt: skip
+    lines = [",".join([f"{k / RATE_HZ:.3f}", *row]) for k, row in enumerate(rows)]
+
+    recording = read_any("\n".join([",".join(["time", *NAMES]), *lines]) + "\n")
+
+    assert isinstance(recording, JointRecording)
+    assert np.isfinite(recording.tracks.positions[n_empty + 1 :]).all()
+
+
 def test_long_digits_are_no_vector():
     """A search that tries each split of the digits would not end."""
     digits = b"1" * 100_000
