@@ -23,15 +23,18 @@ MAX_BYTES = 1 << 17
 MIN_CELLS = 6
 """Number of cells of a line of a table. It guards prose with commas."""
 MIN_ROTATIONS = 12
-"""Number of titles of rotations, from which a table is one of them: those of four bones."""
+"""Number of titles of rotations, from which a table is one of them: those of four bones. It
+decides what the sentence says only."""
 ROTATION = re.compile(r"(?i)rot(?!o)|quat|euler|orient|angle|pitch|yaw|roll")
 FACE = re.compile(
     r"(?i)(eye|jaw|mouth|brow|cheek|nose)[_ ]?\w*(left|right|open|up|smile|blink)"
 )
 MIN_FACE = 4
-"""Number of titles of a face, from which a table is one of a face."""
+"""Number of titles of a face, from which a table is one of a face. It decides what the sentence
+says only."""
 MIN_NUMERIC_FRACTION = 0.5
-"""Cells of the first line that are numbers, a fraction, from which it has no titles."""
+"""Cells of the first line that are numbers, a fraction, from which it has no titles. It decides
+what the sentence says only."""
 
 
 def describe_unknown(path: Path | str) -> str | None:

@@ -9,7 +9,7 @@ from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, forward_kinematics
 from solvers.motion.skeletons import BODY_POINTS
 from solvers.recordings import folders, list_bodies, read_recording, recordings_in
-from solvers.recordings.containers import frame_files, names_by_number
+from solvers.recordings.containers import names_by_number
 from solvers.samples import walking_gait
 
 F = 24
@@ -286,16 +286,3 @@ def test_lines_of_points_without_a_place_are_refused(tmp_path, x, sentence):
 
     with pytest.raises(InvalidFileError, match=sentence):
         read_recording(path)
-
-
-@pytest.mark.parametrize("form", ["a_{}.json", "a_{:03}.json"])
-def test_numbers_with_and_without_zeros_are_two_takes(tmp_path, coco, form):
-    """Before, frames of one of them replaced those of the other."""
-    for number in range(1, 9):
-        (tmp_path / f"a_{number}.json").write_text(json.dumps(people(coco[number])))
-        (tmp_path / f"a_{number:03}.json").write_text(json.dumps(people(coco[number] + 5.0)))
-
-    files = frame_files(tmp_path / form.format(3)).files
-
-    assert [file.name for file in files.values()] == [form.format(k) for k in range(1, 9)]
-    assert len(recordings_in(tmp_path)) == 2
