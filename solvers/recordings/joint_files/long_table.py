@@ -36,7 +36,7 @@ from ..point_bodies import (
 from .line_groups import first_repeated_line, grouped
 from .long_columns import LongColumns, long_columns, number_of_frame
 from .mediapipe_csv import mediapipe_landmark
-from .point_table import recording_of_points
+from .points_recording import recording_of_points
 from .table_titles import MAX_TITLE_LINES, N_SAMPLED_LINES, table_titles
 
 MAX_WORD_COLUMNS = 4

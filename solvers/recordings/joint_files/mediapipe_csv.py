@@ -22,7 +22,9 @@ from ..point_bodies import N_POINTS, recording_from_landmarks, second_of_times, 
 
 CHANNELS = {"x": 0, "y": 1, "z": 2, "v": 3, "vis": 3, "visibility": 3}
 PREFIX = re.compile(r"((world|pose|landmarks?|lm|kp|point)(_|(?=\d)))+")
-SUFFIX = re.compile(r"_(world|m|meters)$")
+OF_WORLD = re.compile(r"(^|_)world(_|$)|3d$")
+"""In the title of a column in the world."""
+SUFFIX = re.compile(r"_(world|m|meters)$|_?3d$")
 NAME_FIRST = re.compile(r"(.+?)_?([xyzv]|vis|visibility)")
 LETTER_FIRST = re.compile(r"([xyzv]|vis|visibility)_?(\d{1,2})")
 MIN_LANDMARKS = 17
@@ -120,7 +122,7 @@ def _titles(line: bytes) -> list[str]:
 
 def _columns(titles: list[str]) -> dict[tuple[int, int], int]:
     """Return columns by landmark and channel: those of the world, if there are any."""
-    in_world = [at for at, title in enumerate(titles) if "world" in title.split("_")]
+    in_world = [at for at, title in enumerate(titles) if OF_WORLD.search(title)]
     found: dict[tuple[int, int], int] = {}
     for at in in_world or range(len(titles)):
         if key := _landmark_and_channel(titles[at]):

@@ -1,6 +1,6 @@
 """Read tables of any program whose columns are named after points and coordinates."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,40 +9,36 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
-from ...progress import READING, Progress, Remark, unwatched, within
+from ...progress import Progress, Remark, unwatched, within
 from ..containers import LineReader, ignored_columns, shown, stream_cells
 from ..conventions import (
     DEFAULT_FRAME_RATE,
     Bodies,
-    ConstantRate,
     MarkerSubject,
     check_scale,
-    guess_unit_of_points,
     meters_from_unit_name,
     observed_body,
     recorded_seconds,
     split_subjects,
-    stand_markers,
 )
 from ..point_bodies import (
+    Coordinate,
     TimeCells,
     TimeName,
     body_of_named_points,
-    body_of_points,
     column_of_times,
     completed_times,
     coordinate_of_title,
     groups_by_suffix,
-    missing_limbs,
     names_of_positions,
     numbered_axes,
     over_midnight,
-    read_body,
     second_of_times,
-    stand_body,
     time_name,
+    without_letter,
 )
 from .long_columns import is_frame_title, number_of_frame
+from .points_recording import recording_of_points
 from .table_titles import (
     MAX_TITLE_LINES,
     MIN_POINTS,
@@ -198,77 +194,37 @@ def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[M
     return people
 
 
-def recording_of_points(
-    path: Path | str,
-    names: tuple[str, ...],
-    points: Array,
-    times: Array | None,
-    unit: float | None,
-    progress: Progress,
-) -> JointRecording | Tracks:
-    """Return named or numbered points as the joints of a body, or as markers if they are none.
-
-    Parameters
-    ----------
-    path : Path or str
-    names : tuple of str
-    points : shape (n_frames, n_points, 3), in the unit and axes of the file
-    times : shape (n_frames,), seconds, or None
-    unit : float, meters per unit of the file, or None
-    progress : Progress
-
-    Raises
-    ------
-    InvalidFileError
-        No point has all its coordinates in any frame.
-    """
-    points = np.where(np.isfinite(points).all(axis=-1, keepdims=True), points, np.nan)
-    if not len(points) or np.isnan(points).all():
-        raise InvalidFileError(f"{path} has no points that are observed in any frame.")
-    if all(name.isdigit() for name in names):
-        unnamed = body_of_points(path, points)
-        if unnamed is not None:
-            return read_body(path, unnamed, unit, progress, times)
-    if times is None:
-        progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
-    body = body_of_named_points(names, points)
-    if body is not None:
-        return stand_body(
-            path, body.names, body.positions, times=times, scale=unit, progress=progress
-        )
-    if lacking := missing_limbs(names):
-        progress(
-            0.8,
-            Remark(
-                f"The points lack {', '.join(lacking)} of a body and are imported as markers;"
-                " export these joints too"
-            ),
-        )
-    rate = DEFAULT_FRAME_RATE
-    if times is not None:
-        resampler = ConstantRate(path, times)
-        points, rate = resampler.positions(points), resampler.frame_rate
-    unit = guess_unit_of_points(points) if unit is None else unit
-    progress(1.0, READING)
-    return stand_markers(names, points * unit, rate, unit, "")
-
-
 def _has_points(titles: Sequence[str]) -> bool:
     columns = _columns(titles)
     return columns is not None and len(columns.names) >= MIN_POINTS
 
 
+def _points_of(
+    coordinates: Mapping[int, Coordinate],
+) -> tuple[dict[str, dict[str, int]], set[str]]:
+    """Return the columns of the axes of each point that has all three, and the units."""
+    found: dict[str, dict[str, int]] = {}
+    for column, each in coordinates.items():
+        found.setdefault(each.name, {}).setdefault(each.axis, column)
+    complete = [name for name, axes in found.items() if len(axes) == 3]
+    names = names_of_positions(complete)
+    points = {
+        plain: found[name] for plain, name in zip(without_letter(names), names, strict=True)
+    }
+    return points, {each.unit for each in coordinates.values()}
+
+
 def _columns(titles: Sequence[str], cells: Sequence[Sequence[str]] = ()) -> _Columns | None:
     """Return the columns of points; None if none has all three coordinates."""
-    found: dict[str, dict[str, int]] = {}
-    units: set[str] = set()
-    for column, title in enumerate(titles):
-        coordinate = coordinate_of_title(title)
-        if coordinate is not None:
-            found.setdefault(coordinate.name, {}).setdefault(coordinate.axis, column)
-            units.add(coordinate.unit)
-    complete = [name for name, axes in found.items() if len(axes) == 3]
-    points = {name: found[name] for name in names_of_positions(complete)}
+    coordinates = {
+        column: coordinate
+        for column, title in enumerate(titles)
+        if (coordinate := coordinate_of_title(title)) is not None
+    }
+    in_room = {column: each for column, each in coordinates.items() if each.is_in_room}
+    points, units = _points_of(in_room)
+    if len(points) < MIN_POINTS:
+        points, units = _points_of(coordinates)
     points = points or numbered_axes(titles)
     if not points:
         return None

@@ -18,10 +18,12 @@ from .point_arrays import (
     without_undetected,
 )
 from .point_titles import (
+    Coordinate,
     coordinate_of_title,
     is_quantity,
     names_of_positions,
     numbered_axes,
+    without_letter,
 )
 from .suffixes import groups_by_suffix
 from .time_units import (
@@ -40,6 +42,7 @@ __all__ = [
     "HIPS",
     "LANDMARK_JOINTS",
     "N_POINTS",
+    "Coordinate",
     "TimeCells",
     "TimeName",
     "as_fractions",
@@ -66,5 +69,6 @@ __all__ = [
     "stand_body",
     "time_name",
     "with_computed_joints",
+    "without_letter",
     "without_undetected",
 ]

@@ -111,7 +111,7 @@ def missing_limbs(names: Sequence[str]) -> list[str]:
 def _keypoints(names: Sequence[str]) -> dict[str, int]:
     """Return the columns of keypoints by MediaPipe's names.
 
-    A hand or foot is the wrist or ankle of a side that lacks it.
+    A hand or foot is the wrist or ankle of a side that lacks it, and a foot otherwise the toes.
     """
     keypoints: dict[str, int] = {}
     for column, name in enumerate(names):
@@ -120,8 +120,12 @@ def _keypoints(names: Sequence[str]) -> dict[str, int]:
     for end, joint in ENDS.items():
         for side in ("left", "right"):
             column = keypoints.pop(f"{side}_{end}", -1)
-            if column >= 0:
-                keypoints.setdefault(f"{side}_{joint}", column)
+            if column < 0:
+                continue
+            if f"{side}_{joint}" not in keypoints:
+                keypoints[f"{side}_{joint}"] = column
+            elif end == "foot":  # next to an ankle, as of a Kinect
+                keypoints.setdefault(f"{side}_foot_index", column)
     return keypoints
 
 

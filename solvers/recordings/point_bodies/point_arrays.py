@@ -141,8 +141,8 @@ def read_body(
     progress(
         0.8,
         Remark(
-            f"The joints have no names; by their bones they are in the order of {body.layout}"
-            f" with {body.confidence:.0%} confidence{assumed}"
+            "The joints have no known names; by their bones they are in the order of"
+            f" {body.layout} with {body.confidence:.0%} confidence{assumed}"
         ),
     )
     return stand_body(

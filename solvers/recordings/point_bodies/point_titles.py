@@ -10,7 +10,7 @@ SIGNS = r"[\s_.:\-|/\[(]"
 KINDS = r"pos(?:i(?:tion)?)?|loc(?:ation)?|translat(?:e|ion)|tr?|world"
 COORDINATE = re.compile(
     rf"(?P<name>.*?)(?:{SIGNS}+(?:{KINDS}))?{SIGNS}*(?P<axis>[xyz]|(?<=\[)[012])[)\]]?"
-    r"(?:_+(?:world|global))?(?:\s*[(\[](?P<unit>\w+)[)\]]|_(?P<ending>mm?|cm))?",
+    r"(?P<room>3[dD]|[\s_]+(?:world|global|3[dD]))?(?:\s*[(\[](?P<unit>\w+)[)\]]|_(?P<ending>mm?|cm))?",
     re.IGNORECASE,
 )
 AXIS_FIRST = re.compile(
@@ -34,6 +34,8 @@ NO_LENGTH = re.compile(
     r"deg(rees?)?|grad|rad(ians?)?|px|pix(els?)?|n|newtons?|g|hz|mps|dps|percent", re.IGNORECASE
 )
 """Units of other quantities than positions."""
+POSITION_LETTER = re.compile(r"(?P<name>.{2,})[_.\-]p", re.IGNORECASE)
+"""A name such as `Hips.p`, next to `Hips.q`."""
 LETTER = re.compile(r"(?P<name>.+)[\s_.:\-](?P<letter>[a-z])", re.IGNORECASE)
 LOCAL = re.compile(r"(?:^|[\s_.:\-])[Ll]ocal|(?<=[a-z\d])Local|(?:^|[\s_.:\-])[Rr]elative")
 """Begin of the word for positions relative to the parent bone."""
@@ -51,6 +53,8 @@ class Coordinate(NamedTuple):
     axis: str
     unit: str
     """Empty if it is not stated."""
+    is_in_room: bool = False
+    """Whether the end of the title says so, such as `_world` or `3d`."""
 
 
 def coordinate_of_title(title: str) -> Coordinate | None:
@@ -64,13 +68,20 @@ def coordinate_of_title(title: str) -> Coordinate | None:
         unit = parts.get("unit") or parts.get("ending") or ""
         if name and not is_quantity(name) and not NO_LENGTH.fullmatch(unit):
             axis = match["axis"].lower().translate(AXES_OF_NUMBERS)
-            return Coordinate(name, axis, unit)
+            return Coordinate(name, axis, unit, bool(parts.get("room")))
     return None
 
 
 def is_quantity(name: str) -> bool:
     """Return whether a name ends with a word for another quantity than a position."""
     return NO_POSITION.search(name) is not None
+
+
+def without_letter(names: Sequence[str]) -> tuple[str, ...]:
+    """Return names without the letter of positions, if all have it."""
+    matches = [POSITION_LETTER.fullmatch(name) for name in names]
+    plain = tuple(match["name"] for match in matches if match)
+    return plain if len(plain) == len(names) else tuple(names)
 
 
 def names_of_positions(names: Collection[str]) -> list[str]:

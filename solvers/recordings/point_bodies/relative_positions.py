@@ -12,6 +12,10 @@ from ...progress import Progress, Remark
 MAX_SWAY_FRACTION = 0.01
 """Range of the hips relative to the size of the body, a ratio, up to which they are kept in
 place. Chosen by hand: hips of who stands still sway by 2 cm, which is above it."""
+MAX_CENTER_FRACTION = 0.1
+"""Distance of the hips from the origin, relative to the size of the body, up to which they are
+the origin. Chosen by hand: the middle of the thighs is 8 cm from a pelvis, 0.07 of a small
+adult; hips in a room are at 0.5 and more above its floor."""
 MIN_STEP_FRACTION = 0.05
 """Range of the feet relative to the size of the body, a ratio, from which hips would have moved
 in a room. Chosen by hand: half a foot's length of an adult."""
@@ -58,7 +62,9 @@ def report_still_hips(points: Array, roles: Mapping[str, int], progress: Progres
     size = float(np.median(known, axis=0).max()) if len(known) else 0.0
     sway = min(map(_range, middles))
     step = max(_range(points[:, roles[role]]) for role in ("leftFoot", "rightFoot"))
-    if sway <= MAX_SWAY_FRACTION * size and step > MIN_STEP_FRACTION * size > 0.0:
+    away = float(np.nan_to_num(np.linalg.norm(hips, axis=1)).max())
+    are_still = sway <= MAX_SWAY_FRACTION * size or away <= MAX_CENTER_FRACTION * size
+    if are_still and step > MIN_STEP_FRACTION * size > 0.0:
         progress(
             0.9,
             Remark(

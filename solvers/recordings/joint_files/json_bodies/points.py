@@ -26,8 +26,10 @@ LANDMARK_KEYS = (
 NAME_KEYS = either_case("name", "joint", "joint_name", "jointName", "bone", "bone_name", "type",
                         "jointType", "id")  # fmt: skip
 """Members with the name of a joint, where joints are objects in a list."""
-POSITION_KEYS = either_case("position", "pos", "translation", "location", "transform", "matrix")
-"""Members with the position of a joint, or with the matrix of its pose."""
+POSITION_KEYS = either_case("worldPosition", "world_position", "globalPosition",
+                            "global_position", "position", "pos", "translation", "location",
+                            "coordinates", "coords", "p", "transform", "matrix")  # fmt: skip
+"""Members with the position of a joint, those of the room first, or with its matrix."""
 INNER_KEYS = ("xyz", "v", "value")
 """Members of a position with its coordinates, as in the structures of the Azure Kinect."""
 CONFIDENCE_KEYS = ("visibility", "presence", "score", "confidence")

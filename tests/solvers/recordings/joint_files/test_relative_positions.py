@@ -132,9 +132,11 @@ def test_of_both_ends_of_bones_the_heads_are_the_joints(read_any, walk):
     recording = read_any(table(forms, walk, tails))
 
     knees = [recording.names.index(f"{side}_knee") for side in ("left", "right")]
-    apart = recording.tracks.positions[:, knees[0]] - recording.tracks.positions[:, knees[1]]
+    displacement = (
+        recording.tracks.positions[:, knees[0]] - recording.tracks.positions[:, knees[1]]
+    )
     expected = walk["leftLowerLeg"] - walk["rightLowerLeg"]
-    assert np.linalg.norm(apart, axis=1) == pytest.approx(
+    assert np.linalg.norm(displacement, axis=1) == pytest.approx(
         np.linalg.norm(expected, axis=1), abs=1e-4
     )
 
@@ -148,3 +150,90 @@ def test_numbers_at_the_end_of_some_names_are_no_people(read_any):
     recording = read_any(text)
 
     assert isinstance(recording, Tracks) and len(recording.names) == 24
+
+
+@pytest.mark.parametrize("end", ["_{axis}_3d", "_{axis}3d", " {axis} 3D", "_{axis}_world"])
+def test_points_in_3d_come_before_those_in_the_picture(read_any, walk, end):
+    """Before, x and y were those of the picture, or the format unknown."""
+    flat = {role: 900.0 * path for role, path in walk.items()}
+
+    recording = read_any(table(["{role}_{axis}", "{role}" + end], flat, walk))
+
+    wrist = recording.tracks.positions[:, recording.names.index("left_wrist")]
+    assert np.linalg.norm(np.diff(wrist, axis=0), axis=1) == pytest.approx(
+        np.linalg.norm(np.diff(walk["leftHand"], axis=0), axis=1), abs=1e-4
+    )
+
+
+def test_keypoints_in_3d_next_to_the_picture_are_read(read_any, walk):
+    """Before, they were refused as landmarks of a picture."""
+    names = {
+        f"{side}_{part}": walk[side + role]
+        for side in ("left", "right")
+        for part, role in (
+            ("shoulder", "UpperArm"), ("elbow", "LowerArm"), ("wrist", "Hand"),
+            ("hip", "UpperLeg"), ("knee", "LowerLeg"), ("ankle", "Foot"),
+            ("eye", "Hand"), ("ear", "Hand"),
+        )
+    } | {"nose": walk["head"]}  # fmt: skip
+    flat = {name: 900.0 * path for name, path in names.items()}
+
+    recording = read_any(table(["{role}_{axis}", "{role}_{axis}3d"], flat, names))
+
+    hips = recording.tracks.positions[:, recording.names.index("left_hip")]
+    assert np.ptp(hips, axis=0).max() == pytest.approx(
+        np.ptp(walk["leftUpperLeg"], axis=0).max(), abs=1e-3
+    )
+
+
+def test_letters_of_positions_are_no_part_of_names(read_any, walk):
+    """Before, `Hips.px` was the marker `Hips.p`."""
+    turns = {role: np.ones_like(path) for role, path in walk.items()}
+
+    recording = read_any(table(["{role}.p{axis}", "{role}.q{axis}"], walk, turns))
+
+    assert "left_wrist" in recording.names
+
+
+def test_points_of_no_body_are_reported_as_markers(read_any, collected_messages):
+    """Before, the points of a dog were markers without a word."""
+    messages, progress = collected_messages
+    rng = np.random.default_rng(2)
+    names = [f"cloth_{n}" for n in range(24)]
+
+    read_any(
+        table(["{role}_{axis}"], {name: rng.normal(size=(F, 3)) for name in names}),
+        progress=progress,
+    )
+
+    assert "The names are those of no body; the points become markers" in messages
+
+
+def test_the_bones_decide_on_joints_with_names_of_no_known_skeleton(read_any, walk):
+    """Before, the joints of a headset were markers."""
+    order = ["hips", "spine", "chest", "upperChest", "neck", "head"] + [
+        side + part
+        for parts in (("Shoulder", "UpperArm", "LowerArm", "Hand"),
+                      ("UpperLeg", "LowerLeg", "Foot", "Toes"))
+        for side in ("left", "right") for part in parts
+    ]  # fmt: skip
+    paths = {role: walk.get(role, walk["chest"]) for role in order}
+    renamed = {f"Body_{k:02}x": path for k, path in enumerate(paths.values())}
+
+    recording = read_any(table(["{role}.p{axis}"], renamed))
+
+    assert not isinstance(recording, Tracks)
+
+
+def test_the_foot_next_to_an_ankle_is_the_toes(read_any, walk):
+    """Before, the feet of a Kinect were left out."""
+    parts = {"Shoulder": "UpperArm", "Elbow": "LowerArm", "Wrist": "Hand", "Hip": "UpperLeg",
+             "Knee": "LowerLeg", "Ankle": "Foot", "Foot": "Toes"}  # fmt: skip
+    kinect = {
+        part + side.title(): walk[side + role]
+        for side in ("left", "right") for part, role in parts.items()
+    }  # fmt: skip
+
+    recording = read_any(table(["{role}_{axis}"], kinect))
+
+    assert {"left_foot_index", "right_foot_index"} <= {*recording.names}

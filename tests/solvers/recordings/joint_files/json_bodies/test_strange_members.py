@@ -164,3 +164,26 @@ def test_positions_may_be_nested_as_in_the_sdk_of_the_azure_kinect(read_any, wal
     frames = [{"bodies": [{"id": 1, "joints": joints(walk, k, wrap=nest)}]} for k in range(N)]
 
     assert "left_wrist" in read_any(json.dumps(frames)).names
+
+
+@pytest.mark.parametrize("key", ["p", "worldPosition", "coords"])
+def test_positions_may_have_any_usual_key(read_any, walk, key):
+    others = {"localPosition": [0, 0, 0], "q": [0, 0, 0, 1]}
+    frames = [
+        {"bones": [{"name": each["name"], key: each["position"], **others}
+                   for each in joints(walk, k)]}
+        for k in range(N)
+    ]  # fmt: skip
+
+    assert "left_wrist" in read_any(json.dumps({"fps": 72, "frames": frames})).names
+
+
+def test_hips_at_the_origin_may_turn(read_any, collected_messages, walk):
+    """The middle of the thighs moves around a pelvis that is the origin."""
+    messages, progress = collected_messages
+    frames = [{"joints": joints(walk, k, origin=walk["hips"][k] + (0.0, 0.0, 0.08 * (k % 2)))}
+              for k in range(N)]  # fmt: skip
+
+    read_any(json.dumps(frames), progress=progress)
+
+    assert any("so the actor does not travel" in message for message in messages)
