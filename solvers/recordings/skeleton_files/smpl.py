@@ -44,8 +44,10 @@ from .smpl_bodies import (
     SCALES,
     SIZES,
     member,
+    plain_name,
     rotation_vectors,
     smpl_joints,
+    spelled,
     split_people,
     with_root_at_pelvis,
     with_rotation_vectors,
@@ -64,7 +66,7 @@ def is_smpl(head: bytes) -> bool:
 
     One name of poses is enough; without one, all names are parameters.
     """
-    names = {*archive_names(head)}
+    names = {plain_name(name) for name in archive_names(head)}
     is_pose = "pose" in names and not OF_SMPL.isdisjoint(names)
     return bool(names) and (names <= NAMES or is_pose or not POSES.isdisjoint(names))
 
@@ -119,7 +121,8 @@ def open_smpl(
     .. [1] Mahmood, Ghorbani, Troje, Pons-Moll, Black (2019). AMASS: Archive of motion capture
        as surface shapes. ICCV.
     """
-    arrays = read_archive_members(path, (*READ_ARRAYS, "posed_joints"))
+    found = read_archive_members(path, (*spelled(READ_ARRAYS), "posed_joints"))
+    arrays = {plain_name(name): array for name, array in found.items()}
     if "posed_joints" in arrays and not {*ROTATIONS, *ROOT} & arrays.keys():
         return open_kimodo(path, scale=scale, progress=progress)
     arrays = with_rotation_vectors(arrays, ALL_ROTATIONS)

@@ -20,7 +20,9 @@ from .parameters import (
     SCALES,
     SIZES,
     member,
+    plain_name,
     rotation_vectors,
+    spelled,
 )
 from .people import split_people
 from .rotations import with_rotation_vectors
@@ -45,8 +47,10 @@ __all__ = [
     "SCALES",
     "SIZES",
     "member",
+    "plain_name",
     "rotation_vectors",
     "smpl_joints",
+    "spelled",
     "split_people",
     "with_root_at_pelvis",
     "with_rotation_vectors",

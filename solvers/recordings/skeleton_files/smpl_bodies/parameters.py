@@ -1,5 +1,6 @@
 """Rotations of the joints in the arrays of an SMPL body, by the names that programs use."""
 
+import re
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
@@ -20,7 +21,8 @@ BODY_POSE = ("pose_body", "body_pose")
 HANDS = ("pose_hand",)
 LEFT_HAND, RIGHT_HAND = ("left_hand_pose",), ("right_hand_pose",)
 POSITIONS = (
-    "trans_world", "trans", "transl", "translation", "smpl_trans", "pred_trans", "cam_trans",
+    "trans_world", "trans", "transl", "translation", "smpl_trans", "pred_trans",
+    "body_translation", "cam_trans",
 )  # fmt: skip
 """Names of the position of the root; the last one is ROMP's, in the axes of the camera."""
 RATES = ("mocap_frame_rate", "mocap_framerate", "frame_rate", "framerate", "fps")
@@ -36,7 +38,7 @@ NAMES = frozenset(
      *SCALES, *OF_EASYMOCAP, "shapes", "expression", "betas", "gender", "dmpls",
      "surface_model_type",
      "pose_jaw", "pose_eye", "num_betas", "marker_data", "marker_labels",
-     "mocap_time_length", "trans_vel")
+     "mocap_time_length", "trans_vel", "head_pose")
 )  # fmt: skip
 ALL_ROTATIONS = frozenset((
     *ROTATIONS,
@@ -110,6 +112,9 @@ def rotation_vectors(path: Path | str, arrays: Mapping[str, Array]) -> Array:
 def _joined_parts(arrays: Mapping[str, Array]) -> Array | None:
     """Return root, body and hands side by side, as SMPL-H has them; None without a body."""
     root, body = member(arrays, ROOT), member(arrays, BODY_POSE)
+    if root is None and body is not None and body.ndim > 1 and body[0].size == 3 * N_BODY:
+        rows = body.reshape(len(body), -1)  # as in Meshcapade's .smpl
+        root, body = rows[:, :3], rows[:, 3:]
     if root is None or body is None or min(root.ndim, body.ndim) < 2 or not len(root):
         return None
     n_frames = len(root)
@@ -124,6 +129,16 @@ def _joined_parts(arrays: Mapping[str, Array]) -> Array | None:
     if sum(hand.shape[1] for hand in found) == 2 * N_HAND:
         parts += found
     return np.asarray(np.concatenate(parts, axis=1))
+
+
+def plain_name(name: str) -> str:
+    """Return a name such as `bodyPose` as `body_pose`; those of EasyMocap remain."""
+    return name if name in OF_EASYMOCAP else re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+
+
+def spelled(names: Collection[str]) -> list[str]:
+    """Return names, also as programs in JavaScript and Meshcapade's .smpl write them."""
+    return [*names, *(re.sub(r"_([a-z])", lambda m: m[1].upper(), name) for name in names)]
 
 
 def member(arrays: Mapping[str, Array], names: Collection[str]) -> Array | None:

@@ -103,3 +103,19 @@ def test_the_position_in_the_camera_of_romp_is_read(tmp_path, collected_messages
 
     assert np.ptp(motion.root_positions, axis=0) == pytest.approx((1.0, 0.0, 0.0), abs=1e-6)
     assert any("relative to the camera" in message for message in messages)
+
+
+def test_the_names_and_the_pose_of_meshcapade_are_read(tmp_path):
+    """Before, its .smpl was a NumPy archive without joints of a known name."""
+    path = save(
+        tmp_path / "take.smpl.npz", codecVersion=2, smplVersion=1, gender=0, frameCount=F,
+        frameRate=25.0, shapeParameters=np.zeros(10), headPose=np.zeros((F, 3, 3)),
+        bodyTranslation=np.linspace([0, 0.9, 0], [1.0, 0.9, 0], F),
+        bodyPose=np.zeros((F, 22, 3)), leftHandPose=np.full((F, 15, 3), 0.1),
+        rightHandPose=np.full((F, 15, 3), 0.1),
+    )  # fmt: skip
+
+    motion = read_recording(path)
+
+    assert (motion.frame_rate, motion.skeleton.n_joints) == (25.0, 52)
+    assert np.ptp(motion.root_positions, axis=0) == pytest.approx((1.0, 0.0, 0.0), abs=1e-6)
