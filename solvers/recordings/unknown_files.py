@@ -33,8 +33,8 @@ MIN_FACE = 4
 """Number of titles of a face, from which a table is one of a face. It decides what the sentence
 says only."""
 MIN_NUMERIC_FRACTION = 0.5
-"""Cells of the first line that are numbers, a fraction, from which it has no titles. It decides
-what the sentence says only."""
+"""Numbers among the cells of the first line, a ratio, from which it has no titles. It guards
+tables whose first titles are numbers, as of frames."""
 
 
 def describe_unknown(path: Path | str) -> str | None:

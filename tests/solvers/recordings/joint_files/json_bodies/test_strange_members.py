@@ -167,7 +167,7 @@ def test_positions_may_be_nested_as_in_the_sdk_of_the_azure_kinect(read_any, wal
 
 
 @pytest.mark.parametrize("key", ["p", "worldPosition", "coords"])
-def test_positions_may_have_any_usual_key(read_any, walk, key):
+def test_positions_may_have_any_common_key(read_any, walk, key):
     others = {"localPosition": [0, 0, 0], "q": [0, 0, 0, 1]}
     frames = [
         {"bones": [{"name": each["name"], key: each["position"], **others}
