@@ -102,9 +102,9 @@ def position_of(joint: Any) -> Any:
     if joint is None:
         return [None] * 3
     if isinstance(joint, Mapping):
-        inner = next(members(joint, POSITION_KEYS), joint)
+        inner = _nested(joint, POSITION_KEYS)
         if isinstance(inner, Mapping):
-            inner = next(members(inner, INNER_KEYS), inner)
+            inner = _nested(inner, INNER_KEYS)
         if isinstance(inner, Mapping):
             lower = {str(key).lower(): value for key, value in inner.items()}
             axes = [f"{each}{axis}" for each in ("", "camera") for axis in "xyz"]
@@ -114,6 +114,15 @@ def position_of(joint: Any) -> Any:
     if isinstance(joint, list) and len(joint) in {4, 16}:
         return _translation(joint)
     return joint
+
+
+def _nested(values: Mapping[str, Any], keys: tuple[str, ...]) -> Any:
+    """Return the first member that may hold coordinates, otherwise the object itself.
+
+    A number of the same name is something else, such as `v` for visibility.
+    """
+    found = members(values, keys)
+    return next((each for each in found if isinstance(each, list | Mapping | None)), values)
 
 
 def width_of(position: Any) -> int:

@@ -187,3 +187,15 @@ def test_hips_at_the_origin_may_turn(read_any, collected_messages, walk):
     read_any(json.dumps(frames), progress=progress)
 
     assert any("so the actor does not travel" in message for message in messages)
+
+
+@pytest.mark.parametrize("key", ["v", "p", "value", "location"])
+@pytest.mark.parametrize("wrap", [dict, lambda row: {"position": row}])
+def test_numbers_next_to_coordinates_are_no_positions(read_any, key, wrap):
+    """Before, `v` for visibility or `p` for probability took the place of the coordinates."""
+    frames = [{"landmarks": [*map(wrap, landmarks(k, **{key: 0.9}))]} for k in range(N)]
+
+    recording = read_any(json.dumps({"fps": 30, "frames": frames}))
+
+    x, y, z = np.moveaxis(POINTS[..., :3], -1, 0)
+    assert np.allclose(recording.tracks.positions[:, :33], np.stack([x, z, -y], axis=-1))
