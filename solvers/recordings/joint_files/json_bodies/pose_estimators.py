@@ -41,7 +41,7 @@ from .joined_frames import (
 from .keyed_frames import json_by_frame
 from .people import people_of_frame
 from .points import MIN_JOINTS
-from .stamps import NUMBER_KEYS, is_number, rate_beside, stamps_of_frame
+from .stamps import NUMBER_KEYS, StatedRate, is_number, stamps_of_frame, stated_rates
 
 LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
 """Members with the names of joints, where these stand apart."""
@@ -159,7 +159,7 @@ def _read_content(
 ) -> _Content:
     """Return the frames in the members of a file, or in the files of a take."""
     rows: list[_Row] = []
-    rate: float | None = None
+    stated: list[tuple[str, StatedRate]] = []
     second: float | None = None
     names: list[str] = []
     times: list[float] = []
@@ -178,25 +178,27 @@ def _read_content(
         found = {person.identity: BodyJoints(*person.points) for person in people}
         stamps = stamps_of_frame(value) if is_object else {}
         number = _number_of(value) if is_object else np.nan
-        if not (people or stamps) and np.isnan(number):
-            rate = rate or rate_beside({member.key: value})
+        if not people:
+            stated += ((member.key, rate) for rate in stated_rates({member.key: value}))
         frame = BodiesFrame(np.nan, found, member.done)
         rows.append((member.key, stamps, NumberedFrame(number, frame)))
         progress(0.8 * member.done, "Reading")
     if n_several:
         progress(0.8, _remark_of_unidentified(n_several))
     by_key, second = _by_key(rows, second, progress)
-    rate = _rate_of_numbers(rows, rate, progress)
-    return _Content(_timed(joined_frames(by_key, path), times), rate, second, tuple(names))
+    frames = _timed(joined_frames(by_key, path), times)
+    are_timed = any(not np.isnan(frame.time) for frame in frames)
+    rate = _rate_of_numbers(rows, _best_rate(rows, stated), are_timed, progress)
+    return _Content(frames, rate, second, tuple(names))
 
 
 def _by_key(
     rows: list[_Row], second: float | None, progress: Progress
 ) -> tuple[dict[str, list[NumberedFrame]], float | None]:
     """Return frames by the keys of their members, with their times, and seconds per unit."""
-    clocks = {key for _, stamps, _ in rows for key in stamps}
     frozen = frozen_clocks(stamps for _, stamps, _ in rows)
-    if frozen and frozen == clocks:
+    n_stated = Counter(key for _, stamps, _ in rows for key in stamps)
+    if frozen and frozen == n_stated.keys() and max(n_stated.values()) > 1:
         progress(0.8, Remark("The times of the file stand still and are not used"))
     by_key: dict[str, list[NumberedFrame]] = {}
     for key, stamps, row in rows:
@@ -207,14 +209,31 @@ def _by_key(
     return by_key, second
 
 
-def _rate_of_numbers(rows: list[_Row], rate: float | None, progress: Progress) -> float | None:
+def _best_rate(rows: list[_Row], stated: list[tuple[str, StatedRate]]) -> float | None:
+    """Return the rate that a file states; None without one.
+
+    A member that occurs several times is a frame, whose rate is another one if it has a time.
+    """
+    n_members = Counter(key for key, _, _ in rows)
+    frames = {
+        key
+        for key, stamps, row in rows
+        if n_members[key] > 1 and (stamps or not np.isnan(row.number))
+    }
+    rates = sorted(rate for key, rate in stated if key not in frames)
+    return rates[0].rate if rates else None
+
+
+def _rate_of_numbers(
+    rows: list[_Row], rate: float | None, are_timed: bool, progress: Progress
+) -> float | None:
     """Return the rate of frames of which only each second, third and so on is there.
 
-    Numbers are those of the video, whose rate is stated.
+    Numbers are those of the video, whose rate is stated. Times decide if frames have them.
     """
     numbers = sorted({row.number for _, _, row in rows if not np.isnan(row.number)})
     step = step_between(numbers) if len(numbers) > 1 else 1.0
-    if rate is None or step <= 1.0:
+    if rate is None or step <= 1.0 or are_timed:
         return rate
     progress(
         0.8,

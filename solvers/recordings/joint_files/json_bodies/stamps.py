@@ -1,7 +1,7 @@
 """Find the times, numbers and rates that frames of JSON state."""
 
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,9 +13,14 @@ NUMBER_KEYS = either_case("frame", "frame_id", "frame_number", "frame_index", "f
 """Members with the number of a frame."""
 HEADER_KEYS = either_case("header", "meta", "metadata")
 """Members with the time of a frame, as in messages of ROS."""
+SAMPLING_KEYS = either_case("sample_rate", "sampleRate", "sampling_rate", "frequency")
+"""Members with the rate, or with another one, such as that of sound."""
 RATE_KEYS = (*either_case("fps", "frame_rate", "framerate", "frameRate", "frames_per_second",
-                          "framesPerSecond", "video_fps", "videoFps", "sample_rate",
-                          "sampleRate", "sampling_rate", "frequency"), "FPS")  # fmt: skip
+                          "framesPerSecond", "video_fps", "videoFps"), "FPS",
+             *SAMPLING_KEYS)  # fmt: skip
+MAX_SAMPLING_HZ = 2000.0
+"""Maximum rate in hertz of members that are not called one of frames. It guards sound, whose
+rates start at 8 kHz; cameras of motion capture end at 2 kHz."""
 NUMBERS_KEYS = either_case("frame_ids", "frameIds", "frame_numbers", "frame_indices")
 """Members with the numbers of all frames of a person."""
 START_KEYS = either_case("start_frame", "startFrame")
@@ -26,6 +31,9 @@ NANOSECOND_KEYS = ("nanosec", "nsec", "nsecs", "nanos", "nanoseconds")
 MAX_NUMBER = 1e300
 """Maximum number or time of a frame, or rate in hertz. It guards the conversion of whole
 numbers, which JSON does not limit."""
+
+MAX_RATE_DEPTH = 3
+"""Levels of members in which a rate is looked for. It guards the depth of the recursion."""
 
 
 def time_of_frame(frame: Mapping[str, Any]) -> tuple[float, float | None]:
@@ -72,13 +80,29 @@ def is_number(value: Any) -> bool:
     return is_real and abs(value) < MAX_NUMBER
 
 
-def rate_beside(value: Any, depth: int = 3) -> float | None:
-    """Return the rate that the members of what is no frame state, such as `metadata`."""
-    if not isinstance(value, Mapping) or not depth:
-        return None
-    stated = (float(value[key]) for key in RATE_KEYS if is_number(value.get(key)))
-    inner = (rate_beside(each, depth - 1) for each in value.values())
-    return next((rate for rate in (*stated, *inner) if rate is not None and rate > 0.0), None)
+class StatedRate(NamedTuple):
+    """Rate that a file states, in hertz; the smallest one is the best."""
+
+    is_sampling: bool
+    """Whether its name is one of `SAMPLING_KEYS`."""
+    depth: int
+    """Levels of members above it."""
+    order: int
+    """Index of its name among `RATE_KEYS`."""
+    rate: float
+
+
+def stated_rates(value: Any, depth: int = 0) -> Iterator[StatedRate]:
+    """Yield the rates that the members of what is no frame state, such as `metadata`."""
+    if not isinstance(value, Mapping) or depth >= MAX_RATE_DEPTH:
+        return
+    for order, key in enumerate(RATE_KEYS):
+        rate = float(value[key]) if is_number(value.get(key)) else 0.0
+        is_sampling = key in SAMPLING_KEYS
+        if 0.0 < rate <= (MAX_SAMPLING_HZ if is_sampling else MAX_NUMBER):
+            yield StatedRate(is_sampling, depth, order, rate)
+    for inner in value.values():
+        yield from stated_rates(inner, depth + 1)
 
 
 def listed_numbers(value: Mapping[str, Any], keys: Iterable[str], n_frames: int) -> list[float]:
