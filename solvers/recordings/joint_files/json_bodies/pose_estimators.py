@@ -180,15 +180,14 @@ def _read_content(
         number = _number_of(value) if is_object else np.nan
         if not people:
             stated += ((member.key, rate) for rate in stated_rates({member.key: value}))
-        frame = BodiesFrame(np.nan, found, member.done)
-        rows.append((member.key, stamps, NumberedFrame(number, frame)))
+        row = NumberedFrame(number, BodiesFrame(np.nan, found, member.done))
+        rows.append((member.key, stamps, row))
         progress(0.8 * member.done, "Reading")
     if n_several:
         progress(0.8, _remark_of_unidentified(n_several))
     by_key, second = _by_key(rows, second, progress)
     frames = _timed(joined_frames(by_key, path), times)
-    are_timed = any(not np.isnan(frame.time) for frame in frames)
-    rate = _rate_of_numbers(rows, _best_rate(rows, stated), are_timed, progress)
+    rate = _rate_of_frames(rows, frames, _best_rate(rows, stated), progress)
     return _Content(frames, rate, second, tuple(names))
 
 
@@ -224,8 +223,8 @@ def _best_rate(rows: list[_Row], stated: list[tuple[str, StatedRate]]) -> float 
     return rates[0].rate if rates else None
 
 
-def _rate_of_numbers(
-    rows: list[_Row], rate: float | None, are_timed: bool, progress: Progress
+def _rate_of_frames(
+    rows: list[_Row], frames: list[BodiesFrame], rate: float | None, progress: Progress
 ) -> float | None:
     """Return the rate of frames of which only each second, third and so on is there.
 
@@ -233,6 +232,7 @@ def _rate_of_numbers(
     """
     numbers = sorted({row.number for _, _, row in rows if not np.isnan(row.number)})
     step = step_between(numbers) if len(numbers) > 1 else 1.0
+    are_timed = any(not np.isnan(frame.time) for frame in frames)
     if rate is None or step <= 1.0 or are_timed:
         return rate
     progress(
