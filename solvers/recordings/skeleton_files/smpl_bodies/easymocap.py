@@ -15,6 +15,8 @@ from ....rotations import (
 )
 
 ROTATION, TRANSLATION, SCALE = "Rh", "Th", "scale"
+MIN_SIZE, MAX_SIZE = 0.1, 10.0
+"""Size of a body relative to that of the model. It guards damaged files."""
 N_WITHOUT_ROOT = {63, 69}
 """Numbers of a pose without its root, which newer versions leave out."""
 N_OF_SMPL_X = {87}
@@ -31,12 +33,13 @@ def with_root_at_pelvis(path: Path | str, arrays: Mapping[str, Array]) -> dict[s
 
     EasyMocap rotates the posed body by `Rh` about the origin of the model, and moves it by `Th`
     [1]_. SMPL rotates it about the pelvis. `scale` is the size of the body relative to that of
-    the model.
+    the model; other programs call something else so, and it is left out.
 
     Raises
     ------
     InvalidFileError
-        The rotation or translation has another shape than one of each pose.
+        The rotation or translation has another shape than one of each pose, or the size is not
+        that of a body.
 
     References
     ----------
@@ -44,6 +47,7 @@ def with_root_at_pelvis(path: Path | str, arrays: Mapping[str, Array]) -> dict[s
     """
     arrays = dict(arrays)
     if not {ROTATION, TRANSLATION} & arrays.keys() or "poses" not in arrays:
+        arrays.pop(SCALE, None)
         return arrays
     poses = arrays["poses"]
     n_frames = len(poses)
@@ -54,7 +58,12 @@ def with_root_at_pelvis(path: Path | str, arrays: Mapping[str, Array]) -> dict[s
         poses = np.concatenate([np.zeros((n_frames, 3)), poses], axis=1)
     pelvis = PELVIS_OF_SMPL_X_M if poses.shape[1] in N_OF_SMPL_X else PELVIS_M
     if SCALE in arrays and arrays[SCALE].size:
-        pelvis = pelvis * arrays[SCALE].flat[0]
+        size = float(arrays[SCALE].flat[0])
+        if not MIN_SIZE <= size <= MAX_SIZE:
+            raise InvalidFileError(
+                f"{path} has a body of {size:g} times the size of the model. Correct its scale."
+            )
+        pelvis = pelvis * size
     turns = quaternion_from_rotation_vector(vectors)
     roots = multiply(turns, quaternion_from_rotation_vector(poses[:, :3]))
     arrays["poses"] = np.concatenate(

@@ -119,3 +119,22 @@ def test_the_names_and_the_pose_of_meshcapade_are_read(tmp_path):
 
     assert (motion.frame_rate, motion.skeleton.n_joints) == (25.0, 52)
     assert np.ptp(motion.root_positions, axis=0) == pytest.approx((1.0, 0.0, 0.0), abs=1e-6)
+
+
+def test_a_scale_of_another_program_does_not_change_the_size(tmp_path):
+    """Before, the size of a box around the actor in the picture made a giant of 400 m."""
+    arrays = {"poses": np.zeros((F, 72)), "trans": np.zeros((F, 3))}
+
+    plain = read_recording(save(tmp_path / "plain.npz", **arrays))
+    boxed = read_recording(save(tmp_path / "boxed.npz", **arrays, scale=np.full(F, 250.0)))
+
+    assert np.allclose(boxed.skeleton.offsets, plain.skeleton.offsets)
+
+
+@pytest.mark.parametrize("scale", [np.nan, -1.0, 1e9])
+def test_a_scale_of_no_body_is_refused(tmp_path, scale):
+    """Before, a body of 1.7 million kilometers was read."""
+    arrays = {"poses": np.zeros((F, 72)), "Th": np.zeros((F, 3))}
+
+    with pytest.raises(InvalidFileError, match="times the size of the model"):
+        read_recording(save(tmp_path / "a.npz", **arrays, scale=scale))
