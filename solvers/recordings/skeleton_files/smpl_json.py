@@ -18,6 +18,8 @@ from .smpl import bodies_of_parameters
 from .smpl_bodies import (
     ALL_ROTATIONS,
     BODY_SCALES,
+    N_BODY_POSE,
+    N_NUMBERS,
     POSES,
     RATES,
     READ_ARRAYS,
@@ -37,8 +39,10 @@ OWN_NAME, POSE_NAME, OTHER_NAME = (
     re.compile(LIST % "|".join(names).encode())
     for names in (OF_SMPL, ("poses", "pose"), NEXT_TO_POSES)
 )
-LONG_ROW = re.compile(rb'"poses"\s*:\s*(?:\[\s*){1,3}(?:-?\d[^,\[\]]*,\s*){62}')
-"""The begin of a pose of 63 and more numbers; positions have three in a row."""
+LONG_ROW = re.compile(
+    rb'"poses"\s*:\s*(?:\[\s*){1,3}((?:\s*-?\d[^,\[\]]*,){62}[^\[\]]*)(?P<end>\]|\Z)'
+)
+"""A pose of 63 and more numbers, which may be longer than the first bytes of a file."""
 IN_WORLD = re.compile(r"(?i)global|world")
 """Word in the key of poses that others repeat relative to the camera."""
 NUMBERED = re.compile(r"\D*\d+")
@@ -54,7 +58,11 @@ def is_smpl_json(head: bytes) -> bool:
     if head.lstrip()[:1] not in {b"[", b"{"}:
         return False
     is_pose = POSE_NAME.search(head) is not None and OTHER_NAME.search(head) is not None
-    return is_pose or bool(OWN_NAME.search(head) or LONG_ROW.search(head))
+    row = LONG_ROW.search(head)
+    is_row = row is not None and (
+        not row["end"] or row[1].count(b",") + 1 in N_NUMBERS | N_BODY_POSE
+    )
+    return is_pose or is_row or OWN_NAME.search(head) is not None
 
 
 def is_frame_smpl_json(path: Path | str) -> bool:
@@ -183,8 +191,8 @@ def _arrays(body: Mapping[str, Any]) -> dict[str, Array]:
             array = np.array(body.get(name), dtype=np.float64)
         except (ValueError, TypeError, OverflowError):
             continue
-        if name in body and array.size:
-            is_row = array.ndim == 1 and name not in CONSTANT
+        is_row = array.ndim == 1 and name not in CONSTANT
+        if array.size and (array.ndim or (name in CONSTANT and name in body)):
             arrays[name] = array[None] if is_row else array
     return arrays
 
@@ -203,22 +211,21 @@ def _n_frames(frames: list[_Frame]) -> int:
 
 
 def _joined(path: Path | str, name: str, frames: list[_Frame]) -> dict[str, Array]:
-    """Return the arrays of a person in all frames, NaN where the person is missing."""
+    """Return the arrays of a person in all frames, NaN where the person or one is missing."""
     if len(frames) == 1:
         return frames[0][name]
     own = [frame.get(name) for frame in frames]
-    first = next(arrays for arrays in own if arrays is not None)
+    first = dict[str, Array]()
+    for arrays in own:
+        first = {**(arrays or {}), **first}
     joined = {key: first[key] for key in first if key in CONSTANT}
     for key in first.keys() - CONSTANT:
-        rows = [
-            np.full_like(first[key], np.nan) if arrays is None else arrays.get(key)
-            for arrays in own
-        ]
-        rows = [row if row is None or len(row) == 1 else row[None] for row in rows]
-        shapes = {None if row is None else row.shape for row in rows}
-        if len(shapes) > 1:
+        missing = np.full_like(first[key], np.nan)
+        rows = [missing if arrays is None else arrays.get(key, missing) for arrays in own]
+        rows = [row if len(row) == 1 else row[None] for row in rows]
+        if len({row.shape for row in rows}) > 1:
             raise InvalidFileError(
                 f"{path}: the number of parameters of body {name} changes. Export it again."
             )
-        joined[key] = np.concatenate([row for row in rows if row is not None])
+        joined[key] = np.concatenate(rows)
     return joined

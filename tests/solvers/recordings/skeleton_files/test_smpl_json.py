@@ -4,8 +4,11 @@ import json
 
 import numpy as np
 import pytest
+from exports.camera_bodies import mediapipe
+from pytest import approx
 
 from solvers.errors import InvalidFileError
+from solvers.motion import Sensor
 from solvers.recordings import list_bodies, read_recording
 
 F = 12
@@ -60,7 +63,7 @@ def test_arrays_and_lists_of_frames_are_read(make_reader, content):
     motion = make_reader("take.json")(json.dumps(content))
 
     assert (motion.n_frames, motion.frame_rate) == (F, 25.0)
-    assert travel_of(motion) == pytest.approx(1.1)
+    assert travel_of(motion) == approx(1.1)
 
 
 def test_people_in_each_frame_are_all_listed(tmp_path):
@@ -80,3 +83,43 @@ def test_a_changing_number_of_parameters_is_refused(make_reader):
     frames = [[person(0, 1)], [person(1, 1, 69)]]
     with pytest.raises(InvalidFileError, match="number of parameters of body 1 changes"):
         make_reader("take.json")(json.dumps(frames))
+
+
+def test_points_of_a_body_in_long_rows_are_no_rotations(make_reader):
+    """Before, 33 landmarks in a row were refused as numbers that no SMPL body has."""
+    rows = mediapipe(F)[..., :3].reshape(F, 99).round(4)
+
+    recording = make_reader("take.json")(json.dumps({"fps": 25, "poses": rows.tolist()}))
+
+    assert recording.sensor is Sensor.MEDIAPIPE
+
+
+@pytest.mark.parametrize("n_numbers", [72, 165])
+def test_poses_alone_are_read_however_many_digits_they_have(make_reader, rng, n_numbers):
+    poses = 0.1 * rng.normal(size=(F, n_numbers))
+
+    motion = make_reader("take.json")(json.dumps({"poses": poses.tolist(), "fps": 25}))
+
+    assert motion.n_frames == F
+
+
+@pytest.mark.parametrize("absent", [{"trans": None}, {}, {"trans": 5.0}])
+@pytest.mark.parametrize("frame", [0, 5])
+def test_a_position_may_be_missing_in_a_frame(make_reader, absent, frame):
+    """Before, null ended in a traceback, and all positions were those of the first frame."""
+    frames = [
+        {"poses": [0.0] * 72, "betas": [0.0] * 10}
+        | (absent if number == frame else {"trans": each.tolist()})
+        for number, each in enumerate(TRAVEL)
+    ]
+
+    motion = make_reader("take.json")(json.dumps({"fps": 25, "frames": frames}))
+
+    step = TRAVEL[-1, 0] / (F - 1)
+    assert motion.root_positions[-1, 0] - motion.root_positions[1, 0] == approx(10 * step)
+
+
+def test_a_number_called_pose_is_none(make_reader):
+    take = {"poses": np.zeros((F, 72)).tolist(), "trans": TRAVEL.tolist(), "pose": 5, "fps": 25}
+
+    assert make_reader("take.json")(json.dumps(take)).n_frames == F
