@@ -32,6 +32,14 @@ AXIS = re.compile(r"(?P<head>.*?)(?P<axis>[xyz])(?P<tail>_(?:m|pos|world|global)
 OF_WORLD = re.compile(r"world|global|3d")
 OF_PICTURE = re.compile(r"pixel|image|screen|norm|uv|2d|depth|colou?r")
 """Word in the title of a coordinate in a picture."""
+HEADS = frozenset(("", "pos", "position", "location", "translate", "t", "world", "global"))
+"""What stands before the axis in titles of positions; others come after these."""
+NO_PLACE = re.compile(
+    r"(?:^|_)(?:dir|direction|normal|tangent|forward|up|offset|delta|size|extent|bbox|box|std)s?$"
+)
+"""Word in the title of another vector than a position."""
+OF_PARENT = re.compile(r"local|relative|parent")
+"""Word in the title of a position that is not in the room."""
 NO_POSITION = frozenset("qrvaswnd")
 """First letters of other quantities than positions, such as in `qx`."""
 
@@ -99,6 +107,11 @@ def number_of_frame(cell: bytes) -> bytes:
     return numbers[-1] if numbers else b""
 
 
+def number_or_missing(cell: bytes) -> bytes:
+    """Return a number; a word, such as `High` for a confidence, is a missing one."""
+    return cell if NUMBER.fullmatch(cell) else b""
+
+
 def _joint_column(lower: Sequence[str]) -> int | None:
     """Return the column of joints: named ones before numbered ones, devices last."""
     found = {at: match for at, title in enumerate(lower) if (match := JOINT.fullmatch(title))}
@@ -130,7 +143,14 @@ def _axes(lower: Sequence[str]) -> tuple[int, ...]:
     ]
     found = [tuple(at for at in row if at is not None) for row in rows]
     flat = (lower.index("x"), lower.index("y")) if {"x", "y"} <= {*lower} else ()
-    return min(found, key=lambda row: (not _is_of_world(lower[row[0]]), row), default=flat)
+    return min(found, key=lambda row: (*_rank(lower[row[0]]), row), default=flat)
+
+
+def _rank(title: str) -> tuple[bool, bool, bool]:
+    """Return the rank of a title of x: of the parent, not of the world, of no known name."""
+    match = AXIS.fullmatch(title)
+    head = match["head"].rstrip("_ .") if match else title
+    return OF_PARENT.search(title) is not None, not _is_of_world(title), head not in HEADS
 
 
 def _is_of_world(title: str) -> bool:
@@ -142,7 +162,9 @@ def _is_of_world(title: str) -> bool:
 def _is_position(match: re.Match[str]) -> bool:
     head = match["head"].rstrip("_ .")
     is_other = len(head) == 1 and head in NO_POSITION
-    return not (is_other or is_quantity(head) or OF_PICTURE.search(head))
+    return not (
+        is_other or is_quantity(head) or OF_PICTURE.search(head) or NO_PLACE.search(head)
+    )
 
 
 def _columns_of_words(cells: Sequence[Sequence[str]]) -> list[int]:

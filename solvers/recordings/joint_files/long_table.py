@@ -1,5 +1,6 @@
 """Read tables with a line for each joint of each frame."""
 
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -34,11 +35,12 @@ from ..point_bodies import (
     second_of_times,
 )
 from .line_groups import first_repeated_line, grouped
-from .long_columns import LongColumns, long_columns, number_of_frame
+from .long_columns import LongColumns, long_columns, number_of_frame, number_or_missing
 from .mediapipe_csv import mediapipe_landmark
 from .points_recording import recording_of_points
 from .table_titles import MAX_TITLE_LINES, N_SAMPLED_LINES, table_titles
 
+NUMBERED_JOINT = re.compile(r"[0-9]{1,4}")
 MAX_WORD_COLUMNS = 4
 """Number of columns of words that may distinguish lines. It bounds the memory and the tries."""
 MIN_JOINTS = 8
@@ -113,7 +115,12 @@ def open_long_table(
     check_n_joints(path, len(table.joints))
     if len(columns.axes) == 2:
         raise InvalidFileError(
-            f"{path} holds 2D points of a picture, without depth. Save their positions in 3D."
+            f"{path} holds 2D points of a picture, without depth. Save"
+            + (
+                " the pose_world_landmarks of MediaPipe instead."
+                if columns.has_landmarks
+                else " their positions in 3D."
+            )
         )
     names, order = table.joints.in_order()
     people, points = _points(path, table, frames, order)
@@ -150,8 +157,10 @@ def _landmarks(names: Sequence[str], has_landmarks: bool) -> list[int] | None:
     """
     if not has_landmarks:
         return landmark_columns(names)
-    numbers = [int(name) for name in names if name.isdigit() and len(name) < 3]
+    numbers = [int(name) for name in names if NUMBERED_JOINT.fullmatch(name)]
     if len(numbers) == len(names):
+        if max(numbers) > N_POINTS:
+            return None
         first = int(max(numbers) == N_POINTS and 0 not in numbers)
         found: dict[int | None, int] = {number - first: at for at, number in enumerate(numbers)}
     else:
@@ -181,6 +190,8 @@ def _read_table(path: Path | str, progress: Progress) -> _LongTable:
         converters[columns.frame] = number_of_frame
     if columns.time is not None:
         converters[columns.time] = columns.times
+    if columns.confidence is not None:
+        converters[columns.confidence] = number_or_missing
     progress = within(progress, 0.0, 0.6)
     rows = stream_cells(
         reader, header.separator, len(titles), path, progress, converters=converters

@@ -5,7 +5,13 @@ import pytest
 from exports.camera_bodies import mediapipe
 
 from solvers.errors import InvalidFileError
-from solvers.motion import JointRecording, Sensor, find_humanoid_map, forward_kinematics
+from solvers.motion import (
+    JointRecording,
+    Sensor,
+    Tracks,
+    find_humanoid_map,
+    forward_kinematics,
+)
 from solvers.motion.skeletons import BODY_POINTS
 from solvers.recordings import list_bodies, read_recording
 from solvers.samples import walking_gait
@@ -74,7 +80,7 @@ def test_landmarks_of_the_world_come_before_those_of_the_picture(save):
 def test_landmarks_without_depth_are_refused(save):
     rows = lines(landmarks(), "{frame},{name},{x},{y}")
 
-    with pytest.raises(InvalidFileError, match="2D points of a picture, without depth"):
+    with pytest.raises(InvalidFileError, match="Save the pose_world_landmarks"):
         read_recording(save("frame,landmark,x,y", rows))
 
 
@@ -121,3 +127,38 @@ def test_velocities_are_no_positions(save):
 
     with pytest.raises(InvalidFileError, match="unknown format"):
         read_recording(save("frame,joint,vel_x,vel_y,vel_z", rows))
+
+
+@pytest.mark.parametrize(
+    ("titles", "form"),
+    [
+        ("frame,joint,local_x,local_y,local_z,x,y,z", "{frame},{name},0,1,2,{x},{y},{z}"),
+        ("frame,joint,dirX,dirY,dirZ,x,y,z", "{frame},{name},0,1,2,{x},{y},{z}"),
+        ("frame,joint,u_x,u_y,u_z,pos_x,pos_y,pos_z", "{frame},{name},0,1,2,{x},{y},{z}"),
+        ("frame,joint,x,y,z,confidence", "{frame},{name},{x},{y},{z},High"),
+    ],
+)
+def test_positions_come_before_other_vectors_and_words(save, titles, form):
+    """Before, the first vector was the position, and a confidence in words was refused."""
+    recording = read_recording(save(titles, lines(walk(), form)))
+
+    hips = recording.tracks.positions[:, recording.names.index("pelvis")]
+    assert np.ptp(hips, axis=0).max() == pytest.approx(
+        np.ptp(walk()["hips"], axis=0).max(), abs=1e-4
+    )
+
+
+def test_directions_alone_are_no_positions(save):
+    rows = lines(walk(), "{frame},{name},{x},{y},{z}")
+
+    with pytest.raises(InvalidFileError, match="unknown format"):
+        read_recording(save("frame,joint,dir_x,dir_y,dir_z", rows))
+
+
+@pytest.mark.parametrize("name", ["{at}", "\u00b2{at}"])
+def test_many_landmarks_are_not_those_of_a_pose(save, name):
+    """Before, the first 33 of a face were a pose, and a superscript ended in a traceback."""
+    face = {name.format(at=at): POINTS[:, at % 33, :3] for at in range(90)}
+    rows = lines(face, "{frame},{name},{x},{y},{z}")
+
+    assert isinstance(read_recording(save("frame,landmark,x,y,z", rows)), Tracks)
