@@ -175,7 +175,7 @@ def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[M
     Of points called like both ends of bones, one person has those where bones start.
     """
     people, others = list[MarkerSubject](), list[str]()
-    by_suffix = [MarkerSubject(*group) for group in groups_by_suffix(names)]
+    by_suffix = [MarkerSubject(*group) for group in groups_by_suffix(names, points)]
     for each in by_suffix or split_subjects(names):
         if body_of_named_points(each.names, points[:, each.columns]) is None:
             others.append(each.name)

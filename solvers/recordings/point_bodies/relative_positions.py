@@ -36,10 +36,11 @@ def refuse_parent_positions(path: Path | str, points: Array, roles: Mapping[str,
     points : shape (n_frames, n_joints, 3), in any unit and axes; NaN where missing
     roles : joints by humanoid role
     """
-    ranges = {role: _range(points[:, joint]) for role, joint in roles.items()}
+    is_seen = np.isfinite(points).all(axis=2).any(axis=0)
+    ranges = {role: _range(points[:, joint]) for role, joint in roles.items() if is_seen[joint]}
     hips = ranges.pop("hips", 0.0)
     still = [each for each in ranges.values() if each <= MAX_STILL_FRACTION * hips]
-    if hips > 0.0 and len(still) >= MIN_STILL_JOINTS * len(ranges):
+    if hips > 0.0 and ranges and len(still) >= MIN_STILL_JOINTS * len(ranges):
         raise InvalidFileError(
             f"{path} holds positions relative to the parent bones, from which no pose follows."
             " Save positions in the room (world or global), or export BVH, FBX or GLB."

@@ -8,6 +8,7 @@ import pytest
 from solvers.errors import InvalidFileError
 from solvers.motion import Tracks, find_humanoid_map, forward_kinematics
 from solvers.recordings import list_bodies
+from solvers.recordings.point_bodies.relative_positions import refuse_parent_positions
 from solvers.samples import walking_gait
 
 F = 40
@@ -93,6 +94,15 @@ def test_a_still_actor_is_no_set_of_offsets(read_any, walk):
     assert read_any(table(["{role}_{axis}"], still)).tracks.n_frames == F
 
 
+def test_joints_that_are_never_observed_are_no_offsets(walk):
+    """A body of which only arms and hips are seen is one in the room."""
+    roles = {role: at for at, role in enumerate(walk)}
+    points = np.stack([*walk.values()], axis=1)
+    is_seen = np.isin([*walk], ["hips", "leftHand", "rightHand"])
+
+    refuse_parent_positions("a", np.where(is_seen[:, None], points, np.nan), roles)
+
+
 @pytest.mark.parametrize(("step", "rate"), [(1, 60.0), (2, 30.0)])
 def test_frames_of_a_table_are_numbered_at_the_rate_of_its_comment(read_any, walk, step, rate):
     """Before, a table of each second frame played twice as fast."""
@@ -122,6 +132,15 @@ def test_people_may_end_the_names_of_their_joints(tmp_path, walk):
     path.write_text(table(["{role}_p1_{axis}", "{role}_p2_{axis}"], walk, moved))
 
     assert [body.name for body in list_bodies(path)] == ["p1", "p2"]
+
+
+def test_several_markers_of_each_segment_are_no_people(read_any, walk):
+    """Markers of a cluster have the numbers that people have, too."""
+    moved = {role: each + 0.05 for role, each in walk.items()}
+
+    recording = read_any(table(["{role}_1_{axis}", "{role}_2_{axis}"], walk, moved))
+
+    assert isinstance(recording, Tracks) and len(recording.names) == 2 * len(walk)
 
 
 def test_of_both_ends_of_bones_the_heads_are_the_joints(read_any, walk):
