@@ -36,6 +36,8 @@ NO_LENGTH = re.compile(
 """Units of other quantities than positions."""
 POSITION_LETTER = re.compile(r"(?P<name>.{2,})[_.\-]p", re.IGNORECASE)
 """A name such as `Hips.p`, next to `Hips.q`."""
+MAX_TITLE_CHARACTERS = 400
+"""Characters of the title of a coordinate. It bounds the run time of the patterns."""
 LETTER = re.compile(r"(?P<name>.+)[\s_.:\-](?P<letter>[a-z])", re.IGNORECASE)
 LOCAL = re.compile(r"(?:^|[\s_.:\-])[Ll]ocal|(?<=[a-z\d])Local|(?:^|[\s_.:\-])[Rr]elative")
 """Begin of the word for positions relative to the parent bone."""
@@ -59,6 +61,8 @@ class Coordinate(NamedTuple):
 
 def coordinate_of_title(title: str) -> Coordinate | None:
     """Return the point and axis of a column; None for what is no coordinate."""
+    if len(title) > MAX_TITLE_CHARACTERS:
+        return None
     for pattern in (COORDINATE, AXIS_FIRST):
         match = pattern.fullmatch(title.strip())
         if match is None:

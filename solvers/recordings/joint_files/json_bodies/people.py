@@ -76,8 +76,8 @@ JOINT = re.compile(
 NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*(\[\s*){2,}[-\d]")
 """The first frame of those that are keyed by their number."""
 LISTED_POINT = re.compile(
-    rb"\{(?:[^{}\[\]]*\"\w+\"\s*:\s*\{)?[^{}\[\]]*\"[xX]\"\s*:\s*\"?-?\d[^{}\[\]]*\"[yY]\""
-    rb"[^{}\[\]]*\"[zZ]\"\s*:\s*\"?-?\d"
+    rb"\{(?:[^{}\[\]]{0,99}\"\w{1,99}\"\s{0,9}:\s{0,9}\{)?[^{}\[\]]{0,199}\"[xX]\"\s*:\s*\"?-?\d"
+    rb"[^{}\[\],]{0,99},\s{0,99}\"[yY]\"[^{}\[\],]{0,99},\s{0,99}\"[zZ]\"\s*:\s*\"?-?\d"
 )
 """An object with x, y and z, or with one as its member."""
 ROW_OF_POINTS = re.compile(
@@ -155,7 +155,8 @@ def _person(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
 def _key_of_points(body: Mapping[str, Any]) -> str:
     """Return the key of the joints of a person; empty without any.
 
-    Points in the world come first, then keys in use for joints, then any list of points.
+    Points in the world come first, then keys in use for joints, then any list of points
+    but those of hands and the face.
     """
     known = [name for name in POINT_KEYS if body.get(name)]
     in_world = [key for key in body if IN_WORLD.match(str(key)) and body[key]]
@@ -163,6 +164,7 @@ def _key_of_points(body: Mapping[str, Any]) -> str:
         return (in_world or known)[0]
     lists = [key for key, value in body.items() if isinstance(value, list) and len(value) > 1]
     others = {*PEOPLE_KEYS, *filter(is_no_position, lists)}
+    others |= {key for key in lists if has_word(key, PART.fullmatch)}
     found = [key for key in lists if key not in others and points_of(body[key]) is not None]
     return found[0] if found else ""
 
