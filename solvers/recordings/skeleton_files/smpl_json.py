@@ -49,6 +49,10 @@ NUMBERED = re.compile(r"\D*\d+")
 """Key of one of several people."""
 MAX_DEPTH = 4
 """Levels of members in which a body is looked for. It guards the depth of the recursion."""
+NUMBERS = ("frame", "frame_id", "frameId", "frame_index", "frameIndex", "frame_number")
+"""Members with the number of a frame."""
+MAX_SPREAD = 10
+"""Frames per one that the file has, up to which the others are missing. It bounds the memory."""
 CONSTANT = frozenset((*RATES, *SCALES, *BODY_SCALES))
 """Names of what a take has once."""
 
@@ -135,13 +139,30 @@ def _frames(members: Iterable[JsonMember]) -> list[_Frame]:
 def _rows(value: Any) -> tuple[list[Any], dict[str, Array]]:
     """Return the frames that a value lists, otherwise itself, and what it states of all."""
     if isinstance(value, list) and not any(map(_has_identity, value)):
-        return value, {}
+        return _by_number(value), {}
     if isinstance(value, Mapping) and not _is_body(value):
         listed = [each for each in value.values() if _is_list_of_frames(each)]
         if len(listed) == 1:
             stated = _arrays(value)
-            return listed[0], {name: stated[name] for name in stated if name in CONSTANT}
+            return _by_number(listed[0]), {
+                name: stated[name] for name in stated if name in CONSTANT
+            }
     return [value], {}
+
+
+def _by_number(rows: list[Any]) -> list[Any]:
+    """Return frames in the order of their numbers, null for missing ones, if all have one.
+
+    Numbers in steps of two or more are those of the video; the order is all that they decide.
+    """
+    numbered = {row[key]: row for row in rows if isinstance(row, Mapping)
+                for key in NUMBERS if isinstance(row.get(key), int)}  # fmt: skip
+    if not rows or len(numbered) != len(rows):
+        return rows
+    ordered = sorted(numbered)
+    is_dense = 1 in np.diff(ordered) and ordered[-1] - ordered[0] < MAX_SPREAD * len(rows)
+    numbers = range(ordered[0], ordered[-1] + 1) if is_dense else ordered
+    return [numbered.get(number) for number in numbers]
 
 
 def _is_list_of_frames(value: Any) -> bool:

@@ -123,3 +123,28 @@ def test_a_number_called_pose_is_none(make_reader):
     take = {"poses": np.zeros((F, 72)).tolist(), "trans": TRAVEL.tolist(), "pose": 5, "fps": 25}
 
     assert make_reader("take.json")(json.dumps(take)).n_frames == F
+
+
+def test_frames_are_in_the_order_of_their_numbers(make_reader):
+    """Before, frames in another order were read as they came, and lost ones left out."""
+    frames = [
+        {"frame": number, "poses": [0.0] * 72, "betas": [0.0], "trans": each.tolist()}
+        for number, each in enumerate(TRAVEL)
+        if number != 4
+    ]
+
+    motion = make_reader("take.json")(json.dumps({"fps": 25, "frames": frames[::-1]}))
+
+    assert motion.n_frames == F
+    assert travel_of(motion) == approx(1.1)
+    assert np.isnan(motion.rotations[4]).all()
+
+
+@pytest.mark.parametrize("numbers", [range(0, 2 * F, 2), [10**30, *range(F - 1)], [7] * F])
+def test_numbers_in_steps_or_without_sense_leave_no_gaps(make_reader, numbers):
+    frames = [
+        {"frame": number, "poses": [0.0] * 72, "betas": [0.0], "trans": each.tolist()}
+        for number, each in zip(numbers, TRAVEL, strict=True)
+    ]
+
+    assert make_reader("take.json")(json.dumps({"frames": frames})).n_frames == F
