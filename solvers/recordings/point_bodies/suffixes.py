@@ -20,7 +20,7 @@ MIN_SHARED_FRACTION = 0.7
 for people whose names begin those of markers (`split_subjects`)."""
 
 
-MAX_APART_FRACTION = 0.1
+MAX_DISTANCE_FRACTION = 0.1
 """Median distance of points with one name before the suffix, relative to the size of their
 body, up to which they are several markers of one segment. Chosen by hand: those of a cluster
 are within 10 cm, and people who dance together have at most some points as close."""
@@ -39,7 +39,7 @@ def groups_by_suffix(names: Sequence[str], points: Array) -> list[SuffixGroup]:
     """Return the points of each suffix; of bones, only where they start; else empty.
 
     All names have one of several suffixes, and nearly the same names before it. Points with one
-    name before it are apart: otherwise they are markers of one body.
+    name before it have a distance: otherwise they are markers of one body.
 
     Parameters
     ----------
@@ -76,8 +76,8 @@ def _are_of_one_body(groups: Sequence[Mapping[str, int]], points: Array) -> bool
     for group in groups[1:]:
         shared = [*first.keys() & group.keys()]
         pairs = [points[:, [each[stem] for stem in shared]] for each in (first, group)]
-        apart = _median(np.linalg.norm(pairs[0] - pairs[1], axis=-1)[..., None])
-        if not apart <= MAX_APART_FRACTION * size:
+        distance = _median(np.linalg.norm(pairs[0] - pairs[1], axis=-1)[..., None])
+        if not distance <= MAX_DISTANCE_FRACTION * size:
             return False
     return True
 

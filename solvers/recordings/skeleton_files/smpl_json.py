@@ -52,7 +52,7 @@ MAX_DEPTH = 4
 NUMBERS = ("frame", "frame_id", "frameId", "frame_index", "frameIndex", "frame_number")
 """Members with the number of a frame."""
 MAX_SPREAD = 10
-"""Frames per one that the file has, up to which the others are missing. It bounds the memory."""
+"""Frames per one of the file, up to which the others are missing. It bounds the memory."""
 CONSTANT = frozenset((*RATES, *SCALES, *BODY_SCALES))
 """Names of what a take has once."""
 

@@ -8,6 +8,7 @@ import pytest
 from solvers.errors import InvalidFileError
 from solvers.motion import Tracks, find_humanoid_map, forward_kinematics
 from solvers.recordings import list_bodies
+from solvers.recordings.point_bodies import groups_by_suffix, names_of_positions
 from solvers.recordings.point_bodies.relative_positions import refuse_parent_positions
 from solvers.samples import walking_gait
 
@@ -256,3 +257,14 @@ def test_the_foot_next_to_an_ankle_is_the_toes(read_any, walk):
     recording = read_any(table(["{role}_{axis}"], kinect))
 
     assert {"left_foot_index", "right_foot_index"} <= {*recording.names}
+
+
+def test_points_whose_names_differ_before_the_suffix_are_no_people(walk):
+    names = [f"{role}_1" for role in walk] + [f"prop{n}_2" for n in range(len(walk))]
+    points = np.stack([*walk.values(), *(path + 2.0 for path in walk.values())], axis=1)
+
+    assert groups_by_suffix(names, points) == []
+
+
+def test_names_of_local_positions_are_left_out_next_to_a_body(walk):
+    assert names_of_positions([*walk, *(f"{role}_local" for role in walk)]) == [*walk]

@@ -6,6 +6,8 @@ import pytest
 from exports.camera_bodies import mediapipe
 from pytest import approx
 
+from solvers.recordings.joint_files.json_bodies.joined_frames import frozen_clocks
+
 N = 40
 POINTS = mediapipe(N)
 
@@ -54,3 +56,10 @@ def test_numbers_in_steps_do_not_matter_to_frames_with_times(read_any, collected
 
     assert recording.tracks.frame_rate == approx(25.0)
     assert not any("steps" in message for message in messages)
+
+
+def test_the_time_of_one_frame_does_not_stand_still():
+    stamp = {"time": (5.0, 1.0)}
+
+    assert frozen_clocks([stamp]) == set()
+    assert frozen_clocks([stamp, stamp]) == {"time"}
