@@ -114,13 +114,13 @@ def open_long_table(
         )
     check_n_joints(path, len(table.joints))
     if len(columns.axes) == 2:
-        raise InvalidFileError(
-            f"{path} holds 2D points of a picture, without depth. Save"
-            + (
-                " the pose_world_landmarks of MediaPipe instead."
-                if columns.has_landmarks
-                else " their positions in 3D."
+        if columns.has_landmarks:
+            raise InvalidFileError(
+                f"{path} has image landmarks, without true depth. Save the pose_world_landmarks"
+                " of MediaPipe instead."
             )
+        raise InvalidFileError(
+            f"{path} holds 2D points of a picture, without depth. Save their positions in 3D."
         )
     names, order = table.joints.in_order()
     people, points = _points(path, table, frames, order)

@@ -61,7 +61,7 @@ def with_root_at_pelvis(path: Path | str, arrays: Mapping[str, Array]) -> dict[s
         size = float(arrays[SCALE].flat[0])
         if not MIN_SIZE <= size <= MAX_SIZE:
             raise InvalidFileError(
-                f"{path} has a body of {size:g} times the size of the model. Correct its scale."
+                f"{path} has a body of {size:g} times the size of the model. Export it again."
             )
         pelvis = pelvis * size
     turns = quaternion_from_rotation_vector(vectors)
