@@ -11,12 +11,16 @@ from .containers import (
     ZIP_MEMBER,
     as_utf8,
     check_folder_access,
+    find_separator,
     is_c3d,
+    is_missing,
     json_length,
+    split_cells,
 )
 from .format_description import Format, one_body
 from .joint_files import (
     MAX_TITLE_LINES,
+    MIN_POINTS,
     is_azure_csv,
     is_azure_json,
     is_frame_json,
@@ -65,14 +69,17 @@ from .marker_files import (
 from .numpy_files import is_frame_npy, is_point_archive, open_npy, open_point_archive
 from .refuse_stand_ins import REFUSALS
 from .skeleton_files import (
+    is_frame_smpl_json,
     is_kimodo,
     is_mvnx,
     is_smpl,
+    is_smpl_json,
     is_vrma,
     open_bvh,
     open_kimodo,
     open_mvnx,
     open_smpl,
+    open_smpl_json,
     read_acclaim,
     read_vrma,
 )
@@ -101,10 +108,17 @@ def _is_trc(head: bytes) -> bool:
 
 
 def _is_wide_table(head: bytes) -> bool:
-    """Return whether a head is text with long lines of cells; JSON has no such lines."""
+    """Return whether a head is text with long or blank lines of cells; JSON has none."""
     is_text = len(head) >= HEAD_BYTES - len(BYTE_ORDER_MARK) and b"\0" not in head
     is_json = head.lstrip()[:1] in {b"{", b"["}
-    return is_text and not is_json and len(head.splitlines()) <= MAX_TITLE_LINES
+    lines = head.splitlines()
+    return is_text and not is_json and (len(lines) <= MAX_TITLE_LINES or _is_blank(lines[-2]))
+
+
+def _is_blank(line: bytes) -> bool:
+    """Return whether most cells of a line are blank, as those of points that come later."""
+    cells = split_cells(line, find_separator(line))
+    return len(cells) >= MIN_POINTS and sum(map(is_missing, cells)) > len(cells) / 2
 
 
 FORMATS = (
@@ -118,6 +132,14 @@ FORMATS = (
         open_smpl,
         has_skeleton=True,
         lacks_bones=True,
+    ),
+    Format(
+        "SMPL parameters in JSON",
+        is_smpl_json,
+        open_smpl_json,
+        has_skeleton=True,
+        lacks_bones=True,
+        is_one_frame=is_frame_smpl_json,
     ),
     Format("Kimodo", is_kimodo, open_kimodo, has_skeleton=True),
     Format("Xsens MVNX", is_mvnx, open_mvnx, has_skeleton=True),

@@ -14,6 +14,7 @@ from .conventions import Bodies, Body, check_scale
 from .depth_files import DepthSettings, detect_depth_format, read_depth
 from .format_description import Format, Tracked
 from .formats import detect_format
+from .unknown_files import describe_unknown
 
 OPENING_FRACTION = 0.9
 """Fraction of the time that passes until the bodies are known, in formats with several."""
@@ -146,10 +147,11 @@ def _unknown_format(path: Path | str) -> InvalidFileError:
         return InvalidFileError(
             f"{path} is a folder without depth images. Choose a file in it."
         )
-    return InvalidFileError(
+    unknown = (
         f"{path} has an unknown format. Export it as BVH, FBX, GLB, C3D, TRC or a table of"
         " joints."
     )
+    return InvalidFileError(describe_unknown(path) or unknown)
 
 
 def read_motion_or_tracks(

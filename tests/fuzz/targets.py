@@ -24,10 +24,12 @@ from fuzz_seeds import (
     crowds,
     depth_folders,
     journal_of,
+    lines_of_joints,
     live_frame,
     png,
     raw_depth,
     scene_json,
+    smpl_json,
     stream_packets,
 )
 from learned_files import LEARNED, npz
@@ -120,6 +122,8 @@ def targets() -> dict[str, Target]:
     for kind, content in body_files().items():
         is_archive = content.startswith(b"PK")
         found[kind] = Target(content, _read_bodies, BINARY_TOKENS, is_archive=is_archive)
+    found["smpl_json"] = Target(smpl_json(), _read_bodies, JOINT_TOKENS)
+    found["lines_of_joints"] = Target(lines_of_joints(), _read_bodies, JOINT_TOKENS)
     depth = {"depth_mat": matlab("depth", DEPTH.transpose(1, 2, 0)), "depth_mkv": k4a(DEPTH)}
     for kind, content in depth.items():
         found[kind] = Target(content, _read_depth, BINARY_TOKENS)

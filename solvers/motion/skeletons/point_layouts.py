@@ -1,9 +1,10 @@
 """The order of the joints in arrays that data sets and pose estimators store without names.
 
 Sources: the keypoint lists of COCO, Halpe-FullBody, OpenPose (BODY_25), CMU Panoptic, MPII and
-LSP; data/skeleton.py of VideoPose3D (Human3.6M); MPI-INF-3DHP (mpii_get_joint_set "relevant");
-the KIT motion-language data set; extract.py of LaFAN1. Joints have the names that this project
-has for them: those of Microsoft's cameras, MediaPipe or SMPL.
+LSP; data/skeleton.py of VideoPose3D (Human3.6M); metadata/mhr70.py of SAM 3D Body (MHR 70);
+MPI-INF-3DHP (mpii_get_joint_set "relevant"); the KIT motion-language data set; extract.py of
+LaFAN1. Joints have the names that this project has for them: those of Microsoft's cameras,
+MediaPipe or SMPL.
 """
 
 from .body_trackers import SMPL, SMPL_HANDS, ZED_34, ZED_38
@@ -75,6 +76,13 @@ _LAFAN = (
     "spine3", "neck", "head", *_side(_LEFT, "collar", *_ARM), *_side(_RIGHT, "collar", *_ARM),
 )  # fmt: skip
 
+_MHR_70 = (
+    "nose", *_EYES, *_pairs("shoulder", "elbow", *_LEG), "left_foot_index", "", "left_heel",
+    "right_foot_index", "", "right_heel", *[""] * 20, "right_wrist", *[""] * 20, "left_wrist",
+    *[""] * 6, "neck_center",
+)  # fmt: skip
+"""SAM 3D Body; between ankles and wrists are fingers, after them elbows and shoulders."""
+
 LAYOUTS: dict[str, tuple[str, ...]] = {
     "LSP": _LSP,
     "MPII": _MPII,
@@ -102,5 +110,6 @@ LAYOUTS: dict[str, tuple[str, ...]] = {
     "ZED 38": ZED_38,
     "SMPL-H": (*tuple(SMPL)[:22], *SMPL_HANDS),
     "SMPL-X": (*tuple(SMPL)[:22], "", "", "", *SMPL_HANDS),
+    "MHR 70": _MHR_70,
 }  # fmt: skip
 """Names in the order of each layout; points without a name are left out."""

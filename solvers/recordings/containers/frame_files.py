@@ -11,8 +11,9 @@ MAX_GAP_FRAMES = 1000
 """Missing numbers in a row, frames, up to which they are frames without a file. It bounds the
 memory: after more of them, the take goes on with the next file."""
 
-NamesByNumber = dict[tuple[str, str], dict[int, str]]
-"""Names of files by their start and end around a number, and by that number."""
+NamesByNumber = dict[tuple[str, str], dict[int, list[str]]]
+"""Names of files by their start and end around a number, and by that number: `take_1` and
+`take_01` have the same."""
 
 
 class FrameFiles(NamedTuple):
@@ -53,7 +54,7 @@ def frame_files(path: Path | str, named: NamesByNumber | None = None) -> FrameFi
     found = [FrameFiles(path.stem, path.suffix, {0: path})]
     for head, tail, _ in _numbers_of(path.name):
         names = sorted(named.get((head, tail), {}).items())
-        files = {number: path.with_name(name) for number, name in names}
+        files = {number: path.with_name(_written_as(path.name, same)) for number, same in names}
         found.append(FrameFiles(head, tail, files))
     return max(found, key=lambda each: len(each.files))
 
@@ -63,8 +64,17 @@ def names_by_number(names: Iterable[str]) -> NamesByNumber:
     found: NamesByNumber = {}
     for name in names:
         for head, tail, number in _numbers_of(name):
-            found.setdefault((head, tail), {})[number] = name
+            found.setdefault((head, tail), {}).setdefault(number, []).append(name)
     return found
+
+
+def _written_as(name: str, names: list[str]) -> str:
+    """Return that of some names with one number that has as many zeros before it as a name.
+
+    These are other frames than those without, or with more of them.
+    """
+    has_zeros = [len(each) == len(name) for each in names]
+    return name if name in names else names[has_zeros.index(True) if any(has_zeros) else 0]
 
 
 def _numbers_of(name: str) -> Iterator[tuple[str, str, int]]:

@@ -10,7 +10,10 @@ from ...motion.skeletons import check_frame_rate
 
 DEFAULT_FRAME_RATE = 30.0
 """Frame rate in hertz of every Kinect in good light."""
-COMMON_RATES = (5.0, 10.0, 15.0, 24.0, 25.0, 30.0, 50.0, 60.0, 90.0, 100.0, 120.0)
+COMMON_RATES = (
+    5.0, 10.0, 15.0, 24.0, 25.0, 30.0, 50.0, 60.0, 72.0, 90.0, 100.0, 120.0, 200.0, 240.0,
+    250.0, 300.0,
+)  # fmt: skip
 MILLISECOND = 0.001
 MAX_DRIFT_FRAMES = 0.5
 """Maximum deviation in frames of rounded stamps from a constant rate. By definition: from half
@@ -44,9 +47,7 @@ def common_rate(rate: float) -> float:
     Raises InvalidMotionError where a file states a rate that is none, such as 0.
     """
     check_frame_rate(rate)
-    nearest = min(
-        (*COMMON_RATES, 200.0, 240.0, 250.0, 300.0), key=lambda common: abs(common - rate)
-    )
+    nearest = min(COMMON_RATES, key=lambda common: abs(common - rate))
     return nearest if abs(nearest - rate) <= RATE_TOLERANCE * nearest else rate
 
 

@@ -25,12 +25,13 @@ from .nuitrack import (
     open_nuitrack_json,
 )
 from .point_table import is_point_table, open_point_table
-from .table_titles import MAX_TITLE_LINES
+from .table_titles import MAX_TITLE_LINES, MIN_POINTS
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
 from .zed_json import is_zed_json, open_zed_json
 
 __all__ = [
     "MAX_TITLE_LINES",
+    "MIN_POINTS",
     "is_azure_csv",
     "is_azure_json",
     "is_frame_json",

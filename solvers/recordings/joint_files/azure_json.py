@@ -20,6 +20,7 @@ from .json_bodies import (
     name_of_body,
     number,
     open_frames,
+    position_of,
     stacked,
 )
 
@@ -111,9 +112,10 @@ def _read_frame(frame: Any, done: float, location: str) -> BodiesFrame:
         raise InvalidFileError(f"{location}: a frame is required. Export the file again.")
     bodies: dict[str, BodyJoints] = {}
     for count, body in enumerate(listed(frame.get("bodies"), location), start=1):
-        positions = array_from_json(
-            body.get("joint_positions"), (-1, 3), f"{location}, joint_positions"
-        )
+        listed_positions = body.get("joint_positions")
+        if isinstance(listed_positions, list):
+            listed_positions = [*map(position_of, listed_positions)]
+        positions = array_from_json(listed_positions, (-1, 3), f"{location}, joint_positions")
         found = BodyJoints(positions, np.full(len(positions), np.nan))
         bodies.setdefault(name_of_body(body, ("body_id",), count), found)
     time = number(frame.get("timestamp_usec"), f"{location}, timestamp_usec")

@@ -1,7 +1,7 @@
 """Read tables with a line for each joint of each frame."""
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,7 +13,6 @@ from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
 from ...progress import Progress, unwatched, within
 from ..containers import (
-    NUMBER,
     LineReader,
     NumberedWords,
     check_n_joints,
@@ -29,38 +28,21 @@ from ..conventions import (
     recorded_seconds,
 )
 from ..point_bodies import (
-    TimeCells,
-    TimeName,
-    column_of_times,
+    N_POINTS,
+    landmark_columns,
     over_midnight,
+    recording_from_landmarks,
     second_of_times,
-    time_name,
 )
-from .point_table import recording_of_points
-from .table_titles import MAX_TITLE_LINES, table_titles
+from .line_groups import first_repeated_line, grouped
+from .long_columns import LongColumns, long_columns, number_of_frame, number_or_missing
+from .mediapipe_csv import mediapipe_landmark
+from .points_recording import recording_of_points
+from .table_titles import MAX_TITLE_LINES, N_SAMPLED_LINES, table_titles
 
-FRAMES = ("frame", "frame_id", "frameid", "frame_index", "frame_number", "frame_num", "image")
-JOINTS = (
-    "joint", "joint_name", "jointname", "joint_id", "joint_index", "landmark", "landmark_name",
-    "landmark_id", "landmark_index", "keypoint", "keypoint_name", "keypoint_id", "point",
-    "point_id", "jointtype", "joint_type", "marker", "marker_name", "body_part", "bodypart",
-    "bone", "name", "part", "gelenk", "knochen", "articulation", "articulación",
-)  # fmt: skip
-UNIT = re.compile(r"\s*[(\[]\w+[)\]]$")
-"""Unit in the title of a coordinate."""
-PEOPLE = (
-    "person", "person_id", "body", "body_id", "track_id", "trackingid", "tracking_id",
-    "subject", "skeleton_id",
-)  # fmt: skip
-IDENTITIES = ("id", "pid")
-"""Titles of the person in tables that state a joint of a frame several times without it; others
-have a number of the line or of the joint there."""
-AXES = ("x", "y", "z")
-AXIS_AFFIXES = (
-    "{}", "pos_{}", "{}_pos", "position_{}", "{}_m", "world_{}", "{}_world", "{}3d",
-    "location_{}", "translate_{}", "pos{}", "position{}", "location{}", "translate{}", "t{}",
-)  # fmt: skip
-"""Titles of coordinates, with the axis at the braces."""
+NUMBERED_JOINT = re.compile(r"[0-9]{1,4}")
+MAX_WORD_COLUMNS = 4
+"""Number of columns of words that may distinguish lines. It bounds the memory and the tries."""
 MIN_JOINTS = 8
 """Number of joints of a body. It guards tables of something else."""
 MAX_SPREAD = 100
@@ -73,33 +55,24 @@ MAX_POINTS_OF_FEW_LINES = 1 << 24
 damaged files: 400 MB."""
 
 
-class _LongColumns(NamedTuple):
-    """Columns of a table, by index; None where it has no such column."""
-
-    frame: int | None
-    time: int | None
-    times: TimeCells
-    joint: int
-    person: int | None
-    identity: int | None
-    """Column that may be the person (`IDENTITIES`)."""
-    axes: tuple[int, ...]
-
-
 class _LongTable(NamedTuple):
     """Lines of a file, with numbers for words."""
 
     rows: Array
-    columns: _LongColumns
-    joints: NumberedWords
-    people: NumberedWords
-    """Words of the column of the person, otherwise of the one that may be it."""
+    columns: LongColumns
+    words: dict[int, NumberedWords]
+    """Words of the joints, and of the columns that distinguish people."""
+
+    @property
+    def joints(self) -> NumberedWords:
+        """Words of the joints."""
+        return self.words[self.columns.joint]
 
 
 def is_long_table(head: bytes) -> bool:
     """Return whether the first line of a file names a frame, a joint and its coordinates."""
     lines = head.lstrip(b"\r\n").splitlines()
-    return len(lines) > 1 and table_titles(lines, _columns) is not None
+    return len(lines) > 1 and table_titles(lines, long_columns) is not None
 
 
 def open_long_table(
@@ -109,8 +82,10 @@ def open_long_table(
 
     Frames are in a column called `frame` or the like; without it, each time is one. `joint`,
     `landmark`, `marker` or the like is a name or a number; `person` or the like, that of one of
-    several people, as is `id` where lines repeat a joint of a frame. Lines may be missing:
-    those points are not observed. Axes and unit are estimated as in `open_point_table`.
+    several people, as is `id` where lines repeat a joint of a frame; so are words of other
+    columns. Lines may be missing: those points are not observed. Landmarks of MediaPipe are
+    read as its other files are (`recording_from_landmarks`). Axes and unit are estimated as in
+    `open_point_table`.
 
     Parameters
     ----------
@@ -135,52 +110,88 @@ def open_long_table(
     if not is_row.any() or len(table.joints) < MIN_JOINTS:
         raise InvalidFileError(
             f"{path} has {len(table.joints)} different joints in its lines, too few for a body."
-            " Export it again."
+            " Export the skeleton that your program makes of them, such as BVH."
         )
     check_n_joints(path, len(table.joints))
+    if len(columns.axes) == 2:
+        if columns.has_landmarks:
+            raise InvalidFileError(
+                f"{path} has image landmarks, without true depth. Save the pose_world_landmarks"
+                " of MediaPipe instead."
+            )
+        raise InvalidFileError(
+            f"{path} holds 2D points of a picture, without depth. Save their positions in 3D."
+        )
     names, order = table.joints.in_order()
-    points = _points(path, table, frames, order)
+    people, points = _points(path, table, frames, order)
     if times is not None:
         times = times * (columns.times.second or second_of_times(times, progress))
     duration = len(points[0]) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
     listed = tuple(
         observed_body(
-            table.people.name(number),
-            np.flatnonzero(np.isfinite(body).all(axis=2).any(axis=1)),
+            person,
+            np.flatnonzero(np.isfinite(body[..., :3]).all(axis=2).any(axis=1)),
             len(body),
             duration,
         )
-        for number, body in enumerate(points)
+        for person, body in zip(people, points, strict=True)
     )
+    landmarks = _landmarks(names, columns.has_landmarks)
 
     def read(index: int, progress: Progress) -> JointRecording | Tracks:
-        return recording_of_points(path, names, points[index], times, scale, progress)
+        body = points[index]
+        if landmarks is not None:
+            marks = np.pad(body, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan)
+            return recording_from_landmarks(
+                path, marks[:, landmarks], times, None, scale, progress
+            )
+        return recording_of_points(path, names, body[..., :3], times, scale, progress)
 
     return Bodies(str(path), listed if len(listed) > 1 else (), read)
+
+
+def _landmarks(names: Sequence[str], has_landmarks: bool) -> list[int] | None:
+    """Return the columns of MediaPipe's landmarks, -1 for missing ones; None for other joints.
+
+    All have their names; joints that the table calls landmarks may have numbers, or lack some.
+    """
+    if not has_landmarks:
+        return landmark_columns(names)
+    numbers = [int(name) for name in names if NUMBERED_JOINT.fullmatch(name)]
+    if len(numbers) == len(names):
+        if max(numbers) > N_POINTS:
+            return None
+        first = int(max(numbers) == N_POINTS and 0 not in numbers)
+        found: dict[int | None, int] = {number - first: at for at, number in enumerate(numbers)}
+    else:
+        found = {mediapipe_landmark(name): at for at, name in enumerate(names)}
+    columns = [found.get(at, -1) for at in range(N_POINTS)]
+    return columns if sum(at >= 0 for at in columns) >= MIN_JOINTS else None
 
 
 def _read_table(path: Path | str, progress: Progress) -> _LongTable:
     reader = LineReader(path)
     reader.skip_blank_lines()
-    header = table_titles(reader.peek(MAX_TITLE_LINES), _columns)
-    columns = _columns(header.titles) if header else None
+    first = reader.peek(MAX_TITLE_LINES + N_SAMPLED_LINES)
+    header = table_titles(first[:MAX_TITLE_LINES], long_columns)
+    columns = long_columns(header.titles, header.cells(first)) if header else None
     if header is None or columns is None:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
     reader.take(header.n_lines)
     titles = header.titles
-    joints, people = NumberedWords(), NumberedWords()
-    used = {columns.joint, columns.frame, *columns.axes}
+    people = [at for at in (columns.person, columns.identity) if at is not None]
+    others = columns.others[:MAX_WORD_COLUMNS]
+    words = {at: NumberedWords() for at in (columns.joint, *people, *others)}
     converters: dict[int, Callable[[bytes], bytes]] = {
-        **ignored_columns(len(titles), used),
-        columns.joint: joints,
+        **ignored_columns(len(titles), {columns.confidence, *columns.axes}),
+        **words,
     }
-    person = columns.identity if columns.person is None else columns.person
-    if person is not None:
-        converters[person] = people
     if columns.frame is not None:
-        converters[columns.frame] = _frame_number
+        converters[columns.frame] = number_of_frame
     if columns.time is not None:
         converters[columns.time] = columns.times
+    if columns.confidence is not None:
+        converters[columns.confidence] = number_or_missing
     progress = within(progress, 0.0, 0.6)
     rows = stream_cells(
         reader, header.separator, len(titles), path, progress, converters=converters
@@ -188,60 +199,73 @@ def _read_table(path: Path | str, progress: Progress) -> _LongTable:
     second = columns.times.second
     if columns.time is not None and second is not None:
         rows[:, columns.time] = over_midnight(rows[:, columns.time] * second) / second
-    return _LongTable(rows, columns, joints, people)
+    return _LongTable(rows, columns, words)
 
 
 def _points(
     path: Path | str, table: _LongTable, frames: NDArray[np.intp], order: NDArray[np.intp]
-) -> Array:
-    """Return the points of all people, shape (n_people, n_frames, n_joints, 3)."""
+) -> tuple[list[str], Array]:
+    """Return the names of people, and their points, (n_people, n_frames, n_joints, 4).
+
+    The fourth number is the confidence, NaN where the table has none.
+    """
     columns = table.columns
     is_row = np.isfinite(table.rows[:, columns.joint]) & (frames >= 0)
     rows, frames = table.rows[is_row], frames[is_row]
     joints = order[rows[:, columns.joint].astype(int)]
-    cells = np.zeros(len(rows), int), frames, joints
-    person = columns.person
-    is_enough = len(rows) >= MIN_JOINTS * len(table.people)
-    if person is None and is_enough and _first_repeated_line(cells) is not None:
-        person = columns.identity
-    if person is not None:
-        cells = np.nan_to_num(rows[:, person]).astype(int), frames, joints
-    shape = int(cells[0].max()) + 1, int(frames.max()) + 1, len(order)
+    names, people = _people(table, rows, frames, joints)
+    cells = people, frames, joints
+    shape = len(names), int(frames.max()) + 1, len(order)
     max_points = min(MAX_POINTS, max(MAX_POINTS_OF_FEW_LINES, MAX_SPREAD * len(rows)))
     if np.prod(shape, dtype=float) > max_points:
         raise InvalidFileError(
             f"{path} has {shape[2]} joints of {shape[0]} people in {shape[1]} frames, which"
             " does not fit its lines. Export it again."
         )
-    repeated = _first_repeated_line(cells)
+    repeated = first_repeated_line(cells)
     if repeated is not None:
         joint = table.joints.name(int(rows[repeated, columns.joint]))
         raise InvalidFileError(
             f"{path} has joint {shown(joint)} of one person twice in frame"
             f" {frames[repeated] + 1}. Name the person of each line in a column `person`."
         )
-    points = np.full((*shape, 3), np.nan)
-    points[cells] = rows[:, list(columns.axes)]
-    return points
+    points = np.full((*shape, 4), np.nan)
+    points[(*cells, slice(3))] = rows[:, list(columns.axes)]
+    if columns.confidence is not None:
+        points[(*cells, 3)] = rows[:, columns.confidence]
+    return names, points
 
 
-def _first_repeated_line(cells: tuple[NDArray[np.intp], ...]) -> int | None:
-    """Return the first line that has the person, frame and joint of another one; else None."""
-    order = np.lexsort(cells)
-    ordered = np.stack(cells)[:, order]
-    is_same = (np.diff(ordered) == 0).all(axis=0)
-    return int(order[1:][is_same].min()) if is_same.any() else None
+def _people(
+    table: _LongTable, rows: Array, frames: NDArray[np.intp], joints: NDArray[np.intp]
+) -> tuple[list[str], NDArray[np.intp]]:
+    """Return the names of people, and which one each line is of.
+
+    Lines that repeat a joint of a person in a frame are of several people, or of several
+    versions of one: those whose words differ, in one column if that makes lines unique.
+    """
+    columns = table.columns
+    person = [] if columns.person is None else [columns.person]
+    others = [at for at in columns.others if at in table.words]
+    choices = [person, *([*person, at] for at in others), [*person, *others]]
+    if columns.identity is not None and not person:
+        is_enough = len(rows) >= MIN_JOINTS * len(table.words[columns.identity])
+        choices[1:1] = [[columns.identity]] if is_enough else []
+    groups = (grouped(rows[:, choice]) for choice in choices)
+    unique = (
+        (choice, first, people)
+        for choice, (first, people) in zip(choices, groups, strict=True)
+        if first_repeated_line((people, frames, joints)) is None
+    )
+    used, first, people = next(unique, (person, *grouped(rows[:, person])))
+    names = [
+        " ".join(table.words[at].name(int(np.nan_to_num(rows[line, at]))) for at in used)
+        for line in first
+    ]
+    return [name or "1" for name in names], people
 
 
-def _frame_number(cell: bytes) -> bytes:
-    """Return a number, or the last one in the name of a frame, such as `frame_0012.png`."""
-    if NUMBER.fullmatch(cell):
-        return cell
-    numbers = re.findall(rb"\d+(?:\.0+)?(?=\D*$)", cell)
-    return numbers[-1] if numbers else b""
-
-
-def _frames(rows: Array, columns: _LongColumns) -> tuple[NDArray[np.intp], Array | None]:
+def _frames(rows: Array, columns: LongColumns) -> tuple[NDArray[np.intp], Array | None]:
     """Return the frame of each line, -1 where it has none, and the time of each frame.
 
     Numbers between those of the file are frames without a body.
@@ -265,26 +289,3 @@ def _frames(rows: Array, columns: _LongColumns) -> tuple[NDArray[np.intp], Array
     numbers = np.arange(len(times))
     is_known = np.isfinite(times)
     return frames, np.interp(numbers, numbers[is_known], times[is_known])
-
-
-def _columns(titles: Sequence[str]) -> _LongColumns | None:
-    """Return the columns of such a table; None if one is missing."""
-    lower = [UNIT.sub("", title).strip().lower().replace(" ", "_") for title in titles]
-
-    def find(names: Iterable[str]) -> int | None:
-        return next((lower.index(name) for name in names if name in lower), None)
-
-    joint, frame = find(JOINTS), find(FRAMES)
-    time = column_of_times(titles)
-    axes = next(
-        (
-            tuple(map(lower.index, wanted))
-            for affix in AXIS_AFFIXES
-            if {*(wanted := [affix.format(axis) for axis in AXES])} <= {*lower}
-        ),
-        None,
-    )
-    if joint is None or axes is None or (frame is None and time is None):
-        return None
-    times = TimeCells((time_name(titles[time]) if time is not None else None) or TimeName(None))
-    return _LongColumns(frame, time, times, joint, find(PEOPLE), find(IDENTITIES), axes)

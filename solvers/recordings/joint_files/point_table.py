@@ -1,6 +1,6 @@
 """Read tables of any program whose columns are named after points and coordinates."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,39 +9,43 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
-from ...progress import READING, Progress, Remark, unwatched, within
+from ...progress import Progress, Remark, unwatched, within
 from ..containers import LineReader, ignored_columns, shown, stream_cells
 from ..conventions import (
     DEFAULT_FRAME_RATE,
     Bodies,
-    ConstantRate,
     MarkerSubject,
     check_scale,
-    guess_unit_of_points,
     meters_from_unit_name,
     observed_body,
     recorded_seconds,
     split_subjects,
-    stand_markers,
 )
 from ..point_bodies import (
+    Coordinate,
     TimeCells,
     TimeName,
     body_of_named_points,
-    body_of_points,
     column_of_times,
     completed_times,
     coordinate_of_title,
-    missing_limbs,
+    groups_by_suffix,
     names_of_positions,
     numbered_axes,
     over_midnight,
-    read_body,
     second_of_times,
-    stand_body,
     time_name,
+    without_letter,
 )
-from .table_titles import MAX_TITLE_LINES, MIN_POINTS, N_SAMPLED_LINES, table_titles
+from .long_columns import is_frame_title, number_of_frame
+from .points_recording import recording_of_points
+from .table_titles import (
+    MAX_TITLE_LINES,
+    MIN_POINTS,
+    N_PEEKED_LINES,
+    N_SAMPLED_LINES,
+    table_titles,
+)
 
 
 class _Columns(NamedTuple):
@@ -52,6 +56,8 @@ class _Columns(NamedTuple):
     """Column of x, y and z of each point, shape (n_points, 3)."""
     time: int | None
     times: TimeCells
+    frame: int | None
+    """Column of the numbers of frames."""
     unit: float | None
     """Meters, by the titles; None if they do not say it."""
     width: int
@@ -95,9 +101,13 @@ def open_point_table(
     check_scale(scale)
     reader = LineReader(path)
     reader.skip_blank_lines()
-    first = reader.peek(MAX_TITLE_LINES + N_SAMPLED_LINES)
+    first = reader.peek(MAX_TITLE_LINES + N_PEEKED_LINES)
     header = table_titles(first, _has_points)
-    columns = _columns(header.titles, header.cells(first)) if header else None
+    columns = (
+        _columns(header.titles, header.cells(first[: MAX_TITLE_LINES + N_SAMPLED_LINES]))
+        if header
+        else None
+    )
     if header is None or columns is None:
         raise InvalidFileError(f"{path} has no columns of points. Export it again.")
     reader.take(header.n_lines)
@@ -109,6 +119,7 @@ def open_point_table(
         within(progress, 0.0, 0.8),
         converters={
             **ignored_columns(columns.width, {*columns.positions.flat}),
+            **({} if columns.frame is None else {columns.frame: number_of_frame}),
             **({} if columns.time is None else {columns.time: columns.times}),
         },
         prepare=header.expand,
@@ -118,7 +129,7 @@ def open_point_table(
     times = None if columns.time is None else _times(rows[:, columns.time], columns, progress)
     points = rows[:, columns.positions.astype(int)]
     if times is None and header.rate is not None:
-        times = np.arange(len(points)) / header.rate
+        times = _numbers(rows, columns) / header.rate
     unit = columns.unit if scale is None else scale
     people = _people(columns.names, points, progress) if np.isfinite(points).any() else []
     duration = len(points) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
@@ -139,7 +150,7 @@ def open_point_table(
         mine = points[:, person.columns]
         return recording_of_points(path, person.names, mine, times, unit, progress)
 
-    return Bodies(str(path), listed, read)
+    return Bodies(str(path), listed if len(listed) > 1 else (), read)
 
 
 def _times(times: Array, columns: _Columns, progress: Progress) -> Array | None:
@@ -148,15 +159,29 @@ def _times(times: Array, columns: _Columns, progress: Progress) -> Array | None:
     return completed_times(over_midnight(times * second), progress)
 
 
+def _numbers(rows: Array, columns: _Columns) -> Array:
+    """Return the numbers of frames from 0, those of the file if they increase."""
+    counted = np.arange(len(rows), dtype=np.float64)
+    if columns.frame is None:
+        return counted
+    numbers = rows[:, columns.frame]
+    increases = len(rows) > 1 and bool((np.diff(numbers) >= 1.0).all())
+    return np.asarray(numbers - numbers[0]) if increases else counted
+
+
 def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[MarkerSubject]:
-    """Return the people whose names begin those of the points; empty for a single one."""
+    """Return the people whose names begin or end those of the points; empty for one of all.
+
+    Of points called like both ends of bones, one person has those where bones start.
+    """
     people, others = list[MarkerSubject](), list[str]()
-    for each in split_subjects(names):
+    by_suffix = [MarkerSubject(*group) for group in groups_by_suffix(names, points)]
+    for each in by_suffix or split_subjects(names):
         if body_of_named_points(each.names, points[:, each.columns]) is None:
             others.append(each.name)
         else:
             people.append(each)
-    if len(people) < 2:
+    if len(people) < 2 and not (people and len(by_suffix) == 1):
         return []
     if others:
         progress(
@@ -169,82 +194,43 @@ def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[M
     return people
 
 
-def recording_of_points(
-    path: Path | str,
-    names: tuple[str, ...],
-    points: Array,
-    times: Array | None,
-    unit: float | None,
-    progress: Progress,
-) -> JointRecording | Tracks:
-    """Return named or numbered points as the joints of a body, or as markers if they are none.
-
-    Parameters
-    ----------
-    path : Path or str
-    names : tuple of str
-    points : shape (n_frames, n_points, 3), in the unit and axes of the file
-    times : shape (n_frames,), seconds, or None
-    unit : float, meters per unit of the file, or None
-    progress : Progress
-
-    Raises
-    ------
-    InvalidFileError
-        No point has all its coordinates in any frame.
-    """
-    points = np.where(np.isfinite(points).all(axis=-1, keepdims=True), points, np.nan)
-    if not len(points) or np.isnan(points).all():
-        raise InvalidFileError(f"{path} has no points that are observed in any frame.")
-    if all(name.isdigit() for name in names):
-        unnamed = body_of_points(path, points)
-        if unnamed is not None:
-            return read_body(path, unnamed, unit, progress, times)
-    if times is None:
-        progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
-    body = body_of_named_points(names, points)
-    if body is not None:
-        return stand_body(
-            path, body.names, body.positions, times=times, scale=unit, progress=progress
-        )
-    if lacking := missing_limbs(names):
-        progress(
-            0.8,
-            Remark(
-                f"The points lack {', '.join(lacking)} of a body and are imported as markers;"
-                " export these joints too"
-            ),
-        )
-    rate = DEFAULT_FRAME_RATE
-    if times is not None:
-        resampler = ConstantRate(path, times)
-        points, rate = resampler.positions(points), resampler.frame_rate
-    unit = guess_unit_of_points(points) if unit is None else unit
-    progress(1.0, READING)
-    return stand_markers(names, points * unit, rate, unit, "")
-
-
 def _has_points(titles: Sequence[str]) -> bool:
     columns = _columns(titles)
     return columns is not None and len(columns.names) >= MIN_POINTS
 
 
+def _points_of(
+    coordinates: Mapping[int, Coordinate],
+) -> tuple[dict[str, dict[str, int]], set[str]]:
+    """Return the columns of the axes of each point that has all three, and the units."""
+    found: dict[str, dict[str, int]] = {}
+    for column, each in coordinates.items():
+        found.setdefault(each.name, {}).setdefault(each.axis, column)
+    complete = [name for name, axes in found.items() if len(axes) == 3]
+    names = names_of_positions(complete)
+    points = {
+        plain: found[name] for plain, name in zip(without_letter(names), names, strict=True)
+    }
+    return points, {each.unit for each in coordinates.values()}
+
+
 def _columns(titles: Sequence[str], cells: Sequence[Sequence[str]] = ()) -> _Columns | None:
     """Return the columns of points; None if none has all three coordinates."""
-    found: dict[str, dict[str, int]] = {}
-    units: set[str] = set()
-    for column, title in enumerate(titles):
-        coordinate = coordinate_of_title(title)
-        if coordinate is not None:
-            found.setdefault(coordinate.name, {}).setdefault(coordinate.axis, column)
-            units.add(coordinate.unit)
-    complete = [name for name, axes in found.items() if len(axes) == 3]
-    points = {name: found[name] for name in names_of_positions(complete)}
+    coordinates = {
+        column: coordinate
+        for column, title in enumerate(titles)
+        if (coordinate := coordinate_of_title(title)) is not None
+    }
+    in_room = {column: each for column, each in coordinates.items() if each.is_in_room}
+    points, units = _points_of(in_room)
+    if len(points) < MIN_POINTS:
+        points, units = _points_of(coordinates)
     points = points or numbered_axes(titles)
     if not points:
         return None
     time = column_of_times(titles, cells)
     times = TimeCells((time_name(titles[time]) if time is not None else None) or TimeName(None))
+    frame = next((at for at, title in enumerate(titles) if is_frame_title(title)), None)
     unit = meters_from_unit_name(units.pop()) if len(units) == 1 else None
     positions = np.array([[axes[axis] for axis in "xyz"] for axes in points.values()])
-    return _Columns(tuple(points), positions, time, times, unit, len(titles))
+    return _Columns(tuple(points), positions, time, times, frame, unit, len(titles))

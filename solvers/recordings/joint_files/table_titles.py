@@ -12,6 +12,9 @@ MAX_TITLE_LINES = 10
 """Lines above the frames. It bounds the search; tables of Motive have seven."""
 N_SAMPLED_LINES = 100
 """Lines of frames by which columns are recognized. Chosen by hand: above 1 s of most rates."""
+N_PEEKED_LINES = 5000
+"""Lines in which frames with points are looked for. It bounds the memory; an actor who comes
+after a minute of most rates is found."""
 MIN_POINTS = 8
 """Number of points of a table. It guards tables of something else, such as of one sensor."""
 AXIS = re.compile(r"(?P<axis>[xyz])\d*(\s*[(\[](?P<unit>\w+)[)\]])?", re.IGNORECASE)
@@ -27,8 +30,9 @@ BRACKETS = re.compile(rb"[\[({][^\[\](){}]*[\])}]")
 INSIDE_BRACKETS = b"\x01"
 """Replaces separators inside brackets while a line is split."""
 RATE = re.compile(
-    rb"(?i)\b(?:capture[ _]?)?(?:fps|frames?[ _]?rate)[^\w,]{1,4}(\d{1,4}(?:[.,]\d+)?)"
-    rb"|\b(?:fps|frames?[ _]?rate)\W{1,4}(\d{1,4}(?:\.\d+)?)"
+    rb"(?i)\b(?:capture[ _]?)?(?:fps|frames?[ _]?rate|frequency)[^\w,]{1,4}"
+    rb"(\d{1,4}(?:[.,]\d+)?)"
+    rb"|\b(?:fps|frames?[ _]?rate|frequency)\W{1,4}(\d{1,4}(?:\.\d+)?)"
     rb"|(?<![\d.,])(\d{1,4}(?:[.,]\d+)?) ?fps\b"
 )
 """A rate in a comment above the titles. It may have a decimal comma, unless a comma separates
@@ -87,12 +91,18 @@ def table_titles(
     joined = _joined_lines(lines)
     if joined is not None and fits(joined.titles):
         return joined
+    fullest = _fullest(lines)
     for number, line in enumerate(lines[:MAX_TITLE_LINES]):
-        following = lines[number + 1 : number + 1 + N_SAMPLED_LINES]
+        following = [*lines[number + 1 : MAX_TITLE_LINES], *fullest]
         found = _titles_of_line(line, following)
         if fits(found.titles):
             return found._replace(n_lines=number + 1, rate=_rate(b"\n".join(lines[:number])))
     return None
+
+
+def _fullest(lines: Sequence[bytes]) -> list[bytes]:
+    """Return the longest of the lines below titles: points may be missing in many others."""
+    return sorted(lines[MAX_TITLE_LINES:], key=len)[-N_SAMPLED_LINES:]
 
 
 def _rate(comment: bytes) -> float | None:

@@ -18,11 +18,14 @@ from .point_arrays import (
     without_undetected,
 )
 from .point_titles import (
+    Coordinate,
     coordinate_of_title,
     is_quantity,
     names_of_positions,
     numbered_axes,
+    without_letter,
 )
+from .suffixes import groups_by_suffix
 from .time_units import (
     TimeCells,
     TimeName,
@@ -39,6 +42,7 @@ __all__ = [
     "HIPS",
     "LANDMARK_JOINTS",
     "N_POINTS",
+    "Coordinate",
     "TimeCells",
     "TimeName",
     "as_fractions",
@@ -47,6 +51,7 @@ __all__ = [
     "column_of_times",
     "completed_times",
     "coordinate_of_title",
+    "groups_by_suffix",
     "has_layout",
     "is_quantity",
     "is_world",
@@ -64,5 +69,6 @@ __all__ = [
     "stand_body",
     "time_name",
     "with_computed_joints",
+    "without_letter",
     "without_undetected",
 ]

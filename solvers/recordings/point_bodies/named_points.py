@@ -13,9 +13,11 @@ from ...motion.skeletons import COMPUTED_JOINTS
 PARTS = {
     "shoulder": "shoulder", "elbow": "elbow", "wrist": "wrist", "hip": "hip", "knee": "knee",
     "ankle": "ankle", "heel": "heel", "bigtoe": "foot_index", "footindex": "foot_index",
-    "toe": "foot_index", "eye": "eye", "ear": "ear",
+    "toe": "foot_index", "eye": "eye", "ear": "ear", "hand": "hand", "foot": "foot",
 }  # fmt: skip
 """Keypoints of both sides, as MediaPipe calls them."""
+ENDS = {"hand": "wrist", "foot": "ankle"}
+"""Keypoints that some programs have in place of others."""
 MIDDLE = {
     "nose": "nose", "neck": "neck_center", "midhip": "hips_center", "hips": "hips_center",
     "pelvis": "hips_center", "hipcenter": "hips_center", "hipscenter": "hips_center",
@@ -73,10 +75,7 @@ def body_of_named_points(names: Sequence[str], points: Array) -> NamedBody | Non
     names : length n_points
     points : shape (n_frames, n_points, 3)
     """
-    keypoints: dict[str, int] = {}
-    for column, name in enumerate(names):
-        keypoints.setdefault(_keypoint(name), column)
-    keypoints.pop("", None)
+    keypoints = _keypoints(names)
     if keypoints.keys() >= {*LIMBS}:
         return _with_centers({key: points[:, column] for key, column in keypoints.items()})
     roles = roles_by_name(names)
@@ -100,13 +99,34 @@ def missing_limbs(names: Sequence[str]) -> list[str]:
 
     Points are those of a body if they have most of its limbs.
     """
-    keypoints = [*map(_keypoint, names)]
+    keypoints = _keypoints(names)
     by_kind = (
         [each for each in LIMBS if each not in keypoints],
         [NAMES_OF_ROLES[role] for role in NEEDED_ROLES - _roles(names)],
     )
     shortest = min(by_kind, key=len)
     return sorted(shortest) if len(shortest) <= MAX_MISSING else []
+
+
+def _keypoints(names: Sequence[str]) -> dict[str, int]:
+    """Return the columns of keypoints by MediaPipe's names.
+
+    A hand or foot is the wrist or ankle of a side that lacks it, and a foot otherwise the toes.
+    """
+    keypoints: dict[str, int] = {}
+    for column, name in enumerate(names):
+        keypoints.setdefault(_keypoint(name), column)
+    keypoints.pop("", None)
+    for end, joint in ENDS.items():
+        for side in ("left", "right"):
+            column = keypoints.pop(f"{side}_{end}", -1)
+            if column < 0:
+                continue
+            if f"{side}_{joint}" not in keypoints:
+                keypoints[f"{side}_{joint}"] = column
+            elif end == "foot":  # next to an ankle, as of a Kinect
+                keypoints.setdefault(f"{side}_foot_index", column)
+    return keypoints
 
 
 def _roles(names: Sequence[str]) -> set[str]:

@@ -26,6 +26,7 @@ from ..conventions import (
     z_up_from_y_up,
 )
 from .mediapipe_landmarks import N_POINTS, is_normalized
+from .relative_positions import refuse_parent_positions, report_still_hips
 from .unnamed_joints import NamedJoints, has_layout, name_joints
 
 UP: dict[AxisName, float] = {"Y": 0.2, "Z": 0.2, "-Y": 0.2}
@@ -140,8 +141,8 @@ def read_body(
     progress(
         0.8,
         Remark(
-            f"The joints have no names; by their bones they are in the order of {body.layout}"
-            f" with {body.confidence:.0%} confidence{assumed}"
+            "The joints have no known names; by their bones they are in the order of"
+            f" {body.layout} with {body.confidence:.0%} confidence{assumed}"
         ),
     )
     return stand_body(
@@ -189,6 +190,8 @@ def stand_body(
     positions = z_up_from_y_up(positions)
     roles = {role: names.index(name) for role, name in roles_by_name(names).items()}
     estimated = estimate_up_of_joints(positions, roles, up)
+    refuse_parent_positions(path, positions, roles)
+    report_still_hips(positions, roles, progress)
     if not estimated.is_clear:
         progress(0.8, Remark(describe_guessed_axis(estimated.axis)))
     recording = joint_recording(

@@ -27,7 +27,7 @@ SECONDS = {
 }  # fmt: skip
 """Seconds per unit, by its name without the plural s. By definition of the units."""
 WORD_OF_TIME = re.compile(
-    r"(?i)(?:(?:unix|utc|system|capture|sensor|device|recording|relative)[\s_\-]*)?"
+    r"(?i)(?:(?:unix|utc|system|capture|sensor|device|recording|relative|world|game|video|media)[\s_\-]*)?"
     r"(?:(?:time[\s_\-]*)?stamps?|times?|zeit(?:stempel)?|temps|tiempo|tempo|時間|时间|時刻|elapsed"
     r"|offset(?=.)|pts(?=.)|ts?)"
     r"(?:[\s_\-]*(?:in\s)?[\s_\-]*[(\[]?\s*(?P<unit>[a-z\u00b5\u03bc]+)\s*[)\]]?)?"

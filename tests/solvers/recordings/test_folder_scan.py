@@ -1,5 +1,6 @@
 """A folder is looked through to its end, whatever lies in it."""
 
+import json
 import os
 import shutil
 import sys
@@ -20,6 +21,7 @@ from solvers.recordings import (
     recordings_in,
     write_bvh,
 )
+from solvers.recordings.containers import frame_files
 
 
 @pytest.fixture
@@ -119,3 +121,18 @@ def test_pipes_are_skipped_and_deep_folders_are_searched(takes):
     shutil.copy(takes / "leg.bvh", deep / "leg.bvh")
 
     assert [path.name for path in recordings_in(takes)] == ["leg.bvh", "leg.bvh", "twin.bvh"]
+
+
+@pytest.mark.parametrize("form", ["a_{}.json", "a_{:03}.json"])
+def test_numbers_with_and_without_zeros_are_two_takes(tmp_path, form):
+    """Before, frames of one of them replaced those of the other."""
+    joints = [[0.1 * k, 0.2 * k % 1.7, 0.3] for k in range(17)]
+    frame = json.dumps([{"id": 1, "keypoints3d": joints}])
+    for number in range(1, 9):
+        (tmp_path / f"a_{number}.json").write_text(frame)
+        (tmp_path / f"a_{number:03}.json").write_text(frame)
+
+    files = frame_files(tmp_path / form.format(3)).files
+
+    assert [file.name for file in files.values()] == [form.format(k) for k in range(1, 9)]
+    assert len(recordings_in(tmp_path)) == 2

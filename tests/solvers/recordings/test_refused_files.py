@@ -9,6 +9,7 @@ import zlib
 
 import numpy as np
 import pytest
+from joint_files import npz
 from odd_files import archive
 
 from solvers.errors import InvalidFileError
@@ -77,6 +78,39 @@ def object_array() -> bytes:
         (b"\x89HDF\r\n\x1a\n" + bytes(60), "with numpy.save"),
         (b"PK\x03\x04" + bytes(26) + b"[Content_Types].xml" + bytes(60), "as CSV"),
         (b"PK\x03\x04" + bytes(26) + b"take.usdc" + bytes(60), "Import it in Blender"),
+        (
+            ",".join(f"Bone{n}_{axis}rotation" for n in range(9) for axis in "ZXY")
+            + "\n"
+            + ",".join(["1.5"] * 27)
+            + "\n",
+            "rotations of bones without their positions",
+        ),
+        (
+            json.dumps(
+                [
+                    {f"bone{n}": {"localRotation": [0, 0, 0, 1]} for n in range(9)}
+                    | {"hips": {"position": [0, 1, 0]}}
+                ]
+                * 3
+            ),
+            "rotations of bones without their positions",
+        ),
+        (
+            "time,Waist_PosX,Waist_PosY,Waist_PosZ,Head_PosX,Head_PosY,Head_PosZ\n"
+            + ",".join(["1.5"] * 7)
+            + "\n",
+            "has 2 points, too few for a body",
+        ),
+        (
+            "Timecode,BlendshapeCount,EyeBlinkLeft,EyeLookDownLeft,JawOpen,MouthSmileLeft\n"
+            "12:00:00:01,61,0.1,0.2,0.3,0.4\n",
+            "holds values of a face",
+        ),
+        ("\n".join([",".join(["0.25"] * 75)] * 4), "is a table without titles"),
+        (
+            npz(pred_joint_coords=np.ones((3, 127, 3)), pred_cam_t=np.ones((3, 3))),
+            "NumPy archive without joints of a known name .*pred_cam_t",
+        ),
         ("a note on the take", "unknown format. Export it as BVH, FBX, GLB"),
         ("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "git lfs pull"),
     ],

@@ -93,7 +93,16 @@ def test_what_is_not_observed_does_not_spread():
 
 @pytest.mark.parametrize(
     ("step", "rate"),
-    [(0.0333, 30.0), (0.034, 30.0), (0.0667, 15.0), (0.04, 25.0), (0.0125, 80.0)],
+    [
+        (0.0333, 30.0),
+        (0.034, 30.0),
+        (0.0667, 15.0),
+        (0.04, 25.0),
+        (0.0125, 80.0),
+        (0.01389, 72.0),
+        (0.00417, 240.0),
+        (0.005, 200.0),
+    ],
 )
 def test_the_rate_is_the_common_one_if_there_is_one_nearby(step, rate):
     assert ConstantRate("take", np.arange(100) * step).frame_rate == pytest.approx(rate)

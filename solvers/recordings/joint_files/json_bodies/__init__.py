@@ -11,8 +11,10 @@ from .bodies import (
     point,
     stacked,
 )
-from .people import is_frames_json, people_of_frame, time_of_frame
+from .people import is_frames_json, people_of_frame
+from .points import position_of
 from .pose_estimators import is_frame_json, open_frames_json
+from .stamps import time_of_frame
 
 __all__ = [
     "BodiesFrame",
@@ -27,6 +29,7 @@ __all__ = [
     "open_frames_json",
     "people_of_frame",
     "point",
+    "position_of",
     "stacked",
     "time_of_frame",
 ]

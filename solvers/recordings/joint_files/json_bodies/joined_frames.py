@@ -13,7 +13,8 @@ from ....errors import InvalidFileError
 from ...containers import JsonMember
 from ...point_bodies import time_name
 from .bodies import BodiesFrame, BodyJoints
-from .people import NUMBER_KEYS, PART, PEOPLE_KEYS, POINT_KEYS, has_word
+from .people import PART, PEOPLE_KEYS, POINT_KEYS, has_word
+from .stamps import NUMBER_KEYS
 
 MAX_MISSING_FRAMES = 100_000
 """Missing numbers, frames, that a file may have. It bounds the memory of damaged files."""
@@ -69,13 +70,13 @@ def _is_header(first: Any, second: Any) -> bool:
 
 
 def frozen_clocks(stamps: Iterable[Mapping[str, tuple[float, Any]]]) -> set[str]:
-    """Return the keys of times that are the same in all frames, if those of others are not."""
+    """Return the keys of times that are the same in all of several frames."""
     times: dict[str, set[float]] = {}
-    for each in stamps:
+    frames = [*stamps]
+    for each in frames:
         for key, (time, _) in each.items():
             times.setdefault(key, set()).add(time)
-    frozen = {key for key, found in times.items() if len(found) == 1}
-    return set() if len(frozen) == len(times) else frozen
+    return {key for key, found in times.items() if len(found) == 1 and len(frames) > 1}
 
 
 def joined_frames(
@@ -159,7 +160,7 @@ def missing_before(numbers: Sequence[float], start: float, path: Path | str) -> 
     """
     if not numbers:
         return []
-    step = _step(numbers)
+    step = step_between(numbers)
     mean = step or (numbers[-1] - numbers[0]) / (len(numbers) - 1)
     missing = [round((numbers[0] - start) / mean)]
     for before, after in pairwise(numbers):
@@ -172,8 +173,8 @@ def missing_before(numbers: Sequence[float], start: float, path: Path | str) -> 
     return missing
 
 
-def _step(numbers: Sequence[float]) -> float:
-    """Return the smallest step between numbers; 0 if others are no multiples of it."""
+def step_between(numbers: Sequence[float]) -> float:
+    """Return the smallest step between numbers in order; 0 if others are no multiples of it."""
     steps = [after - before for before, after in pairwise(numbers)]
     step = min(steps, default=1.0)
     errors = [abs(each / step - float(np.rint(each / step))) for each in steps]
@@ -195,7 +196,7 @@ def _by_stamp(rows: list[NumberedFrame], path: Path | str) -> list[BodiesFrame] 
     if _are_frames(numbers) or _are_listed(numbers, rows):
         ordered = sorted(numbers)
         is_joined = any(len(numbers[number]) > 1 for number in ordered)
-        if is_joined or _step(ordered):
+        if is_joined or step_between(ordered):
             frames = [_one_frame(numbers[number]) for number in ordered]
             return _with_gaps(frames, ordered, path)
     times = _groups(rows, [row.frame.time for row in rows])

@@ -1,12 +1,11 @@
 """Find the people in a frame of JSON, and their joints, however these are nested."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from itertools import islice
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from ...point_bodies import is_quantity, read_time, time_name
+from ...point_bodies import is_quantity
 from .bodies import name_of_body
 from .points import (
     LANDMARK_KEYS,
@@ -25,29 +24,20 @@ POINT_KEYS = (*LANDMARK_KEYS, *either_case(
     "bones", "points", "xyz",
 ))  # fmt: skip
 """Members with the joints of a person."""
+IN_WORLD = re.compile(
+    r"(?i)(?:pose[_ ]?)?"
+    r"(?:(?:world|3d)[_ ]?(?:key[_ ]?points|landmarks|points|joints|positions)"
+    r"|(?:key[_ ]?points|landmarks|points|joints|positions)[_ ]?(?:in[_ ]?)?world)$"
+)
+"""Key of the joints of a person in the world, next to which others may be in a picture."""
 PEOPLE_KEYS = either_case("instances", "people", "persons", "bodies", "skeletons",
-                          "annots", "actors", "characters")  # fmt: skip
+                          "annots", "actors", "characters", "humans", "subjects",
+                          "players", "users")  # fmt: skip
 """Members with the people of a frame."""
 IDENTITY_KEYS = either_case("id", "track_id", "person_id", "body_id", "personID",
                             "tracking_id", "trackingId")  # fmt: skip
 NAMES_OF_PEOPLE = (*IDENTITY_KEYS, *either_case("name"))
 """Members with the identity of people in a list."""
-NUMBER_KEYS = either_case("frame", "frame_id", "frame_number", "frame_index", "frame_idx",
-                          "frameId", "frameNumber", "frameIndex")  # fmt: skip
-"""Members with the number of a frame."""
-HEADER_KEYS = either_case("header", "meta", "metadata")
-"""Members with the time of a frame, as in messages of ROS."""
-RATE_KEYS = (*either_case("fps", "frame_rate", "framerate", "frameRate"), "FPS")
-NUMBERS_KEYS = either_case("frame_ids", "frameIds", "frame_numbers", "frame_indices")
-"""Members with the numbers of all frames of a person."""
-START_KEYS = either_case("start_frame", "startFrame")
-"""Members with the number of the first frame of a person."""
-SECOND_KEYS = ("sec", "secs", "seconds")
-NANOSECOND_KEYS = ("nanosec", "nsec", "nsecs", "nanos", "nanoseconds")
-"""Members with the rest of a time in ROS and Protocol Buffers, next to its whole seconds."""
-MAX_NUMBER = 1e300
-"""Maximum number or time of a frame, or rate in hertz. It guards the conversion of whole
-numbers, which JSON does not limit."""
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+")
 PART = re.compile(r"(left|right|l|r)?(hands?|fingers?|faces?|mano)|lh|rh")
 """Word in the key of a part of a person."""
@@ -85,6 +75,16 @@ JOINT = re.compile(
 )
 NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*(\[\s*){2,}[-\d]")
 """The first frame of those that are keyed by their number."""
+LISTED_POINT = re.compile(
+    rb"\{(?:[^{}\[\]]{0,99}\"\w{1,99}\"\s{0,9}:\s{0,9}\{)?[^{}\[\]]{0,199}\"[xX]\"\s*:\s*\"?-?\d"
+    rb"[^{}\[\],]{0,99},\s{0,99}\"[yY]\"[^{}\[\],]{0,99},\s{0,99}\"[zZ]\"\s*:\s*\"?-?\d"
+)
+"""An object with x, y and z, or with one as its member."""
+ROW_OF_POINTS = re.compile(
+    rb"\"\w*(?:3d|3D|joint|Joint|kpt|Kpt|pose|Pose)\w*\"\s*:\s*\["
+    rb"(?:\s*\[(?:\s*-?\d[^\s,\[\]]*\s*[,\]]){3}\s*,){7}"
+)
+"""Eight points of a member whose key is that of a pose, whatever it is called."""
 ONLY_EMPTY = re.compile(rb"\s*\[[\s\[\],nul]{1000,}")
 """The begin of a list whose first 1000 bytes are empty frames. Chosen by hand: it guards short
 JSON of something else."""
@@ -103,7 +103,11 @@ def is_frames_json(head: bytes) -> bool:
     """Return whether a file lists joints, from its first bytes."""
     if HEAD.match(head) or NUMBERED.match(head) or ONLY_EMPTY.fullmatch(head):
         return True
-    return head.lstrip()[:1] in {b"{", b"["} and JOINT.search(head) is not None
+    if head.lstrip()[:1] not in {b"{", b"["}:
+        return False
+    n_points = sum(1 for _ in islice(LISTED_POINT.finditer(head), MIN_JOINTS))
+    is_listed = n_points == MIN_JOINTS or ROW_OF_POINTS.search(head) is not None
+    return is_listed or JOINT.search(head) is not None
 
 
 def people_of_frame(frame: Any, key: str = "") -> Iterator[JsonPerson]:
@@ -137,7 +141,7 @@ def _listed_people(values: list[Any], key: str, identity: str) -> Iterator[JsonP
 
 
 def _person(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
-    found = next((name for name in POINT_KEYS if body.get(name)), "")
+    found = _key_of_points(body)
     joints = body.get(found)
     if points := points_of(joints, found):
         yield JsonPerson(identity, points)
@@ -146,6 +150,23 @@ def _person(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
         yield from _listed_people(joints[0] if is_alone else joints, found, identity)
     elif not joints:
         yield from _keyed_people(body, identity)
+
+
+def _key_of_points(body: Mapping[str, Any]) -> str:
+    """Return the key of the joints of a person; empty without any.
+
+    Points in the world come first, then keys in use for joints, then any list of points
+    but those of hands and the face.
+    """
+    known = [name for name in POINT_KEYS if body.get(name)]
+    in_world = [key for key in body if IN_WORLD.match(str(key)) and body[key]]
+    if known or in_world:
+        return (in_world or known)[0]
+    lists = [key for key, value in body.items() if isinstance(value, list) and len(value) > 1]
+    others = {*PEOPLE_KEYS, *filter(is_no_position, lists)}
+    others |= {key for key in lists if has_word(key, PART.fullmatch)}
+    found = [key for key in lists if key not in others and points_of(body[key]) is not None]
+    return found[0] if found else ""
 
 
 def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
@@ -187,69 +208,6 @@ def as_frame(value: Any) -> dict[str, Any]:
         return dict(value)
     is_body = isinstance(value, list) and points_of(value) is not None
     return {PEOPLE_KEYS[0]: [value] if is_body else value}
-
-
-def time_of_frame(frame: Mapping[str, Any]) -> tuple[float, float | None]:
-    """Return the time of a frame and its seconds per unit; NaN and None if it states none."""
-    return next(iter(stamps_of_frame(frame).values()), (np.nan, None))
-
-
-def stamps_of_frame(frame: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
-    """Return all times that a frame states, and their seconds per unit, by their keys.
-
-    Whole seconds with nanoseconds next to them come first, without a key or below one, then
-    names that state the unit, then others. Times in a header count if the frame has none.
-    """
-    headers = [each for each in members(frame, HEADER_KEYS) if isinstance(each, Mapping)]
-    found = (_stamps_of_mapping(each) for each in (frame, *headers))
-    return next(filter(None, found), {})
-
-
-def _stamps_of_mapping(frame: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
-    names = {key: name for key in frame if (name := time_name(str(key))) is not None}
-    split = {"": _joined_seconds(frame)} | {
-        key: _joined_seconds(frame[key]) for key in names if isinstance(frame[key], Mapping)
-    }
-    stamps: dict[str, tuple[float, float | None]] = {
-        key: (time, 1.0) for key, time in split.items() if np.isfinite(time)
-    }
-    for key in sorted(names, key=lambda key: names[key].second is None):
-        time, second = read_time(frame[key], names[key].second)
-        if np.isfinite(time):
-            stamps[key] = time, second
-    return stamps
-
-
-def _joined_seconds(value: Mapping[str, Any]) -> float:
-    """Return a time of whole seconds and nanoseconds; NaN if one of them is missing."""
-    parts = (next(members(value, keys), None) for keys in (SECOND_KEYS, NANOSECOND_KEYS))
-    seconds, rest = (read_time(part, None)[0] for part in parts)
-    return seconds + 1e-9 * rest
-
-
-def is_number(value: Any) -> bool:
-    """Return whether a value is a finite number that fits in a float."""
-    is_real = isinstance(value, int | float) and not isinstance(value, bool)
-    return is_real and abs(value) < MAX_NUMBER
-
-
-def listed_numbers(value: Mapping[str, Any], keys: Iterable[str], n_frames: int) -> list[float]:
-    """Return the numbers in a member, if there is another one for each frame."""
-    listed = next((value[key] for key in keys if key in value), None)
-    if not isinstance(listed, list) or not all(map(is_number, listed)):
-        return []
-    numbers = [float(number) for number in listed]
-    return numbers if len(numbers) == len({*numbers}) == n_frames else []
-
-
-def listed_times(value: Mapping[str, Any], n_frames: int) -> str:
-    """Return the key of the times of all frames; empty if they have none."""
-    for key, listed in value.items():
-        if isinstance(listed, list) and len(listed) == n_frames and time_name(str(key)):
-            times = {read_time(each, None)[0] for each in listed}
-            if len(times) == n_frames and np.isfinite([*times]).all():
-                return key
-    return ""
 
 
 def have_identities(frames: list[Any]) -> bool:

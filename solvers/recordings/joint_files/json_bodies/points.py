@@ -26,8 +26,12 @@ LANDMARK_KEYS = (
 NAME_KEYS = either_case("name", "joint", "joint_name", "jointName", "bone", "bone_name", "type",
                         "jointType", "id")  # fmt: skip
 """Members with the name of a joint, where joints are objects in a list."""
-POSITION_KEYS = either_case("position", "pos", "translation", "location", "transform", "matrix")
-"""Members with the position of a joint, or with the matrix of its pose."""
+POSITION_KEYS = either_case("worldPosition", "world_position", "globalPosition",
+                            "global_position", "position", "pos", "translation", "location",
+                            "coordinates", "coords", "p", "transform", "matrix")  # fmt: skip
+"""Members with the position of a joint, those of the room first, or with its matrix."""
+INNER_KEYS = ("xyz", "v", "value")
+"""Members of a position with its coordinates, as in the structures of the Azure Kinect."""
 CONFIDENCE_KEYS = ("visibility", "presence", "score", "confidence")
 MAX_CONFIDENCE = 100.0
 """Confidence in percent, by definition; larger numbers are something else."""
@@ -73,7 +77,8 @@ def points_of(joints: Any, key: str = "") -> Points | None:
         confidence = np.array([_confidence_of(joint) for joint in joints])
     if array.shape[1] == 4:
         array = without_undetected(array)
-    if not names and key in LANDMARK_KEYS and len(array) == N_POINTS:
+    has_visibility = any("visibility" in joint for joint in objects)
+    if not names and len(array) == N_POINTS and (key in LANDMARK_KEYS or has_visibility):
         names = BODY_POINTS
     return Points(array, confidence, names)
 
@@ -97,7 +102,9 @@ def position_of(joint: Any) -> Any:
     if joint is None:
         return [None] * 3
     if isinstance(joint, Mapping):
-        inner = next(members(joint, POSITION_KEYS), joint)
+        inner = _nested(joint, POSITION_KEYS)
+        if isinstance(inner, Mapping):
+            inner = _nested(inner, INNER_KEYS)
         if isinstance(inner, Mapping):
             lower = {str(key).lower(): value for key, value in inner.items()}
             axes = [f"{each}{axis}" for each in ("", "camera") for axis in "xyz"]
@@ -107,6 +114,15 @@ def position_of(joint: Any) -> Any:
     if isinstance(joint, list) and len(joint) in {4, 16}:
         return _translation(joint)
     return joint
+
+
+def _nested(values: Mapping[str, Any], keys: tuple[str, ...]) -> Any:
+    """Return the first member that may hold coordinates, otherwise the object itself.
+
+    A number of the same name is something else, such as `v` for visibility.
+    """
+    found = members(values, keys)
+    return next((each for each in found if isinstance(each, list | Mapping | None)), values)
 
 
 def width_of(position: Any) -> int:

@@ -1,7 +1,9 @@
 """Read JSON of any pose estimator that lists the joints of people, frame by frame."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -9,6 +11,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....errors import InvalidFileError
+from ....files import open_regular
 from ....motion import JointRecording
 from ....progress import Progress, Remark, unwatched
 from ...containers import (
@@ -32,13 +35,20 @@ from .joined_frames import (
     NumberedFrame,
     frozen_clocks,
     joined_frames,
+    step_between,
     without_header,
 )
 from .keyed_frames import json_by_frame
-from .people import NUMBER_KEYS, RATE_KEYS, is_number, people_of_frame, stamps_of_frame
+from .people import people_of_frame
+from .points import MIN_JOINTS
+from .stamps import NUMBER_KEYS, StatedRate, is_number, stamps_of_frame, stated_rates
 
 LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
 """Members with the names of joints, where these stand apart."""
+ROTATION = re.compile(rb"(?i)\"\w*(?:rot|quat|orient|euler)\w*\"\s*:\s*[\[{]")
+"""Member with the rotation of a bone."""
+MAX_HEAD_BYTES = 1 << 16
+"""Bytes of a file in which rotations are looked for. It bounds the run time."""
 _Row = tuple[str, dict[str, tuple[float, float | None]], NumberedFrame]
 """Key of a member, the times that it states by their keys, and its frame."""
 
@@ -107,6 +117,8 @@ def open_frames_json(
             " (frames, joints, 3), and save it with numpy.save."
         )
     frames, rate, second, listed_names = content
+    if not any(frame.bodies for frame in frames):
+        _refuse_rotations(path)
     if second is None:
         second = second_of_times(np.array([frame.time for frame in frames]), progress)
 
@@ -117,6 +129,17 @@ def open_frames_json(
         )
 
     return open_frames(path, frames, second, read)
+
+
+def _refuse_rotations(path: Path | str) -> None:
+    """Raise InvalidFileError if the members of bones are rotations."""
+    with open_regular(path) as file:
+        head = file.read(MAX_HEAD_BYTES)
+    if sum(1 for _ in islice(ROTATION.finditer(head), MIN_JOINTS)) == MIN_JOINTS:
+        raise InvalidFileError(
+            f"{path} holds rotations of bones without their positions in the room. Export BVH,"
+            " FBX or GLB, or the positions of joints."
+        )
 
 
 def _may_be_one_frame(n_listed: int, path: Path | str) -> bool:
@@ -136,15 +159,13 @@ def _read_content(
 ) -> _Content:
     """Return the frames in the members of a file, or in the files of a take."""
     rows: list[_Row] = []
-    rate: float | None = None
+    stated: list[tuple[str, StatedRate]] = []
     second: float | None = None
     names: list[str] = []
     times: list[float] = []
     n_several = 0
     for member in json_by_frame(without_header(members), path):
         value = member.value
-        if member.key in RATE_KEYS and is_number(value):
-            rate = float(value)
         if member.key in LIST_OF_NAMES and isinstance(value, str):
             names.append(value)
         is_object = isinstance(value, dict)
@@ -157,20 +178,27 @@ def _read_content(
         found = {person.identity: BodyJoints(*person.points) for person in people}
         stamps = stamps_of_frame(value) if is_object else {}
         number = _number_of(value) if is_object else np.nan
-        frame = BodiesFrame(np.nan, found, member.done)
-        rows.append((member.key, stamps, NumberedFrame(number, frame)))
+        if not people:
+            stated += ((member.key, rate) for rate in stated_rates({member.key: value}))
+        row = NumberedFrame(number, BodiesFrame(np.nan, found, member.done))
+        rows.append((member.key, stamps, row))
         progress(0.8 * member.done, "Reading")
     if n_several:
         progress(0.8, _remark_of_unidentified(n_several))
-    by_key, second = _by_key(rows, second)
-    return _Content(_timed(joined_frames(by_key, path), times), rate, second, tuple(names))
+    by_key, second = _by_key(rows, second, progress)
+    frames = _timed(joined_frames(by_key, path), times)
+    rate = _rate_of_frames(rows, frames, _best_rate(rows, stated), progress)
+    return _Content(frames, rate, second, tuple(names))
 
 
 def _by_key(
-    rows: list[_Row], second: float | None
+    rows: list[_Row], second: float | None, progress: Progress
 ) -> tuple[dict[str, list[NumberedFrame]], float | None]:
     """Return frames by the keys of their members, with their times, and seconds per unit."""
     frozen = frozen_clocks(stamps for _, stamps, _ in rows)
+    n_stated = Counter(key for _, stamps, _ in rows for key in stamps)
+    if frozen and frozen == n_stated.keys() and max(n_stated.values()) > 1:
+        progress(0.8, Remark("The times of the file stand still and are not used"))
     by_key: dict[str, list[NumberedFrame]] = {}
     for key, stamps, row in rows:
         moving = [stamp for clock, stamp in stamps.items() if clock not in frozen]
@@ -178,6 +206,40 @@ def _by_key(
         placed = row._replace(frame=row.frame._replace(time=time))
         by_key.setdefault(key, []).append(placed)
     return by_key, second
+
+
+def _best_rate(rows: list[_Row], stated: list[tuple[str, StatedRate]]) -> float | None:
+    """Return the rate that a file states; None without one.
+
+    A member that occurs several times is a frame, whose rate is another one if it has a time.
+    """
+    n_members = Counter(key for key, _, _ in rows)
+    frames = {
+        key
+        for key, stamps, row in rows
+        if n_members[key] > 1 and (stamps or not np.isnan(row.number))
+    }
+    rates = sorted(rate for key, rate in stated if key not in frames)
+    return rates[0].rate if rates else None
+
+
+def _rate_of_frames(
+    rows: list[_Row], frames: list[BodiesFrame], rate: float | None, progress: Progress
+) -> float | None:
+    """Return the rate of frames of which only each second, third and so on is there.
+
+    Numbers are those of the video, whose rate is stated. Times decide if frames have them.
+    """
+    numbers = sorted({row.number for _, _, row in rows if not np.isnan(row.number)})
+    step = step_between(numbers) if len(numbers) > 1 else 1.0
+    are_timed = any(not np.isnan(frame.time) for frame in frames)
+    if rate is None or step <= 1.0 or are_timed:
+        return rate
+    progress(
+        0.8,
+        Remark(f"Frames are numbered in steps of {step:g}; their rate is {rate / step:g} Hz"),
+    )
+    return rate / step
 
 
 def _remark_of_unidentified(n_several: int) -> Remark:

@@ -9,21 +9,16 @@ from ....errors import InvalidFileError
 from ...containers import shown
 from ...point_bodies import has_layout
 from .people import (
-    NUMBERS_KEYS,
     PEOPLE_KEYS,
     POINT_KEYS,
-    RATE_KEYS,
-    START_KEYS,
     as_frame,
     have_identities,
     is_no_position,
-    is_number,
     is_position,
-    listed_numbers,
-    listed_times,
     people_of_frame,
 )
 from .points import MIN_JOINTS
+from .stamps import NUMBERS_KEYS, RATE_KEYS, START_KEYS, is_number, listed_numbers, listed_times
 
 FRAME_KEY = re.compile(r"(?i)\s*(?:frame|f|t)?[\s_\-]*(\d+(?:\.\d+)?)\s*")
 """Key of a frame: its number, or its time in seconds."""

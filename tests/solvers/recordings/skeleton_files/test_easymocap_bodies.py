@@ -17,15 +17,15 @@ def save(path, **arrays):
     return path
 
 
-@pytest.mark.parametrize("n_numbers", [69, 72])
+@pytest.mark.parametrize("n_numbers", [69, 72, 78, 87])
 def test_the_global_turn_and_travel_of_easymocap_are_read(tmp_path, n_numbers):
     """Before, they were ignored: the body stayed in place and did not turn."""
-    vectors = np.zeros((F, 72))
+    vectors = np.zeros((F, n_numbers))
     angles = np.linspace(0.0, 1.5, F)
     travel = np.linspace([0.0, 0.9, 0.0], [2.0, 0.9, 1.0], F)
 
     path = save(
-        tmp_path / "easymocap.npz", poses=vectors[:, 72 - n_numbers :], Th=travel,
+        tmp_path / "easymocap.npz", poses=vectors, Th=travel,
         Rh=angles[:, None] * [0.0, 1.0, 0.0], shapes=np.zeros((1, 10)),
     )  # fmt: skip
     motion = read_recording(path)
@@ -56,3 +56,85 @@ def test_a_turn_without_one_for_each_pose_is_refused(tmp_path):
 
     with pytest.raises(InvalidFileError, match="has 40 poses but positions of shape"):
         read_recording(path)
+
+
+def test_the_size_of_the_body_is_that_of_the_model_times_its_scale(tmp_path):
+    """Before, a child of EasyMocap came in as tall as an adult."""
+    arrays = {"poses": np.zeros((F, 72)), "Th": np.zeros((F, 3))}
+    adult = read_recording(save(tmp_path / "adult.npz", **arrays))
+    child = read_recording(save(tmp_path / "child.npz", **arrays, scale=np.full((1, 1), 0.6)))
+
+    assert child.skeleton.offsets == pytest.approx(0.6 * adult.skeleton.offsets)
+
+
+def test_the_pelvis_about_which_a_scaled_body_turns_is_scaled(tmp_path):
+    path = save(
+        tmp_path / "easymocap.npz", poses=np.zeros((F, 87)), Th=np.zeros((F, 3)),
+        Rh=np.linspace([0.0, 0.0, 0.0], [0.0, 0.0, np.pi / 2.0], F), scale=np.array([[0.5]]),
+    )  # fmt: skip
+
+    motion = open_smpl(path, on_floor=False).read(0, unwatched)
+
+    moved = motion.root_positions[-1] - motion.root_positions[0]
+    assert moved == pytest.approx((0.174, 0.0, 0.177), abs=1e-6)
+
+
+def test_fingers_as_components_are_reported_and_left_out(tmp_path, collected_messages):
+    messages, progress = collected_messages
+    poses = np.zeros((F, 87))
+    poses[:, 66:78] = 2.0
+    path = save(tmp_path / "a.npz", poses=poses, Rh=np.zeros((F, 3)))
+
+    motion = read_recording(path, progress=progress)
+
+    assert motion.skeleton.n_joints == 22
+    assert "The fingers are components of the licensed model and are left out" in messages
+
+
+def test_the_position_in_the_camera_of_romp_is_read(tmp_path, collected_messages):
+    """Before, the body stayed in place."""
+    messages, progress = collected_messages
+    path = save(
+        tmp_path / "romp.npz", global_orient=np.tile([np.pi, 0.0, 0.0], (F, 1)),
+        body_pose=np.zeros((F, 69)), cam_trans=np.linspace([0, 0, 3.0], [1.0, 0, 3.0], F),
+    )  # fmt: skip
+
+    motion = read_recording(path, progress=progress)
+
+    assert np.ptp(motion.root_positions, axis=0) == pytest.approx((1.0, 0.0, 0.0), abs=1e-6)
+    assert any("relative to the camera" in message for message in messages)
+
+
+def test_the_names_and_the_pose_of_meshcapade_are_read(tmp_path):
+    """Before, its .smpl was a NumPy archive without joints of a known name."""
+    path = save(
+        tmp_path / "take.smpl.npz", codecVersion=2, smplVersion=1, gender=0, frameCount=F,
+        frameRate=25.0, shapeParameters=np.zeros(10), headPose=np.zeros((F, 3, 3)),
+        bodyTranslation=np.linspace([0, 0.9, 0], [1.0, 0.9, 0], F),
+        bodyPose=np.zeros((F, 22, 3)), leftHandPose=np.full((F, 15, 3), 0.1),
+        rightHandPose=np.full((F, 15, 3), 0.1),
+    )  # fmt: skip
+
+    motion = read_recording(path)
+
+    assert (motion.frame_rate, motion.skeleton.n_joints) == (25.0, 52)
+    assert np.ptp(motion.root_positions, axis=0) == pytest.approx((1.0, 0.0, 0.0), abs=1e-6)
+
+
+def test_a_scale_of_another_program_does_not_change_the_size(tmp_path):
+    """Before, the size of a box around the actor in the picture made a giant of 400 m."""
+    arrays = {"poses": np.zeros((F, 72)), "trans": np.zeros((F, 3))}
+
+    plain = read_recording(save(tmp_path / "plain.npz", **arrays))
+    boxed = read_recording(save(tmp_path / "boxed.npz", **arrays, scale=np.full(F, 250.0)))
+
+    assert np.allclose(boxed.skeleton.offsets, plain.skeleton.offsets)
+
+
+@pytest.mark.parametrize("scale", [np.nan, -1.0, 1e9])
+def test_a_scale_of_no_body_is_refused(tmp_path, scale):
+    """Before, a body of 1.7 million kilometers was read."""
+    arrays = {"poses": np.zeros((F, 72)), "Th": np.zeros((F, 3))}
+
+    with pytest.raises(InvalidFileError, match="times the size of the model"):
+        read_recording(save(tmp_path / "a.npz", **arrays, scale=scale))

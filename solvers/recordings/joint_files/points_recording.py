@@ -1,0 +1,86 @@
+"""Make a recording of named or numbered points: the joints of a body, or markers."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ...motion import JointRecording, Tracks
+from ...progress import READING, Progress, Remark
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    ConstantRate,
+    guess_unit_of_points,
+    stand_markers,
+)
+from ..point_bodies import (
+    body_of_named_points,
+    body_of_points,
+    missing_limbs,
+    read_body,
+    stand_body,
+)
+
+MIN_CONFIDENCE = 0.9
+"""Confidence from which the bones decide on points whose names are those of no body. It guards
+optical markers, whose order is no body's."""
+
+
+def recording_of_points(
+    path: Path | str,
+    names: tuple[str, ...],
+    points: Array,
+    times: Array | None,
+    unit: float | None,
+    progress: Progress,
+) -> JointRecording | Tracks:
+    """Return named or numbered points as the joints of a body, or as markers if they are none.
+
+    Parameters
+    ----------
+    path : Path or str
+    names : tuple of str
+    points : shape (n_frames, n_points, 3), in the unit and axes of the file
+    times : shape (n_frames,), seconds, or None
+    unit : float, meters per unit of the file, or None
+    progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        No point has all its coordinates in any frame.
+    """
+    points = np.where(np.isfinite(points).all(axis=-1, keepdims=True), points, np.nan)
+    if not len(points) or np.isnan(points).all():
+        raise InvalidFileError(f"{path} has no points that are observed in any frame.")
+    is_named = not all(name.isdigit() for name in names)
+    body = body_of_named_points(names, points) if is_named else None
+    lacking = missing_limbs(names) if body is None and is_named else []
+    unnamed = None if body is not None or lacking else body_of_points(path, points)
+    if unnamed is not None and (not is_named or unnamed.confidence > MIN_CONFIDENCE):
+        return read_body(path, unnamed, unit, progress, times)
+    if times is None:
+        progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
+    if body is not None:
+        return stand_body(
+            path, body.names, body.positions, times=times, scale=unit, progress=progress
+        )
+    progress(0.8, _remark_of_markers(lacking))
+    rate = DEFAULT_FRAME_RATE
+    if times is not None:
+        resampler = ConstantRate(path, times)
+        points, rate = resampler.positions(points), resampler.frame_rate
+    unit = guess_unit_of_points(points) if unit is None else unit
+    progress(1.0, READING)
+    return stand_markers(names, points * unit, rate, unit, "")
+
+
+def _remark_of_markers(lacking: Sequence[str]) -> Remark:
+    if not lacking:
+        return Remark("The names are those of no body; the points become markers")
+    return Remark(
+        f"The points lack {', '.join(lacking)} of a body and are imported as markers;"
+        " export these joints too"
+    )

@@ -1,0 +1,252 @@
+"""Read the parameters of SMPL bodies from JSON, as EasyMocap writes them."""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ...motion import Motion
+from ...motion.humanoid import ADULT_STATURE_M
+from ...progress import Progress, Remark, unwatched
+from ..containers import JsonMember, describe_frame_files, json_content, json_frame_files
+from ..conventions import Bodies
+from .smpl import bodies_of_parameters
+from .smpl_bodies import (
+    ALL_ROTATIONS,
+    BODY_SCALES,
+    N_BODY_POSE,
+    N_NUMBERS,
+    POSES,
+    RATES,
+    READ_ARRAYS,
+    SCALES,
+    SIZES,
+    split_people,
+    with_rotation_vectors,
+)
+
+IDENTITIES = ("id", "track_id", "person_id", "personID")
+BODY = (*POSES, "pose")
+OF_SMPL = (*{*POSES} - {"poses", "body_pose"},)
+"""Names that nothing else has."""
+NEXT_TO_POSES = ("Rh", "Th", "betas", "shapes", "trans", "transl", "smpl_trans")
+LIST = rb'"(?:%s)"\s*:\s*\['
+OWN_NAME, POSE_NAME, OTHER_NAME = (
+    re.compile(LIST % "|".join(names).encode())
+    for names in (OF_SMPL, ("poses", "pose"), NEXT_TO_POSES)
+)
+LONG_ROW = re.compile(
+    rb'"poses"\s*:\s*(?:\[\s*){1,3}((?:\s*-?\d[^,\[\]]*,){62}[^\[\]]*)(?P<end>\]|\Z)'
+)
+"""A pose of 63 and more numbers, which may be longer than the first bytes of a file."""
+IN_WORLD = re.compile(r"(?i)global|world")
+"""Word in the key of poses that others repeat relative to the camera."""
+NUMBERED = re.compile(r"\D*\d+")
+"""Key of one of several people."""
+MAX_DEPTH = 4
+"""Levels of members in which a body is looked for. It guards the depth of the recursion."""
+NUMBERS = ("frame", "frame_id", "frameId", "frame_index", "frameIndex", "frame_number")
+"""Members with the number of a frame."""
+MAX_SPREAD = 10
+"""Frames per one of the file, up to which the others are missing. It bounds the memory."""
+CONSTANT = frozenset((*RATES, *SCALES, *BODY_SCALES))
+"""Names of what a take has once."""
+
+
+def is_smpl_json(head: bytes) -> bool:
+    """Return whether the first bytes are JSON with the poses of an SMPL body."""
+    if head.lstrip()[:1] not in {b"[", b"{"}:
+        return False
+    is_pose = POSE_NAME.search(head) is not None and OTHER_NAME.search(head) is not None
+    row = LONG_ROW.search(head)
+    is_row = row is not None and (
+        not row["end"] or row[1].count(b",") + 1 in N_NUMBERS | N_BODY_POSE
+    )
+    return is_pose or is_row or OWN_NAME.search(head) is not None
+
+
+def is_frame_smpl_json(path: Path | str) -> bool:
+    """Return whether a file holds the poses of one frame."""
+    return _n_frames(_frames([json_content(path)])) == 1
+
+
+def open_smpl_json(
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    height: float = ADULT_STATURE_M,
+    on_floor: bool = True,
+    progress: Progress = unwatched,
+) -> Bodies[Motion]:
+    """Open the parameters of SMPL bodies from JSON, by the names that `open_smpl` reads.
+
+    A file has the arrays of a take, a list of its frames, or the people of one frame, each with
+    an `id`. A file of one frame stands for all files of its take (`frame_files`); people who
+    are in none of its people are missing there.
+
+    Parameters
+    ----------
+    path, scale, height, on_floor : as of `open_smpl`
+    progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, of one frame alone, or has no rotations of a body.
+    InvalidSettingError
+        Scale or height is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    frames = _frames([json_content(path)])
+    if _n_frames(frames) <= 1:
+        frames = _frames(json_frame_files(path))
+        if len(frames) > 1:
+            progress(0.8, Remark(describe_frame_files(len(frames))))
+    if _n_frames(frames) <= 1:
+        raise InvalidFileError(
+            f"{path} holds the pose of one frame. Keep the files of all frames in one folder,"
+            " with their numbers in their names."
+        )
+    people = dict[str, dict[str, Array]]()
+    for name in dict.fromkeys(name for frame in frames for name in frame):
+        arrays = with_rotation_vectors(_joined(path, name, frames), ALL_ROTATIONS)
+        split = split_people(arrays, SIZES)
+        for number, each in enumerate(split, start=1):
+            people[f"{name} {number}" if len(split) > 1 else name] = each
+    return bodies_of_parameters(path, people, scale=scale, height=height, on_floor=on_floor)
+
+
+_Frame = dict[str, dict[str, Array]]
+"""Arrays by their names, of people by theirs; the frames are on the first axis."""
+
+
+def _frames(members: Iterable[JsonMember]) -> list[_Frame]:
+    """Return the frames of a take, which may be one with the arrays of all."""
+    frames = []
+    for member in members:
+        rows, common = _rows(member.value)
+        for row in rows:
+            people = _bodies(row, MAX_DEPTH)
+            frames.append({name: {**common, **_arrays(body)} for name, body in people})
+    return frames
+
+
+def _rows(value: Any) -> tuple[list[Any], dict[str, Array]]:
+    """Return the frames that a value lists, otherwise itself, and what it states of all."""
+    if isinstance(value, list) and not any(map(_has_identity, value)):
+        return _by_number(value), {}
+    if isinstance(value, Mapping) and not _is_body(value):
+        listed = [each for each in value.values() if _is_list_of_frames(each)]
+        if len(listed) == 1:
+            stated = _arrays(value)
+            return _by_number(listed[0]), {
+                name: stated[name] for name in stated if name in CONSTANT
+            }
+    return [value], {}
+
+
+def _by_number(rows: list[Any]) -> list[Any]:
+    """Return frames in the order of their numbers, null for missing ones, if all have one.
+
+    Numbers in steps of two or more are those of the video; the order is all that they decide.
+    """
+    numbered = {row[key]: row for row in rows if isinstance(row, Mapping)
+                for key in NUMBERS if isinstance(row.get(key), int)}  # fmt: skip
+    if not rows or len(numbered) != len(rows):
+        return rows
+    ordered = sorted(numbered)
+    is_dense = 1 in np.diff(ordered) and ordered[-1] - ordered[0] < MAX_SPREAD * len(rows)
+    numbers = range(ordered[0], ordered[-1] + 1) if is_dense else ordered
+    return [numbered.get(number) for number in numbers]
+
+
+def _is_list_of_frames(value: Any) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) > 1
+        and not any(map(_has_identity, value))
+        and any(True for each in value for _ in _bodies(each, MAX_DEPTH))
+    )
+
+
+def _has_identity(value: Any) -> bool:
+    return isinstance(value, Mapping) and bool(_identity(value, ""))
+
+
+def _bodies(value: Any, depth: int) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Yield the names of bodies and their members, however deep these are."""
+    if isinstance(value, Mapping) and _is_body(value):
+        yield _identity(value, "1"), value
+    elif depth and isinstance(value, Mapping):
+        ordered = sorted(value, key=lambda key: IN_WORLD.search(key) is None)
+        found = {key: [*_bodies(value[key], depth - 1)] for key in ordered}
+        groups = [(key, bodies) for key, bodies in found.items() if bodies]
+        if len(groups) > 1 and all(NUMBERED.fullmatch(key) for key, _ in groups):
+            yield from ((key, body) for key, bodies in groups for _, body in bodies[:1])
+        else:
+            yield from groups[0][1] if groups else ()
+    elif depth and isinstance(value, list):
+        for count, inner in enumerate(value, start=1):
+            for name, body in _bodies(inner, depth - 1):
+                yield (name if _has_identity(body) else str(count)), body
+
+
+def _is_body(value: Mapping[str, Any]) -> bool:
+    return any(isinstance(value.get(name), list) for name in BODY)
+
+
+def _identity(body: Mapping[str, Any], default: str) -> str:
+    return str(next((body[key] for key in IDENTITIES if key in body), default))
+
+
+def _arrays(body: Mapping[str, Any]) -> dict[str, Array]:
+    """Return the arrays of numbers among members; a row of numbers is one frame."""
+    arrays = dict[str, Array]()
+    for name in READ_ARRAYS:
+        try:
+            array = np.array(body.get(name), dtype=np.float64)
+        except (ValueError, TypeError, OverflowError):
+            continue
+        is_row = array.ndim == 1 and name not in CONSTANT
+        if array.size and (array.ndim or (name in CONSTANT and name in body)):
+            arrays[name] = array[None] if is_row else array
+    return arrays
+
+
+def _n_frames(frames: list[_Frame]) -> int:
+    """Return the number of frames: of the files, or of the arrays of the only one."""
+    if len(frames) != 1:
+        return len(frames)
+    lengths = (
+        len(array)
+        for arrays in frames[0].values()
+        for name, array in arrays.items()
+        if name in BODY
+    )
+    return max(lengths, default=0)
+
+
+def _joined(path: Path | str, name: str, frames: list[_Frame]) -> dict[str, Array]:
+    """Return the arrays of a person in all frames, NaN where the person or one is missing."""
+    if len(frames) == 1:
+        return frames[0][name]
+    own = [frame.get(name) for frame in frames]
+    first = dict[str, Array]()
+    for arrays in own:
+        first = {**(arrays or {}), **first}
+    joined = {key: first[key] for key in first if key in CONSTANT}
+    for key in first.keys() - CONSTANT:
+        missing = np.full_like(first[key], np.nan)
+        rows = [missing if arrays is None else arrays.get(key, missing) for arrays in own]
+        rows = [row if len(row) == 1 else row[None] for row in rows]
+        if len({row.shape for row in rows}) > 1:
+            raise InvalidFileError(
+                f"{path}: the number of parameters of body {name} changes. Export it again."
+            )
+        joined[key] = np.concatenate(rows)
+    return joined

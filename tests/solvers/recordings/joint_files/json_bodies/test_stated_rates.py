@@ -1,0 +1,65 @@
+"""The rate of JSON is that of its frames, not one of sound, sampling or another clock."""
+
+import json
+
+import pytest
+from exports.camera_bodies import mediapipe
+from pytest import approx
+
+from solvers.recordings.joint_files.json_bodies.joined_frames import frozen_clocks
+
+N = 40
+POINTS = mediapipe(N)
+
+
+def frame(k, **others):
+    points = [dict(zip("xyz", row, strict=True)) for row in POINTS[k, :, :3].tolist()]
+    return {"landmarks": points, **others}
+
+
+FRAMES = [frame(k) for k in range(N)]
+
+
+@pytest.mark.parametrize(
+    "others",
+    [
+        {"audio": {"sample_rate": 44100}, "fps": 25},
+        {"metadata": {"audio": {"sample_rate": 44100}, "fps": 25}},
+        {"sample_rate": 5, "fps": 25},
+        {"info": {"sampling_rate": 1}, "fps": 25},
+        {"camera": {"fps": 60}, "fps": 25},
+        {"metadata": {"fps": 25, "timestamp": 1712345678, "frame": N}},
+    ],
+)
+def test_the_rate_of_frames_comes_first(read_any, collected_messages, others):
+    """Before, the first rate of a file was that of its frames."""
+    messages, progress = collected_messages
+
+    recording = read_any(json.dumps({**others, "frames": FRAMES}), progress=progress)
+
+    assert recording.tracks.frame_rate == approx(25.0)
+    assert not any("stand still" in message for message in messages)
+
+
+def test_a_rate_of_sound_is_not_one_of_frames(read_any):
+    take = {"audio": {"sample_rate": 8000}, "frames": FRAMES}
+
+    assert read_any(json.dumps(take)).tracks.frame_rate == approx(30.0)
+
+
+def test_numbers_in_steps_do_not_matter_to_frames_with_times(read_any, collected_messages):
+    """Before, a remark stated a rate that was not the one of the take."""
+    messages, progress = collected_messages
+    frames = [frame(k, frame=2 * k, time=k / 25.0) for k in range(N)]
+
+    recording = read_any(json.dumps({"fps": 30, "frames": frames}), progress=progress)
+
+    assert recording.tracks.frame_rate == approx(25.0)
+    assert not any("steps" in message for message in messages)
+
+
+def test_the_time_of_one_frame_does_not_stand_still():
+    stamp = {"time": (5.0, 1.0)}
+
+    assert frozen_clocks([stamp]) == set()
+    assert frozen_clocks([stamp, stamp]) == {"time"}

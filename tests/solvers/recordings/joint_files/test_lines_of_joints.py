@@ -1,0 +1,164 @@
+"""Tables with a line for each joint are read whatever their columns are called."""
+
+import numpy as np
+import pytest
+from exports.camera_bodies import mediapipe
+
+from solvers.errors import InvalidFileError
+from solvers.motion import (
+    JointRecording,
+    Sensor,
+    Tracks,
+    find_humanoid_map,
+    forward_kinematics,
+)
+from solvers.motion.skeletons import BODY_POINTS
+from solvers.recordings import list_bodies, read_recording
+from solvers.samples import walking_gait
+
+F = 40
+POINTS = mediapipe(F)
+WORLD = np.stack([POINTS[..., 0], POINTS[..., 2], -POINTS[..., 1]], axis=-1)
+"""By definition of MediaPipe: x right, y down, z away from the camera."""
+
+
+def walk() -> dict[str, np.ndarray]:
+    """Return the positions of joints by role, meters, Z up."""
+    motion = walking_gait()
+    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    positions = forward_kinematics(motion).positions[:F]
+    return {role: positions[:, at] for role, at in roles.items()}
+
+
+def lines(points, form="{frame},{name},{x:.6f},{y:.6f},{z:.6f}"):
+    """Return a line for each joint of each frame, by names or roles."""
+    return [
+        form.format(frame=k, t=k / 25.0, name=name, x=path[k][0], y=path[k][1], z=path[k][2])
+        for k in range(F)
+        for name, path in points.items()
+    ]
+
+
+@pytest.fixture
+def save(tmp_path):
+    def write(titles, rows):
+        path = tmp_path / "take.csv"
+        path.write_text("\n".join([titles, *rows]) + "\n")
+        return path
+
+    return write
+
+
+def landmarks(moved=0.0):
+    return {name: POINTS[:, at, :3] + moved for at, name in enumerate(BODY_POINTS)}
+
+
+@pytest.mark.parametrize("title", ["person", "Player ID", "user_id", "who"])
+def test_landmarks_of_two_people_are_two_bodies(save, title):
+    """Before, a `person` next to landmarks was ignored, and the table refused."""
+    rows = lines(landmarks(), "{frame},anna,{name},{x},{y},{z},0.9")
+    rows += lines(landmarks(), "{frame},ben,{name},{x},{y},{z},0.5")
+
+    path = save(f"frame,{title},landmark,x,y,z,visibility", rows)
+
+    assert [body.name for body in list_bodies(path)] == ["anna", "ben"]
+    recording = read_recording(path, body="ben")
+    assert recording.sensor is Sensor.MEDIAPIPE
+    assert np.allclose(recording.tracks.positions[:, :33], WORLD, atol=1e-6)
+    assert np.nanmax(recording.tracks.confidence) == pytest.approx(0.5)
+
+
+def test_landmarks_of_the_world_come_before_those_of_the_picture(save):
+    """Before, x, y and z were taken, and the table refused as one of a picture."""
+    rows = lines(landmarks(), "{frame},{name},0.5,0.5,-0.1,{x},{y},{z}")
+
+    recording = read_recording(save("frame,landmark,x,y,z,world_x,world_y,world_z", rows))
+
+    assert np.allclose(recording.tracks.positions[:, :33], WORLD, atol=1e-6)
+
+
+def test_landmarks_without_depth_are_refused(save):
+    rows = lines(landmarks(), "{frame},{name},{x},{y}")
+
+    with pytest.raises(InvalidFileError, match="Save the pose_world_landmarks"):
+        read_recording(save("frame,landmark,x,y", rows))
+
+
+@pytest.mark.parametrize(
+    ("titles", "form"),
+    [
+        ("frame,bone_name,loc_x,loc_y,loc_z,rot_x", "{frame},{name},{x},{y},{z},0.5"),
+        ("frame,qx,qy,qz,px,py,pz,bone", "{frame},.1,.2,.3,{x},{y},{z},{name}"),
+        ("time,joint,pos_x,pos_y,poz_z", "{t},{name},{x},{y},{z}"),
+        ("FrameNumber,Key Point,coord x,coord y,coord z", "{frame},{name},{x},{y},{z}"),
+        ("t,tracker,bodyX,bodyY,bodyZ,state", "{t},{name},{x},{y},{z},ok"),
+    ],
+)
+def test_columns_are_recognized_by_the_axes_at_the_end_of_their_titles(save, titles, form):
+    """Before, only listed titles were; a misspelled one made the format unknown."""
+    recording = read_recording(save(titles, lines(walk(), form)))
+
+    assert isinstance(recording, JointRecording)
+    hips = recording.tracks.positions[:, recording.names.index("pelvis")]
+    assert np.linalg.norm(np.diff(hips, axis=0), axis=1) == pytest.approx(
+        np.linalg.norm(np.diff(walk()["hips"], axis=0), axis=1), abs=1e-4
+    )
+
+
+def test_versions_of_a_body_are_listed(save):
+    """Before, freemocap's raw and rigid joints were refused as one joint twice."""
+    rows = lines(walk(), "{frame},{name},{x},{y},{z},body,3d_xyz")
+    rows += lines(walk(), "{frame},{name},{x},{y},{z},body,rigid_3d_xyz")
+
+    path = save("frame,keypoint,x,y,z,model,trajectory", rows)
+
+    assert [body.name for body in list_bodies(path)] == ["3d_xyz", "rigid_3d_xyz"]
+
+
+def test_a_few_trackers_are_refused_with_what_would_serve(save):
+    few = dict(list(walk().items())[:5])
+
+    with pytest.raises(InvalidFileError, match="Export the skeleton that your program"):
+        read_recording(save("timestamp,device,x,y,z", lines(few, "{t},{name},{x},{y},{z}")))
+
+
+def test_velocities_are_no_positions(save):
+    rows = lines(walk(), "{frame},{name},{x},{y},{z}")
+
+    with pytest.raises(InvalidFileError, match="unknown format"):
+        read_recording(save("frame,joint,vel_x,vel_y,vel_z", rows))
+
+
+@pytest.mark.parametrize(
+    ("titles", "form"),
+    [
+        ("frame,joint,local_x,local_y,local_z,x,y,z", "{frame},{name},0,1,2,{x},{y},{z}"),
+        ("frame,joint,dirX,dirY,dirZ,x,y,z", "{frame},{name},0,1,2,{x},{y},{z}"),
+        ("frame,joint,u_x,u_y,u_z,pos_x,pos_y,pos_z", "{frame},{name},0,1,2,{x},{y},{z}"),
+        ("frame,joint,x,y,z,confidence", "{frame},{name},{x},{y},{z},High"),
+    ],
+)
+def test_positions_come_before_other_vectors_and_words(save, titles, form):
+    """Before, the first vector was the position, and a confidence in words was refused."""
+    recording = read_recording(save(titles, lines(walk(), form)))
+
+    hips = recording.tracks.positions[:, recording.names.index("pelvis")]
+    assert np.ptp(hips, axis=0).max() == pytest.approx(
+        np.ptp(walk()["hips"], axis=0).max(), abs=1e-4
+    )
+
+
+def test_directions_alone_are_no_positions(save):
+    rows = lines(walk(), "{frame},{name},{x},{y},{z}")
+
+    with pytest.raises(InvalidFileError, match="unknown format"):
+        read_recording(save("frame,joint,dir_x,dir_y,dir_z", rows))
+
+
+@pytest.mark.parametrize("name", ["{at}", "\u00b2{at}"])
+def test_many_landmarks_are_not_those_of_a_pose(save, name):
+    """Before, the first 33 of a face were a pose, and a superscript ended in a traceback."""
+    face = {name.format(at=at): POINTS[:, at % 33, :3] for at in range(90)}
+    rows = lines(face, "{frame},{name},{x},{y},{z}")
+
+    assert isinstance(read_recording(save("frame,landmark,x,y,z", rows)), Tracks)
