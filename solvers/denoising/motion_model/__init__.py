@@ -3,7 +3,7 @@
 from .joint_noise import MAX_CONSTANT_RANGE, channel_deviation, estimate_joint_noise
 from .learn_mixture import learn_motion_mixture
 from .motion_mixture import N_CHANNELS, SHIPPED, MotionMixture, load_motion_mixture
-from .principal_axes import principal_axes
+from .principal_axes import principal_axes, robust_axes
 from .smooth_joints import MAX_LEVERAGE, MixtureSmoother
 
 __all__ = [
@@ -18,4 +18,5 @@ __all__ = [
     "learn_motion_mixture",
     "load_motion_mixture",
     "principal_axes",
+    "robust_axes",
 ]

@@ -11,6 +11,8 @@ TIE_BREAK = 1e-9 * np.diag([2.0, 1.0, 0.0])
 axes, whose axes rounding would choose."""
 MIN_VARIANCE = np.finfo(float).tiny
 """Of all channels together. Guards joints that stand still."""
+MIN_LENGTH = 1e-9
+"""Degrees or centimeters: guards a division."""
 
 
 class PrincipalAxes(NamedTuple):
@@ -55,3 +57,24 @@ def principal_axes(samples: Array, noise: Array) -> PrincipalAxes:
         axes.transpose(0, 2, 1) @ whiten * lengths[..., None],
         np.square(lengths),
     )
+
+
+def robust_axes(samples: Array) -> Array:
+    """Return the principal axes of the directions from the median, shape (3, 3), as columns.
+
+    All frames count the same [1]_, so that an error of a few frames does not turn the axes.
+
+    Parameters
+    ----------
+    samples : shape (n_frames, 3), without NaN
+
+    References
+    ----------
+    .. [1] Visuri, Koivunen, Oja (2000). Sign and rank covariance matrices. Journal of
+       Statistical Planning and Inference 91. doi:10.1016/S0378-3758(00)00199-3
+    """
+    centered = samples - np.median(samples, axis=0)
+    lengths = np.linalg.norm(centered, axis=1, keepdims=True)
+    directions = centered / np.maximum(lengths, MIN_LENGTH)
+    axes = principal_axes(directions[:, None], np.eye(directions.shape[1])[None])
+    return np.asarray(axes.to_channels[0])

@@ -15,11 +15,10 @@ from scipy.ndimage import median_filter
 from ...arrays import Array
 from ...signals import fill_channel_gaps, find_runs
 from ..motion_model import (
-    N_CHANNELS,
     MotionMixture,
     channel_deviation,
     estimate_joint_noise,
-    principal_axes,
+    robust_axes,
 )
 from ..window_priors import Windows
 from .predictive_density import PredictiveDensity, RunDensity, with_rare_movement
@@ -51,8 +50,6 @@ smoothers. Chosen by hand; `make sensitivity` varies it."""
 MAX_BURST_S = 0.3
 """Seconds: longest error that is looked for between two steps. Chosen by hand;
 `make sensitivity` varies it."""
-MIN_LENGTH = 1e-9
-"""Degrees or centimeters: guards a division."""
 MIN_NOISE = 2.0
 """Degrees or centimeters: smaller noise would let the mixture reject any movement that its
 recordings lack. Chosen by hand; `make sensitivity` varies it."""
@@ -201,7 +198,7 @@ def _select(
         is_valid = is_observed & ~suspected[:, joint]
         samples = np.where(is_observed, noisy[:, joint], complete[:, joint])
         centered = samples - complete[:, joint].mean(axis=0)
-        axes = _robust_axes(complete[:, joint])
+        axes = robust_axes(complete[:, joint])
         predictive, predictive_of_runs = (
             PredictiveDensity(centered, noise[joint], windows, each, axes)
             for each in (mixture, with_rare_movement(mixture))
@@ -215,27 +212,6 @@ def _select(
             tests.append(_Test(run, first, density, n_tested))
     run_rate = RUN_RATE if are_suspected else BURST_RATE
     return _likeliest(tests, observed, run_rate)[:n_frames]
-
-
-def _robust_axes(samples: Array) -> Array:
-    """Return the principal axes of the directions from the median, shape (3, 3), as columns.
-
-    All frames count the same [1]_, so that an error of a few frames does not turn the axes.
-
-    Parameters
-    ----------
-    samples : shape (n_frames, 3), without NaN
-
-    References
-    ----------
-    .. [1] Visuri, Koivunen, Oja (2000). Sign and rank covariance matrices. Journal of
-       Statistical Planning and Inference 91. doi:10.1016/S0378-3758(00)00199-3
-    """
-    centered = samples - np.median(samples, axis=0)
-    lengths = np.linalg.norm(centered, axis=1, keepdims=True)
-    directions = centered / np.maximum(lengths, MIN_LENGTH)
-    axes = principal_axes(directions[:, None], np.eye(N_CHANNELS)[None])
-    return np.asarray(axes.to_channels[0])
 
 
 def _likeliest(
