@@ -63,7 +63,7 @@ def apply_default_method(
     is_good = known & ~outliers
     estimate = replace(estimate, inliers=np.where(known, ~outliers, estimate.inliers))
     complete = np.where(is_good, noisy, estimate.values)
-    covariances = estimate_joint_noise(np.where(is_good, noisy, np.nan), MIN_NOISE)
+    covariances = estimate_joint_noise(np.where(outliers, np.nan, noisy), MIN_NOISE)
     noise = channel_deviation(covariances)
     spline = smooth_by_spline(complete)
     factors = noise_factors(noise, complete, [estimate, spline], is_good)

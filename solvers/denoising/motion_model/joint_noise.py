@@ -40,7 +40,8 @@ def estimate_joint_noise(samples: Array, minimum: float) -> Array:
     is_free = moves & (noise > MIN_FREE_NOISE * noise.max(axis=1, keepdims=True))
     noise = np.maximum(noise, minimum)
     n_free = is_free.sum(axis=1)
-    mean = np.exp(np.where(is_free, np.log(noise), 0.0).sum(axis=1) / np.maximum(n_free, 1))
+    logs = np.where(is_free, np.log(noise), 0.0).sum(axis=1) / np.maximum(n_free, 1)
+    mean = np.where(n_free > 0, np.exp(logs), minimum)
     differences = np.diff(along, DIFFERENCE_ORDER, axis=0)
     n_samples = n_free * np.isfinite(differences).all(axis=2).sum(axis=0)
     mean = np.maximum(shrink_noise(mean, n_samples, DIFFERENCE_EFFICIENCY), minimum)[:, None]

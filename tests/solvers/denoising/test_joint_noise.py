@@ -5,7 +5,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from solvers.denoising import denoise
 from solvers.denoising.motion_model import channel_deviation, estimate_joint_noise
+from solvers.motion import Motion, Skeleton
+from solvers.rotations import angle_between, quaternion_from_rotation_vector
 
 N_FRAMES, N_JOINTS, MINIMUM = 400, 12, 1e-3
 TURN = Rotation.from_rotvec([0.5, -0.8, 0.3]).as_matrix()
@@ -88,3 +91,24 @@ def test_short_and_empty_takes_have_the_least_noise_or_more(n_frames, rng):
 
     assert np.isfinite(noise).all()
     assert (np.linalg.eigvalsh(noise) > 0.9 * MINIMUM**2).all()
+
+
+def test_take_that_stands_still_has_the_least_noise():
+    assert_allclose(channel_deviation(estimated(np.ones((60, 2, 3)))), MINIMUM)
+
+
+def test_clean_smooths_a_joint_whose_other_channels_stand_still(rng):
+    skeleton = Skeleton(("base", "tip"), (-1, 0), np.array([[0, 0, 0], [0, 0, 0.5]]))
+    bend = np.zeros((60, 2, 3))
+    bend[:, 0, 0] = 0.5 * np.sin(np.arange(60) / 8.0)
+    truth = quaternion_from_rotation_vector(bend)
+    bend[:, 0, 0] += rng.normal(scale=0.05, size=60)
+    noisy = Motion(skeleton, quaternion_from_rotation_vector(bend), np.zeros((60, 3)), 30.0)
+
+    cleaned = denoise(noisy).recording
+
+    assert isinstance(cleaned, Motion)
+    before, after = (
+        angle_between(each.rotations[:, 0], truth[:, 0]).mean() for each in (noisy, cleaned)
+    )
+    assert after < 0.6 * before
