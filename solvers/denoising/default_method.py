@@ -16,7 +16,6 @@ from .channels import Channels, Estimate
 from .limb_gaps import load_body_relation, predict_limbs
 from .motion_model import (
     MixtureSmoother,
-    channel_deviation,
     estimate_joint_noise,
     load_motion_mixture,
 )
@@ -63,13 +62,13 @@ def apply_default_method(
     is_good = known & ~outliers
     estimate = replace(estimate, inliers=np.where(known, ~outliers, estimate.inliers))
     complete = np.where(is_good, noisy, estimate.values)
-    covariances = estimate_joint_noise(np.where(outliers, np.nan, noisy), MIN_NOISE)
-    noise = channel_deviation(covariances)
+    covariances, noise = estimate_joint_noise(np.where(outliers, np.nan, noisy), MIN_NOISE)
     spline = smooth_by_spline(complete)
     factors = noise_factors(noise, complete, [estimate, spline], is_good)
-    covariances *= np.square(factors[::3])[:, None, None]
-    noise = channel_deviation(covariances)
-    by_mixture = MixtureSmoother(covariances, frame_rate, mixture)
+    noise = np.maximum(noise * factors, MIN_NOISE)
+    by_mixture = MixtureSmoother(
+        covariances * np.square(factors[::3])[:, None, None], frame_rate, mixture
+    )
     averaged, weights = average_estimates(
         noisy,
         estimate,

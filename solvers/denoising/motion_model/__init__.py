@@ -1,6 +1,6 @@
 """Model of joint movement within half a second: a mixture learned from many recordings."""
 
-from .joint_noise import MAX_CONSTANT_RANGE, channel_deviation, estimate_joint_noise
+from .joint_noise import MAX_CONSTANT_RANGE, JointNoise, estimate_joint_noise
 from .learn_mixture import learn_motion_mixture
 from .motion_mixture import N_CHANNELS, SHIPPED, MotionMixture, load_motion_mixture
 from .principal_axes import principal_axes, robust_axes
@@ -11,9 +11,9 @@ __all__ = [
     "MAX_LEVERAGE",
     "N_CHANNELS",
     "SHIPPED",
+    "JointNoise",
     "MixtureSmoother",
     "MotionMixture",
-    "channel_deviation",
     "estimate_joint_noise",
     "learn_motion_mixture",
     "load_motion_mixture",

@@ -1,5 +1,7 @@
 """The noise of each joint of a take."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...arrays import Array
@@ -16,12 +18,24 @@ MAX_EQUAL_RATIO = 3.0
 Chosen by hand: with fast movement the ratio is up to 2."""
 
 
-def estimate_joint_noise(samples: Array, minimum: float) -> Array:
-    """Return the covariance of the noise of each joint's channels, shape (n_joints, 3, 3).
+class JointNoise(NamedTuple):
+    """The noise of the channels of a take."""
 
-    The noise of a joint is equal along its axes, unless it is much larger along one of them.
-    Axes about which the joint cannot turn, as those of a knee that only bends, do not count.
-    Joints that stand still do not count for the others; they get the others' noise.
+    covariances: Array
+    """Of each joint as a smoother expects it, shape (n_joints, 3, 3): the same along all axes,
+    also along fixed ones, where no movement is lost by it."""
+    deviation: Array
+    """Standard deviation of each channel, shape (3 n_joints,): that of fixed axes is their
+    own."""
+
+
+def estimate_joint_noise(samples: Array, minimum: float) -> JointNoise:
+    """Estimate the noise of each joint along its own axes.
+
+    It is equal along the axes about which the joint can turn, unless it is much larger along
+    one of them. Axes about which it cannot turn, as those of a knee that only bends, are fixed
+    and do not count. Joints that stand still do not count for the others; they get the others'
+    noise.
 
     Parameters
     ----------
@@ -45,13 +59,15 @@ def estimate_joint_noise(samples: Array, minimum: float) -> Array:
     differences = np.diff(along, DIFFERENCE_ORDER, axis=0)
     n_samples = n_free * np.isfinite(differences).all(axis=2).sum(axis=0)
     mean = np.maximum(shrink_noise(mean, n_samples, DIFFERENCE_EFFICIENCY), minimum)[:, None]
-    noise = np.where(noise > MAX_EQUAL_RATIO * mean, noise, mean)
-    return np.asarray(np.einsum("jca,ja,jda->jcd", axes, np.square(noise), axes))
+    equal = np.where(noise > MAX_EQUAL_RATIO * mean, noise, mean)
+    is_fixed = ~is_free & (n_free > 0)[:, None]
+    own = _covariances(axes, np.where(is_fixed, noise, equal))
+    deviation = np.sqrt(np.einsum("jcc->jc", own)).ravel()
+    return JointNoise(_covariances(axes, equal), deviation)
 
 
-def channel_deviation(noise: Array) -> Array:
-    """Return the standard deviation of each channel, shape (3 n_joints,), from covariances."""
-    return np.asarray(np.sqrt(np.einsum("jcc->jc", noise)).ravel())
+def _covariances(axes: Array, deviations: Array) -> Array:
+    return np.asarray(np.einsum("jca,ja,jda->jcd", axes, np.square(deviations), axes))
 
 
 def _noise_axes(joints: Array) -> Array:

@@ -10,7 +10,6 @@ import numpy as np
 from ...arrays import Array
 from ..channels import Smoothed
 from ..window_priors import Windows
-from .joint_noise import channel_deviation
 from .motion_mixture import N_CHANNELS, MotionMixture
 from .principal_axes import principal_axes
 
@@ -59,7 +58,7 @@ class MixtureSmoother:
     Attributes
     ----------
     noise : shape (n_joints, 3, 3)
-        Covariance, square degrees or centimeters; see `estimate_joint_noise`.
+        Covariances, square degrees or centimeters; see `JointNoise`.
     frame_rate : float, Hz
     mixture : MotionMixture
 
@@ -96,7 +95,8 @@ class MixtureSmoother:
         values += average
         freedom = np.einsum("tja,ja,jca->tjc", leverage, axes.variance, axes.to_channels**2)
         freedom = freedom.reshape(samples.shape)
-        leverage = np.minimum(freedom / channel_deviation(self.noise) ** 2, MAX_LEVERAGE)
+        variance = np.einsum("jcc->jc", self.noise).ravel()
+        leverage = np.minimum(freedom / variance, MAX_LEVERAGE)
         return Smoothed(values, (samples - values) / (1.0 - leverage), freedom)
 
     def _average_windows(

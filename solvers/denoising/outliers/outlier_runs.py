@@ -16,7 +16,6 @@ from ...arrays import Array
 from ...signals import fill_channel_gaps, find_runs
 from ..motion_model import (
     MotionMixture,
-    channel_deviation,
     estimate_joint_noise,
     robust_axes,
 )
@@ -183,7 +182,7 @@ def _select(
     """Return the samples of the candidates that are likelier to be errors than movement."""
     frame_ratio, n_frames = frame_rate / mixture.frame_rate, len(noisy)
     length = round(mixture.window * frame_ratio)
-    noise = channel_deviation(estimate_joint_noise(complete, MIN_NOISE))
+    noise = estimate_joint_noise(complete, MIN_NOISE).deviation
     if n_frames < length:  # the rest of the window is not observed
         added = ((0, length - n_frames), (0, 0))
         noisy = np.pad(noisy, added, constant_values=np.nan)

@@ -15,7 +15,7 @@ from solvers.denoising.averaging import (
 )
 from solvers.denoising.averaging.measure_leverage import leverage
 from solvers.denoising.channels import Estimate, Smoothed
-from solvers.denoising.motion_model import channel_deviation, estimate_joint_noise
+from solvers.denoising.motion_model import estimate_joint_noise
 from solvers.motion import Motion, find_humanoid_map
 from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.samples import walker_skeleton
@@ -210,7 +210,7 @@ def _spline_factor(samples: np.ndarray, good: np.ndarray, noise: np.ndarray) -> 
 
 
 def _noise_factors(samples: np.ndarray) -> np.ndarray:
-    noise = channel_deviation(estimate_joint_noise(samples, 0.01))
+    noise = estimate_joint_noise(samples, 0.01).deviation
     good = np.ones(samples.shape, dtype=bool)
     return noise_factors(noise, samples, [smooth_by_spline(samples)], good)
 

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from solvers.denoising import denoise
-from solvers.denoising.motion_model import channel_deviation, estimate_joint_noise
+from solvers.denoising.motion_model import JointNoise, estimate_joint_noise
 from solvers.motion import Motion, Skeleton
 from solvers.rotations import angle_between, quaternion_from_rotation_vector
 
@@ -22,15 +22,15 @@ def movement():
     return 20.0 * np.sin(2.0 * np.pi * rates * time)
 
 
-def estimated(joints: np.ndarray) -> np.ndarray:
+def estimated(joints: np.ndarray) -> JointNoise:
     return estimate_joint_noise(joints.reshape(len(joints), -1), MINIMUM)
 
 
 def test_noise_of_all_axes_is_one_figure(movement, rng):
     noise = estimated(movement + rng.normal(scale=2.0, size=movement.shape))
 
-    assert_allclose(noise, 4.0 * np.tile(np.eye(3), (N_JOINTS, 1, 1)), atol=0.6)
-    assert np.ptp(channel_deviation(noise[:1])) < 1e-9
+    assert_allclose(noise.covariances, 4.0 * np.tile(np.eye(3), (N_JOINTS, 1, 1)), atol=0.6)
+    assert np.ptp(noise.deviation[:3]) < 1e-9
 
 
 def test_joint_of_one_axis_has_the_noise_of_this_axis(movement, rng):
@@ -41,7 +41,9 @@ def test_joint_of_one_axis_has_the_noise_of_this_axis(movement, rng):
 
     noise = estimated(noisy)
 
-    assert_allclose(np.sqrt(axis @ noise[knee] @ axis), 2.0, rtol=0.15)
+    assert_allclose(np.sqrt(noise.covariances[knee].diagonal()), 2.0, rtol=0.15)
+    expected = 2.0 * np.abs(axis)
+    assert_allclose(noise.deviation.reshape(N_JOINTS, 3)[knee], expected, rtol=0.15)
 
 
 def test_joint_keeps_its_much_larger_noise_about_one_axis(movement, rng):
@@ -49,7 +51,7 @@ def test_joint_keeps_its_much_larger_noise_about_one_axis(movement, rng):
     noisy = movement + rng.normal(scale=0.5, size=movement.shape)
     noisy[:, forearm] += rng.normal(scale=8.0, size=(N_FRAMES, 1)) * axis
 
-    noise = estimated(noisy)
+    noise = estimated(noisy).covariances
 
     assert_allclose(np.sqrt(axis @ noise[forearm] @ axis), 8.0, rtol=0.2)
     assert np.sqrt(TURN[:, 0] @ noise[forearm] @ TURN[:, 0]) < 2.0
@@ -60,7 +62,7 @@ def test_noisier_joint_keeps_its_own_noise(movement, rng):
     scale = np.full((N_JOINTS, 1), 0.5)
     scale[hand] = 3.0
 
-    deviation = channel_deviation(estimated(movement + scale * rng.normal(size=movement.shape)))
+    deviation = estimated(movement + scale * rng.normal(size=movement.shape)).deviation
 
     assert_allclose(deviation.reshape(N_JOINTS, 3)[hand], 3.0, rtol=0.15)
     assert_allclose(np.delete(deviation.reshape(N_JOINTS, 3), hand, axis=0), 0.5, rtol=0.1)
@@ -70,7 +72,7 @@ def test_axes_of_a_rigs_joints_turn_the_noise(movement, rng):
     noisy = movement + rng.normal(size=movement.shape)
     noisy[:, 2] += rng.normal(scale=6.0, size=(N_FRAMES, 1)) * TURN[:, 1]
 
-    noise, turned = estimated(noisy), estimated(noisy @ TURN)
+    noise, turned = estimated(noisy).covariances, estimated(noisy @ TURN).covariances
 
     assert_allclose(turned, TURN.T @ noise @ TURN, atol=1e-9)
 
@@ -79,7 +81,7 @@ def test_still_joint_gets_the_noise_of_the_others(movement, rng):
     noisy = movement + rng.normal(scale=2.0, size=movement.shape)
     noisy[:, 4] = 10.0
 
-    assert_allclose(channel_deviation(estimated(noisy))[12:15], 2.0, rtol=0.1)
+    assert_allclose(estimated(noisy).deviation[12:15], 2.0, rtol=0.1)
 
 
 @pytest.mark.parametrize("n_frames", [1, 3, 4, 12])
@@ -89,12 +91,12 @@ def test_short_and_empty_takes_have_the_least_noise_or_more(n_frames, rng):
 
     noise = estimated(noisy)
 
-    assert np.isfinite(noise).all()
-    assert (np.linalg.eigvalsh(noise) > 0.9 * MINIMUM**2).all()
+    assert np.isfinite(noise.deviation).all()
+    assert (np.linalg.eigvalsh(noise.covariances) > 0.9 * MINIMUM**2).all()
 
 
 def test_take_that_stands_still_has_the_least_noise():
-    assert_allclose(channel_deviation(estimated(np.ones((60, 2, 3)))), MINIMUM)
+    assert_allclose(estimated(np.ones((60, 2, 3))).deviation, MINIMUM)
 
 
 def test_clean_smooths_a_joint_whose_other_channels_stand_still(rng):
