@@ -45,19 +45,27 @@ class PackageOnDemand(ModuleType):
 def import_on_demand(package: str) -> None:
     """Import what a package's block `if TYPE_CHECKING:` imports, each name on first use.
 
-    A package that is reloaded imports them again.
-
-    Type checkers and readers see ordinary imports there. Nothing changes for who uses the
-    package: `from solvers.denoising import denoise` imports what `denoise` needs.
+    Type checkers and readers see ordinary imports there, as in SPEC 1 of Scientific Python
+    [1]_. Nothing changes for users of the package: `from solvers.denoising import denoise`
+    imports what `denoise` needs. A package that is reloaded imports its names again.
 
     Parameters
     ----------
     package : str
         The `__name__` of the package; the caller is its `__init__`, at the end.
+
+    References
+    ----------
+    .. [1] SPEC 1, Lazy loading of submodules and functions.
+       https://scientific-python.org/specs/spec-0001/
     """
     module = sys.modules[package]
-    blocks = [node for node in ast.parse(getsource(module)).body if isinstance(node, ast.If)]
-    imports = [each for block in blocks for each in block.body]
+    imports = [
+        each
+        for block in ast.parse(getsource(module)).body
+        if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
+        for each in block.body
+    ]
     homes = {
         alias.name: "." * each.level + (each.module or "")
         for each in imports

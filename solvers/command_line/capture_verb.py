@@ -19,6 +19,7 @@ from .arguments import (
     JOINTS,
     Outcome,
     Task,
+    VerbWork,
     arguments_from,
     find_recordings,
     settings_from_arguments,
@@ -128,3 +129,6 @@ def _outcome(found: CapturedMotion, messages: list[Remark]) -> Outcome:
         "slide_after_m": found.planted and found.planted.slide_after,
     }
     return Outcome(" ".join([text, *remarks]), figures)
+
+
+CAPTURE = VerbWork(add_capture_options, perform_capture, depth_takes_in, read_body)

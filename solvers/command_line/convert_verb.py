@@ -7,6 +7,7 @@ from ..recordings import FloorPlacementSettings
 from .arguments import (
     Outcome,
     Task,
+    VerbWork,
     add_reading_options,
     arguments_from,
     convert,
@@ -27,3 +28,6 @@ def perform_convert(task: Task, prepared: None, progress: Progress) -> Outcome:
     floor = settings_from_arguments(task.arguments, FloorPlacementSettings).place_on_floor
     recording = read(task.source, task.arguments, reading, floor)
     return convert(recording, task.target, within(progress, 0.7, 1.0))
+
+
+CONVERT = VerbWork(add_convert_options, perform_convert)

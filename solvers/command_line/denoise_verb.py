@@ -29,6 +29,7 @@ from ..progress import Progress, within
 from .arguments import (
     Outcome,
     Task,
+    VerbWork,
     add_preset_option,
     add_reading_options,
     arguments_from,
@@ -207,3 +208,6 @@ def _plant_feet(
     )
     figures = {"slide_before_m": planted.slide_before, "slide_after_m": planted.slide_after}
     return planted.motion, planted.contacts, {"feet": message, **figures}
+
+
+DENOISE = VerbWork(add_denoise_options, perform_denoise, prepare=learn_prior)

@@ -6,7 +6,7 @@ from ..depth_scene import DepthRecording
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, within
-from ..recordings import is_depth_recording, read_depth
+from ..recordings import is_depth_recording, read_depth, takes_in
 from ..workflows import (
     FixedTake,
     FixSettings,
@@ -20,6 +20,7 @@ from ..workflows import (
 from .arguments import (
     Outcome,
     Task,
+    VerbWork,
     add_reading_options,
     arguments_from,
     read_recorded,
@@ -71,3 +72,6 @@ def _figures(fixed: FixedTake) -> dict[str, object]:
         "frame_rate_hz": fixed.recording.frame_rate,
         **fixed.figures(),
     }
+
+
+FIX = VerbWork(add_fix_options, perform_fix, list_recordings=takes_in)

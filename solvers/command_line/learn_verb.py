@@ -8,6 +8,7 @@ from ..progress import Progress, within
 from .arguments import (
     Outcome,
     Task,
+    VerbWork,
     add_reading_options,
     arguments_from,
     read_all,
@@ -42,3 +43,6 @@ def perform_learn(task: Task, prepared: None, progress: Progress) -> Outcome:
     clips_text = "1 clip" if len(clips) == 1 else f"{len(clips)} clips"
     text = f"Learned {len(bases.values)} patterns from {clips_text} into {task.target}."
     return Outcome(text, figures)
+
+
+LEARN = VerbWork(add_learn_options, perform_learn)

@@ -21,7 +21,14 @@ from ..retrieval import (
     load_clip_library,
 )
 from ..workflows import IndexReport, index_files
-from .arguments import Outcome, Task, add_body_option, arguments_from, settings_from_arguments
+from .arguments import (
+    Outcome,
+    Task,
+    VerbWork,
+    add_body_option,
+    arguments_from,
+    settings_from_arguments,
+)
 from .farm import cluster_workers
 
 DEFAULT_N_MATCHES = 10
@@ -207,3 +214,9 @@ def _frames(text: str) -> tuple[int, int]:
 
 
 _frames.__name__ = "range of frames"
+
+
+INDEX = VerbWork(add_index_options, perform_index)
+
+
+FIND = VerbWork(add_find_options, perform_find)

@@ -9,6 +9,7 @@ from ..workflows import posture_library_from_clips
 from .arguments import (
     Outcome,
     Task,
+    VerbWork,
     add_reading_options,
     arguments_from,
     read_all,
@@ -42,3 +43,6 @@ def perform_postures(task: Task, prepared: None, progress: Progress) -> Outcome:
     )
     figures = {"n_postures": library.n_postures, "n_seen": library.n_seen}
     return Outcome(text, figures)
+
+
+LEARN_POSTURES = VerbWork(add_postures_options, perform_postures)

@@ -7,6 +7,7 @@ from ..progress import Progress, within
 from .arguments import (
     Outcome,
     Task,
+    VerbWork,
     add_reading_options,
     arguments_from,
     read,
@@ -26,3 +27,6 @@ def perform_quality(task: Task, prepared: None, progress: Progress) -> Outcome:
     settings = settings_from_arguments(task.arguments, QualitySettings)
     quality = measure_quality(recording, settings=settings, progress=within(progress, 0.5, 1.0))
     return Outcome(quality.report(), quality.figures())
+
+
+QUALITY = VerbWork(add_quality_options, perform_quality)

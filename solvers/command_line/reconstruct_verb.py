@@ -28,6 +28,7 @@ from .arguments import (
     JOINTS,
     Outcome,
     Task,
+    VerbWork,
     add_preset_option,
     add_reading_options,
     arguments_from,
@@ -220,3 +221,6 @@ def _outcome(given: Any, rebuilt: RebuiltTake) -> Outcome:
         "after": after.figures(),
     }
     return Outcome("\n".join(lines), figures)
+
+
+RECONSTRUCT = VerbWork(add_reconstruct_options, perform_reconstruct, prepare=read_guides)

@@ -9,7 +9,7 @@ from ..errors import InvalidSettingError
 from ..motion import JointRecording, Motion, Tracks, resample
 from ..progress import Progress, within
 from ..recordings.streams import PORT, Packets, StreamProtocol, encode_recording
-from .arguments import Outcome, Task, add_reading_options, read_recorded
+from .arguments import Outcome, Task, VerbWork, add_reading_options, read_recorded
 
 PROTOCOLS = {each.value: each for each in StreamProtocol if each is not StreamProtocol.AUTO}
 LOOPBACK = "127.0.0.1"
@@ -107,3 +107,6 @@ def send(sender: socket.socket, datagram: bytes) -> None:
         sender.send(datagram)
     except ConnectionRefusedError:
         return
+
+
+REPLAY = VerbWork(add_replay_options, perform_replay)

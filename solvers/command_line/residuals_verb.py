@@ -12,7 +12,7 @@ from ..progress import Progress, within
 from ..reconstruction import ResidualPriorSettings, learn_residual_prior
 from ..reconstruction.residual_correction import calibrate_confidence
 from ..recordings import read_tracked, recordings_in
-from .arguments import Outcome, Task, arguments_from, settings_from_arguments
+from .arguments import Outcome, Task, VerbWork, arguments_from, settings_from_arguments
 
 
 def add_residuals_options(parser: argparse.ArgumentParser) -> None:
@@ -109,3 +109,6 @@ def _actors(names: Sequence[str], prefixes: Sequence[str]) -> list[str]:
             )
         found.append(max(matching, key=len))
     return found
+
+
+LEARN_RESIDUALS = VerbWork(add_residuals_options, perform_residuals)

@@ -22,6 +22,7 @@ from ..retargeting import RetargetSettings, UnbakeSettings, reduce_keys, retarge
 from .arguments import (
     Outcome,
     Task,
+    VerbWork,
     add_preset_option,
     add_reading_options,
     arguments_from,
@@ -166,3 +167,9 @@ def _read_motion(task: Task, action: str, progress: Progress) -> Motion:
     if not isinstance(recording, Motion):
         raise InvalidMotionError(f"Points without a skeleton cannot be {action}.")
     return recording
+
+
+RETARGET = VerbWork(add_retarget_options, perform_retarget, prepare=read_target)
+
+
+UNBAKE = VerbWork(add_unbake_options, perform_unbake)

@@ -11,6 +11,7 @@ from ..progress import Progress, within
 from .arguments import (
     Outcome,
     Task,
+    VerbWork,
     add_preset_option,
     add_reading_options,
     arguments_from,
@@ -65,3 +66,6 @@ def _summary(simulated: Simulated) -> str:
         f" {100 * simulated.slide_after:.0f} cm. Joints moved by"
         f" {100 * simulated.distance:.1f} cm on average."
     )
+
+
+SIMULATE = VerbWork(add_simulate_options, perform_simulate)

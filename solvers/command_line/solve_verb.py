@@ -12,6 +12,7 @@ from ..workflows import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .arguments import (
     Outcome,
     Task,
+    VerbWork,
     add_reading_options,
     arguments_from,
     read,
@@ -86,3 +87,6 @@ def _summary(result: MarkerMotion) -> str:
     if unobserved:
         lines.append(f"In {unobserved} frames, joints without markers were filled.")
     return "\n".join(lines)
+
+
+SOLVE = VerbWork(add_solve_options, perform_solve)

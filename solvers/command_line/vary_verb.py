@@ -14,6 +14,7 @@ from ..workflows import vary_motions
 from .arguments import (
     Outcome,
     Task,
+    VerbWork,
     add_preset_option,
     add_reading_options,
     arguments_from,
@@ -102,3 +103,6 @@ def _draw(example: Motion, variants: tuple[Motion, ...], path: Path) -> None:
     stack_pictures([
         draw_stick_figures({name: motion}, settings=settings) for name, motion in shown.items()
     ]).save(path)  # fmt: skip
+
+
+VARY = VerbWork(add_vary_options, perform_vary)

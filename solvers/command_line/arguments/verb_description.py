@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
+from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -91,10 +92,17 @@ class Verb:
     """A verb of the command line; picklable."""
 
     help: str
-    work: Callable[[], VerbWork]
-    """Imports and returns what the verb does, so that a run imports no other verb."""
+    place: str
+    """Module of `solvers.command_line` and name of its `VerbWork`, as in `fix_verb:FIX`."""
     makes: OutputKind = OutputKind.FILES
     writes_motions: bool = False
     """Whether it always writes motions of skeletons."""
     writes_joints: bool = False
     """Whether it can also write tracked joints."""
+
+    def work(self) -> VerbWork:
+        """Import and return what the verb does; a run imports no other verb."""
+        module, name = self.place.split(":")
+        found = getattr(import_module(f"...{module}", __name__), name)
+        assert isinstance(found, VerbWork)
+        return found
