@@ -14,8 +14,7 @@ from ..conventions import (
     stand_upright,
     z_up_from_y_up,
 )
-from .smpl import VIDEO_UP
-from .smpl_bodies import N_BODY, N_HAND, smpl_joints
+from .smpl_bodies import N_BODY, N_HAND, VIDEO_UP, smpl_joints
 
 MOTION_X_COLUMNS = 322
 MOTION_X_POSITION = slice(309, 312)

@@ -14,9 +14,7 @@ from ...motion.humanoid import ADULT_STATURE_M
 from ...progress import Progress, Remark, unwatched
 from ..containers import JsonMember, describe_frame_files, json_content, json_frame_files
 from ..conventions import Bodies
-from .smpl import bodies_of_parameters
 from .smpl_bodies import (
-    ALL_ROTATIONS,
     BODY_SCALES,
     N_BODY_POSE,
     N_NUMBERS,
@@ -24,9 +22,8 @@ from .smpl_bodies import (
     RATES,
     READ_ARRAYS,
     SCALES,
-    SIZES,
-    split_people,
-    with_rotation_vectors,
+    bodies_of_parameters,
+    people_of_parameters,
 )
 
 IDENTITIES = ("id", "track_id", "person_id", "personID")
@@ -114,8 +111,7 @@ def open_smpl_json(
         )
     people = dict[str, dict[str, Array]]()
     for name in dict.fromkeys(name for frame in frames for name in frame):
-        arrays = with_rotation_vectors(_joined(path, name, frames), ALL_ROTATIONS)
-        split = split_people(arrays, SIZES)
+        split = people_of_parameters(_joined(path, name, frames))
         for number, each in enumerate(split, start=1):
             people[f"{name} {number}" if len(split) > 1 else name] = each
     return bodies_of_parameters(path, people, scale=scale, height=height, on_floor=on_floor)

@@ -250,7 +250,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "recordings/marker_files/trc.MAX_*",
         "recordings/skeleton_files/acclaim.LINES_OF_HEAD",
         "recordings/skeleton_files/bvh/reading.MAX_*",
-        "recordings/skeleton_files/smpl.MAX_HEIGHT_M",
+        "recordings/skeleton_files/smpl_bodies/bodies.MAX_HEIGHT_M",
         "recordings/skeleton_files/smpl_bodies/people.MAX_PEOPLE",
         "recordings/skeleton_files/vrma.MAX_*",
         "mocap_assist/scene/rig.MAX_COORDINATE",

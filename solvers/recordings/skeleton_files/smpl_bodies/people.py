@@ -5,6 +5,8 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from ....arrays import Array
+from .parameters import ALL_ROTATIONS, SIZES
+from .rotations import with_rotation_vectors
 
 MAX_PEOPLE = 1000
 
@@ -43,3 +45,8 @@ def split_people(
             for person in range(shape[axis])
         ]
     return [dict(arrays)]
+
+
+def people_of_parameters(arrays: Mapping[str, Array]) -> list[dict[str, Array]]:
+    """Return the arrays of each person of a file, all rotations as rotation vectors."""
+    return split_people(with_rotation_vectors(arrays, ALL_ROTATIONS), SIZES)
