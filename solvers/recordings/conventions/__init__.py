@@ -46,6 +46,7 @@ from .file_axes import (
 )
 from .flat_takes import question_of_depth
 from .floor import floor_level, lacks_floor, put_on_floor, question_of_floor
+from .frame_numbers import rate_of_numbers, step_between
 from .points import (
     METERS,
     axes_of_points,
@@ -134,6 +135,7 @@ __all__ = [
     "question_of_depth",
     "question_of_floor",
     "question_of_size",
+    "rate_of_numbers",
     "recorded_seconds",
     "reinterpreted",
     "rotate_to_z_up",
@@ -147,6 +149,7 @@ __all__ = [
     "stand_scene_upright",
     "stand_upright",
     "stature",
+    "step_between",
     "up_along",
     "with_axes",
     "with_conventions",

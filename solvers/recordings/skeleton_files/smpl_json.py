@@ -13,7 +13,7 @@ from ...motion import Motion
 from ...motion.humanoid import ADULT_STATURE_M
 from ...progress import Progress, Remark, unwatched
 from ..containers import JsonMember, describe_frame_files, json_content, json_frame_files
-from ..conventions import Bodies
+from ..conventions import Bodies, rate_of_numbers, step_between
 from .smpl_bodies import (
     BODY_SCALES,
     N_BODY_POSE,
@@ -68,7 +68,7 @@ def is_smpl_json(head: bytes) -> bool:
 
 def is_frame_smpl_json(path: Path | str) -> bool:
     """Return whether a file holds the poses of one frame."""
-    return _n_frames(_frames([json_content(path)])) == 1
+    return _n_frames(_frames([json_content(path)], unwatched)) == 1
 
 
 def open_smpl_json(
@@ -99,9 +99,9 @@ def open_smpl_json(
     SolveCancelled
         Raised by `progress`.
     """
-    frames = _frames([json_content(path)])
+    frames = _frames([json_content(path)], progress)
     if _n_frames(frames) <= 1:
-        frames = _frames(json_frame_files(path))
+        frames = _frames(json_frame_files(path), progress)
         if len(frames) > 1:
             progress(0.8, Remark(describe_frame_files(len(frames))))
     if _n_frames(frames) <= 1:
@@ -121,44 +121,56 @@ _Frame = dict[str, dict[str, Array]]
 """Arrays by their names, of people by theirs; the frames are on the first axis."""
 
 
-def _frames(members: Iterable[JsonMember]) -> list[_Frame]:
+def _frames(members: Iterable[JsonMember], progress: Progress) -> list[_Frame]:
     """Return the frames of a take, which may be one with the arrays of all."""
     frames = []
     for member in members:
-        rows, common = _rows(member.value)
+        rows, common = _rows(member.value, progress)
         for row in rows:
             people = _bodies(row, MAX_DEPTH)
             frames.append({name: {**common, **_arrays(body)} for name, body in people})
     return frames
 
 
-def _rows(value: Any) -> tuple[list[Any], dict[str, Array]]:
+def _rows(value: Any, progress: Progress) -> tuple[list[Any], dict[str, Array]]:
     """Return the frames that a value lists, otherwise itself, and what it states of all."""
     if isinstance(value, list) and not any(map(_has_identity, value)):
-        return _by_number(value), {}
+        return _by_number(value, _numbers_of(value)), {}
     if isinstance(value, Mapping) and not _is_body(value):
         listed = [each for each in value.values() if _is_list_of_frames(each)]
         if len(listed) == 1:
-            stated = _arrays(value)
-            return _by_number(listed[0]), {
-                name: stated[name] for name in stated if name in CONSTANT
-            }
+            stated, numbers = _arrays(value), _numbers_of(listed[0])
+            common = {name: stated[name] for name in stated if name in CONSTANT}
+            for name in common.keys() & RATES:
+                rate = float(common[name].flat[0])
+                common[name] = np.array(rate_of_numbers(sorted(numbers), rate, progress))
+            return _by_number(listed[0], numbers), common
     return [value], {}
 
 
-def _by_number(rows: list[Any]) -> list[Any]:
-    """Return frames in the order of their numbers, null for missing ones, if all have one.
+def _numbers_of(rows: list[Any]) -> list[int]:
+    """Return the numbers of frames; none if not each frame has its own."""
+    stated = [
+        [row[key] for key in NUMBERS if isinstance(row.get(key), int)]
+        for row in rows
+        if isinstance(row, Mapping)
+    ]
+    numbers = [each[-1] for each in stated if each]
+    return numbers if len({*numbers}) == len(rows) else []
 
-    Numbers in steps of two or more are those of the video; the order is all that they decide.
-    """
-    numbered = {row[key]: row for row in rows if isinstance(row, Mapping)
-                for key in NUMBERS if isinstance(row.get(key), int)}  # fmt: skip
-    if not rows or len(numbered) != len(rows):
+
+def _by_number(rows: list[Any], numbers: list[int]) -> list[Any]:
+    """Return frames in the order of their numbers, null for missing ones, if all have one."""
+    numbered = dict(zip(numbers, rows, strict=False))
+    if not numbered:
         return rows
     ordered = sorted(numbered)
-    is_dense = 1 in np.diff(ordered) and ordered[-1] - ordered[0] < MAX_SPREAD * len(rows)
-    numbers = range(ordered[0], ordered[-1] + 1) if is_dense else ordered
-    return [numbered.get(number) for number in numbers]
+    step, length = round(step_between(ordered)), ordered[-1] - ordered[0]
+    is_regular = step > 0 and length < MAX_SPREAD * step * len(rows)
+    return [
+        numbered.get(number)
+        for number in (range(ordered[0], ordered[-1] + 1, step) if is_regular else ordered)
+    ]
 
 
 def _is_list_of_frames(value: Any) -> bool:

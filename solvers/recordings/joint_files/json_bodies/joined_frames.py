@@ -7,10 +7,9 @@ from math import isnan
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from ....errors import InvalidFileError
 from ...containers import JsonMember
+from ...conventions import step_between
 from ...point_bodies import time_name
 from .bodies import BodiesFrame, BodyJoints
 from .people import PART, PEOPLE_KEYS, POINT_KEYS, has_word
@@ -21,9 +20,6 @@ MAX_MISSING_FRAMES = 100_000
 MAX_PEOPLE = 16
 """Number of people without names or identities in a frame, above which they are frames. It
 guards frames that are called `body_0000` and so on; a stream has as many people."""
-MAX_ROUNDING = 1e-6
-"""Difference of a ratio of numbers to a whole one. It bounds the rounding of numbers with
-decimals."""
 WITHOUT_IDENTITY = frozenset(("0", "untracked 0"))
 """What people who are alone in a row are called if it does not say who they are."""
 NAME_OF_PERSON = re.compile(
@@ -171,14 +167,6 @@ def missing_before(numbers: Sequence[float], start: float, path: Path | str) -> 
             f" {numbers[-1]:.10g}. Number the frames without large gaps, and export it again."
         )
     return missing
-
-
-def step_between(numbers: Sequence[float]) -> float:
-    """Return the smallest step between numbers in order; 0 if others are no multiples of it."""
-    steps = [after - before for before, after in pairwise(numbers)]
-    step = min(steps, default=1.0)
-    errors = [abs(each / step - float(np.rint(each / step))) for each in steps]
-    return step if all(error < MAX_ROUNDING for error in errors) else 0.0
 
 
 def _n_observed(rows: Iterable[NumberedFrame]) -> int:

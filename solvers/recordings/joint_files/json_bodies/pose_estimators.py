@@ -22,7 +22,7 @@ from ...containers import (
     json_frame_files,
     json_members,
 )
-from ...conventions import Bodies, check_scale
+from ...conventions import Bodies, check_scale, rate_of_numbers
 from ...point_bodies import (
     read_time,
     second_of_times,
@@ -35,7 +35,6 @@ from .joined_frames import (
     NumberedFrame,
     frozen_clocks,
     joined_frames,
-    step_between,
     without_header,
 )
 from .keyed_frames import json_by_frame
@@ -226,20 +225,11 @@ def _best_rate(rows: list[_Row], stated: list[tuple[str, StatedRate]]) -> float 
 def _rate_of_frames(
     rows: list[_Row], frames: list[BodiesFrame], rate: float | None, progress: Progress
 ) -> float | None:
-    """Return the rate of frames of which only each second, third and so on is there.
-
-    Numbers are those of the video, whose rate is stated. Times decide if frames have them.
-    """
-    numbers = sorted({row.number for _, _, row in rows if not np.isnan(row.number)})
-    step = step_between(numbers) if len(numbers) > 1 else 1.0
-    are_timed = any(not np.isnan(frame.time) for frame in frames)
-    if rate is None or step <= 1.0 or are_timed:
+    """Return the rate of frames by their numbers (`rate_of_numbers`), if none has a time."""
+    if rate is None or any(not np.isnan(frame.time) for frame in frames):
         return rate
-    progress(
-        0.8,
-        Remark(f"Frames are numbered in steps of {step:g}; their rate is {rate / step:g} Hz"),
-    )
-    return rate / step
+    numbers = {row.number for _, _, row in rows if not np.isnan(row.number)}
+    return rate_of_numbers(sorted(numbers), rate, progress)
 
 
 def _remark_of_unidentified(n_several: int) -> Remark:

@@ -148,3 +148,19 @@ def test_numbers_in_steps_or_without_sense_leave_no_gaps(make_reader, numbers):
     ]
 
     assert make_reader("take.json")(json.dumps({"frames": frames})).n_frames == F
+
+
+@pytest.mark.parametrize(("step", "rate"), [(1, 25.0), (2, 12.5), (40, 25.0)])
+def test_numbers_in_steps_are_of_the_video_or_milliseconds(make_reader, step, rate):
+    """Before, a take of which each second frame was saved played twice as fast."""
+    frames = [
+        {"frame": step * number, "poses": [0.0] * 72, "betas": [0.0], "trans": each.tolist()}
+        for number, each in enumerate(TRAVEL)
+        if number != 4
+    ]
+
+    motion = make_reader("take.json")(json.dumps({"fps": 25, "frames": frames}))
+
+    assert motion.n_frames == F
+    assert motion.frame_rate == rate
+    assert np.isnan(motion.rotations[4]).all()

@@ -106,6 +106,12 @@ def test_frames_that_are_numbered_in_steps_have_a_part_of_the_rate(
     assert "Frames are numbered in steps of 2; their rate is 30 Hz" in messages
 
 
+def test_numbers_that_are_milliseconds_leave_the_rate(read_any):
+    frames = [{"frame": 40 * k, "landmarks": landmarks(k)} for k in range(N)]
+
+    assert read_any(json.dumps({"frames": frames, "fps": 25})).frame_rate == 25.0
+
+
 @pytest.mark.parametrize(("stated", "rate"), [({"fps": 50}, 50.0), ({}, 30.0)])
 @pytest.mark.parametrize("time", [{"timestamp": 5.0}, {"header": {"stamp": 5.0}}])
 def test_times_that_stand_still_are_reported_and_not_used(

@@ -1,0 +1,47 @@
+"""The numbers of frames: their step, and what it means for the rate."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from ...progress import Progress, Remark
+
+MAX_ROUNDING = 1e-6
+"""Difference of a ratio of numbers to a whole one. It bounds the rounding of numbers with
+fractions."""
+MS_PER_S = 1000.0
+"""Milliseconds per second, by definition."""
+MAX_MS_ROUNDING = 1.0
+"""Milliseconds by which whole numbers of them miss a second. By definition: rounding of one."""
+
+
+def step_between(numbers: Sequence[float]) -> float:
+    """Return the smallest step between numbers in order; 0 if others are no multiples of it."""
+    steps = [after - before for before, after in pairwise(numbers)]
+    step = min(steps, default=1.0)
+    errors = [abs(each / step - float(np.rint(each / step))) for each in steps]
+    return step if all(error < MAX_ROUNDING for error in errors) else 0.0
+
+
+def rate_of_numbers(numbers: Sequence[float], rate: float, progress: Progress) -> float:
+    """Return the rate of frames of which only each second, third and so on is there.
+
+    Numbers are those of the video, whose rate is stated. Those that are a frame's duration in
+    milliseconds apart are times, and its rate remains.
+
+    Parameters
+    ----------
+    numbers : sequence of float
+        Of the frames, in order.
+    rate : float, Hz
+    progress : Progress
+    """
+    step = step_between(numbers)
+    if step <= 1.0 or abs(step * rate - MS_PER_S) <= MAX_MS_ROUNDING:
+        return rate
+    progress(
+        0.8,
+        Remark(f"Frames are numbered in steps of {step:g}; their rate is {rate / step:g} Hz"),
+    )
+    return rate / step
