@@ -18,8 +18,10 @@ from ..conventions import (
     check_scale,
     meters_from_unit_name,
     observed_body,
+    rate_of_numbers,
     recorded_seconds,
     split_subjects,
+    step_between,
 )
 from ..point_bodies import (
     Coordinate,
@@ -129,7 +131,7 @@ def open_point_table(
     times = None if columns.time is None else _times(rows[:, columns.time], columns, progress)
     points = rows[:, columns.positions.astype(int)]
     if times is None and header.rate is not None:
-        times = _numbers(rows, columns) / header.rate
+        times = _numbered_times(rows, columns, header.rate, progress)
     unit = columns.unit if scale is None else scale
     people = _people(columns.names, points, progress) if np.isfinite(points).any() else []
     duration = len(points) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
@@ -159,14 +161,18 @@ def _times(times: Array, columns: _Columns, progress: Progress) -> Array | None:
     return completed_times(over_midnight(times * second), progress)
 
 
-def _numbers(rows: Array, columns: _Columns) -> Array:
-    """Return the numbers of frames from 0, those of the file if they increase."""
+def _numbered_times(rows: Array, columns: _Columns, rate: float, progress: Progress) -> Array:
+    """Return the times of frames, seconds, by their numbers if these increase."""
     counted = np.arange(len(rows), dtype=np.float64)
-    if columns.frame is None:
-        return counted
+    if columns.frame is None or len(rows) < 2:
+        return counted / rate
     numbers = rows[:, columns.frame]
-    increases = len(rows) > 1 and bool((np.diff(numbers) >= 1.0).all())
-    return np.asarray(numbers - numbers[0]) if increases else counted
+    if not (np.diff(numbers) >= 1.0).all():
+        return counted / rate
+    step = step_between(numbers.tolist()) or 1.0
+    return np.asarray(
+        (numbers - numbers[0]) / step / rate_of_numbers(numbers.tolist(), rate, progress)
+    )
 
 
 def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[MarkerSubject]:
