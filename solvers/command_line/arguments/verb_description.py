@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 
 from ...progress import Progress
 
+COMMAND_LINE = __name__.removesuffix(".arguments.verb_description")
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -93,7 +95,7 @@ class Verb:
 
     help: str
     place: str
-    """Module of `solvers.command_line` and name of its `VerbWork`, as in `fix_verb:FIX`."""
+    """Module and name of its `VerbWork`; `.fix_verb:FIX` is in `solvers.command_line`."""
     makes: OutputKind = OutputKind.FILES
     writes_motions: bool = False
     """Whether it always writes motions of skeletons."""
@@ -103,6 +105,6 @@ class Verb:
     def work(self) -> VerbWork:
         """Import and return what the verb does; a run imports no other verb."""
         module, name = self.place.split(":")
-        found = getattr(import_module(f"...{module}", __name__), name)
+        found = getattr(import_module(module, COMMAND_LINE), name)
         assert isinstance(found, VerbWork)
         return found

@@ -122,11 +122,10 @@ def perform(task, prepared, progress):
         os._exit(9)
     return Outcome("Done.")
 
-def work():
-    return VerbWork(no_options, perform)
+WORK = VerbWork(no_options, perform)
 
 if __name__ == "__main__":
-    verb = Verb("Die of some files.", work, OutputKind.WORDS)
+    verb = Verb("Die of some files.", "__main__:WORK", OutputKind.WORDS)
     sys.exit(run({"die": verb}, sys.argv[1:], "deadly"))
 """
 

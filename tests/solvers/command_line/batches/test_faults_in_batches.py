@@ -1,6 +1,7 @@
 """A fault of ours over one file stops no other file, picture or report."""
 
 import json
+import sys
 
 import pytest
 
@@ -20,11 +21,13 @@ FAULT = "this is a bug in Mocap Assist"
 
 
 @pytest.fixture
-def perform(capsys):
+def perform(capsys, monkeypatch):
     """Run a verb that does this to each file; returns exit status, stdout and stderr."""
 
     def call(work, *words, makes=OutputKind.FILES):
-        verb = Verb("Test.", lambda: VerbWork(add_reading_options, work), makes)
+        does = VerbWork(add_reading_options, work)
+        monkeypatch.setattr(sys.modules[__name__], "WORK", does, raising=False)
+        verb = Verb("Test.", f"{__name__}:WORK", makes)
         status = run({"test": verb}, ["test", *map(str, words)], "solvers")
         return status, *capsys.readouterr()
 
