@@ -9,6 +9,7 @@ from ...solvers.arrays import Single
 from ..blender.redrawing import redraw_views
 from ..overlays.view_drawing import Color, ViewDrawing, draw_lines
 from ..panel_parts.preference_values import preferred
+from ..panel_parts.sidebar_tab import is_tab_open
 from ..runtime.selection import select_only_bone
 from .bone_map import SIDES, listed_armature
 
@@ -63,7 +64,7 @@ def highlighted_bones(context: bpy.types.Context) -> list[tuple[bpy.types.Object
 
 
 def _draw(context: bpy.types.Context) -> None:
-    if not getattr(context.window_manager, SWITCH):
+    if not getattr(context.window_manager, SWITCH) or not is_tab_open(context.screen):
         return
     width = WIDTH_FACTOR * preferred("line_width")
     for armature, line in highlighted_bones(context):

@@ -11,7 +11,7 @@ from ..fix.panel import FixPanel, MOCAP_UL_takes
 from ..importing.panel import ImportPanel
 from ..live.panel import PerformPanel
 from ..markers.panel import MarkersPanel
-from ..panel_parts.preference_values import preferred
+from ..panel_parts.sidebar_tab import TAB, tab_name
 from ..physics.panel import PhysicsPanel
 from ..reconstruct.panel import ReconstructPanel
 from ..retarget.panel import RetargetPanel
@@ -19,7 +19,6 @@ from ..track.panel import TrackPanel
 from ..variants.panel import VaryPanel
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
-TAB = "Mocap"
 
 
 def _in_every_editor(body: type) -> list[type[bpy.types.Panel]]:
@@ -76,11 +75,6 @@ def unregister() -> None:
         bpy.utils.unregister_class(panel)
     for each in LISTS:
         bpy.utils.unregister_class(each)
-
-
-def tab_name() -> str:
-    """Return the name of the tab from the preferences."""
-    return str(preferred("tab")).strip() or TAB
 
 
 def move_to_tab() -> None:

@@ -5,7 +5,7 @@ from contextlib import suppress
 
 import bpy
 
-from .sidebar import tab_name
+from ..panel_parts.sidebar_tab import tab_name
 
 NAME = "Mocap"
 SPLITS = (

@@ -1,5 +1,7 @@
 """The editable list of bones, its presets, and the panel around it."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -205,6 +207,31 @@ def test_click_on_a_row_selects_and_highlights_both_bones(listed, walker, blank,
     listed.active_row = 0
     assert not blank.context.window_manager.mocap_assist_highlight
     blank.context.window_manager.mocap_assist_highlight = True
+
+
+@pytest.mark.parametrize(("is_open", "tab", "is_drawn"), [
+    (True, "Mocap", True), (True, "Item", False), (False, "Mocap", False),
+])  # fmt: skip
+def test_highlight_is_drawn_while_the_tab_is_open(
+    listed, blank, highlight, monkeypatch, is_open, tab, is_drawn
+):
+    """A pink bone without the list next to it is a riddle."""
+    sidebar = SimpleNamespace(type="UI", active_panel_category=tab)
+    space = SimpleNamespace(show_region_ui=is_open)
+    area = SimpleNamespace(spaces=SimpleNamespace(active=space), regions=[sidebar])
+    context = SimpleNamespace(
+        window_manager=blank.context.window_manager,
+        view_layer=blank.context.view_layer,
+        scene=blank.context.scene,
+        space_data=None,
+        screen=SimpleNamespace(areas=[area]),
+    )
+    drawn = []
+    monkeypatch.setattr(highlight, "highlighted_bones", lambda context: drawn.append(1) or [])
+
+    highlight._draw(context)
+
+    assert bool(drawn) is is_drawn
 
 
 def test_row_without_a_bone_on_one_side_highlights_the_other(listed, blank, highlight):
