@@ -110,7 +110,7 @@ def test_joints_that_are_never_observed_are_no_offsets(walk):
 def test_frames_of_a_table_are_numbered_at_the_rate_of_its_comment(
     read_any, walk, step, stated, rate
 ):
-    """Before, a table of each second frame played twice as fast. Numbers may be milliseconds."""
+    """Before, each second frame alone played twice as fast. Numbers may be milliseconds."""
     numbers = [str(7 + step * k) for k in range(F)]
     text = f"# fps: {stated}\n" + table(["{role}_{axis}"], walk, first="Frame #", times=numbers)
 
