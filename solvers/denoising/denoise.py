@@ -25,6 +25,7 @@ from .edge_poses import (
     hide_edge_poses,
     restore_edge_poses,
 )
+from .limb_gaps import keep_standing_feet
 from .limits import clamp_to_limits, find_impossible_rotations
 from .marker_gaps import FilledMarkers, fill_markers
 from .observed_samples import max_per_joint, observed_mask, restore_observed
@@ -178,13 +179,14 @@ def _denoise_segment(
             estimate, prior_used = _estimate(
                 possible_channels, segment.frame_rate, bases, settings, second_progress
             )
-    noisy = channels.flat
     spikes = (estimate.inliers < OUTLIER_THRESHOLD) & (
-        np.abs(noisy - estimate.values) > MIN_REPORTED_SPIKE
+        np.abs(channels.flat - estimate.values) > MIN_REPORTED_SPIKE
     )
     cleaned = _blend(segment, complete, channels, estimate.values, settings)
-    if limits is not None and isinstance(cleaned, Motion):
-        cleaned = clamp_to_limits(cleaned, limits)
+    if isinstance(cleaned, Motion):
+        if settings.method is DenoiseMethod.DEFAULT:
+            cleaned = keep_standing_feet(cleaned, observed_mask(segment))
+        cleaned = cleaned if limits is None else clamp_to_limits(cleaned, limits)
     confidence = _confidence(max_per_joint(segment, channels, estimate.deviation), filled)
     if isinstance(cleaned, Tracks):
         unknown_mask = _unknown_points(cleaned.names, segment, bases)
@@ -265,8 +267,8 @@ def _estimate(
 
 
 def _unchanged(segment: Motion | Tracks) -> Denoised:
-    shape = observed_mask(segment).shape
-    return Denoised(segment, np.zeros(shape, dtype=np.bool_), np.ones(shape), 0, True, "")
+    no_outliers = np.zeros(observed_mask(segment).shape, dtype=np.bool_)
+    return Denoised(segment, no_outliers, 1.0 - no_outliers, 0, True, "")
 
 
 def _join_segments(
