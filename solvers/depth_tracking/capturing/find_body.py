@@ -4,9 +4,10 @@ import numpy as np
 
 from ...depth_scene import DepthRecording
 from ...errors import InvalidMotionError
+from ...motion.humanoid import ADULT_STATURE_M
 from ...progress import Progress, unwatched, within
 from ..body import BodyModel, default_body
-from ..detection import detect_pose
+from ..detection import detect_pose, score_body
 from ..forest import PixelForest
 from ..terms import DEFAULT_TRACKER, TrackerSettings
 from ..tracking import PoseCallback, ignore_pose, offset_frames
@@ -98,26 +99,28 @@ def _largest_frames(depth: DepthRecording) -> list[int]:
 def _best_stature(
     depth: DepthRecording, forest: PixelForest, frames: list[int], progress: Progress
 ) -> BodyModel:
-    """Return the best default body; the first frame eliminates the worse half."""
+    """Return the best default body: the others are scored near the pose of the best so far."""
     scores = dict.fromkeys(STATURES_M, 0.0)
+    best = ADULT_STATURE_M
     message = "No person is detected in any frame. Check the background settings."
     for index, frame in enumerate(frames):
-        for stature in scores:
-            try:
-                pose = detect_pose(
-                    depth.frame(frame), depth.camera, default_body(stature), forest
-                )
-            except InvalidMotionError as error:
-                message = str(error)
-                continue
-            scores[stature] += pose.score
-        if len(scores) == len(STATURES_M) and any(scores.values()):
-            best = sorted(scores, key=lambda stature: scores[stature])[len(STATURES_M) // 2 :]
-            scores = {stature: scores[stature] for stature in best}
+        image = depth.frame(frame)
+        try:
+            detected = detect_pose(image, depth.camera, default_body(best), forest)
+        except InvalidMotionError as error:
+            message = str(error)
+            continue
+        for stature in STATURES_M:
+            if stature == best:
+                scores[stature] += detected.score
+            else:
+                body = default_body(stature)
+                scores[stature] += score_body(body, detected, image, depth.camera)
+        best = max(scores, key=lambda stature: scores[stature])
         progress((index + 1) / len(frames), "Trying body sizes")
     if not any(scores.values()):
         raise InvalidMotionError(message)
-    return default_body(max(scores, key=lambda stature: scores[stature]))
+    return default_body(best)
 
 
 def _clip_recording(depth: DepthRecording, first: int, n_frames: int) -> DepthRecording:

@@ -150,6 +150,29 @@ def detect_pose(
     )
 
 
+def score_body(
+    body: BodyModel,
+    detected: DetectedPose,
+    depth_frame: DepthImage,
+    camera: Camera,
+    settings: DetectorSettings = DetectorSettings(),
+) -> float:
+    """Return how well another body explains an image, 0 to 1, near the pose of the first.
+
+    Parameters
+    ----------
+    body : BodyModel
+    detected : DetectedPose
+        What `detect_pose` returned for this image.
+    depth_frame, camera, settings
+        Those of `detect_pose`.
+    """
+    observation, _ = subsample_image(depth_frame, camera, settings.max_pixels)
+    hypothesis = render_hypothesis(body, detected.pose, observation.camera)
+    start = _score_candidate(hypothesis, detected.pixels, observation, settings)
+    return _refine_candidate(start, detected.pixels, observation, settings).score
+
+
 @dataclass(frozen=True, eq=False)
 class _Candidate:
     """A candidate pose with its score."""
