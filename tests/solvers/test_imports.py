@@ -25,7 +25,7 @@ NEEDED = {
     "denoise": {"denoising", "feet", "markers", "motion_fitting"},
     "learn": {"denoising"},
     "quality": {"denoising", "feet", "motion_fitting"},
-    "solve": {"denoising", "markers"},
+    "solve": {"denoising", "feet", "markers"},
     "capture": {"denoising", "depth_tracking", "feet", "motion_fitting"},
     "reconstruct": {"denoising", "feet", "motion_fitting", "reconstruction"},
     "learn-residuals": {"motion_fitting", "reconstruction"},
