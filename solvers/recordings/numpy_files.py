@@ -140,7 +140,7 @@ def open_point_archive(
         Raised by `progress`.
     """
     check_scale(scale)
-    members = read_archive_members(path, POINT_MEMBERS)
+    members = read_archive_members(path, POINT_MEMBERS, str.lower)
     found = next((members[name] for name in POINT_MEMBERS if name in members), None)
     if found is None:
         raise InvalidFileError(f"{path} has no array of joints. Export it again.")
@@ -150,7 +150,7 @@ def open_point_archive(
 def _stated_rate(path: Path | str) -> float | None:
     """Return the frames per second that an archive states; None if it states none."""
     try:
-        members = read_archive_members(path, RATE_MEMBERS)
+        members = read_archive_members(path, RATE_MEMBERS, str.lower)
     except InvalidFileError:  # words or None in place of a number
         return None
     stated = (members[name] for name in RATE_MEMBERS if name in members)

@@ -3,7 +3,7 @@
 import os
 import re
 import zipfile
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -73,21 +73,24 @@ def _name_in_header(content: bytes, start: int, length_at: int, name_at: int) ->
 
 
 def read_archive_members(
-    path: Path | str, names: Collection[str]
+    path: Path | str, names: Collection[str], plain: Callable[[str], str] = str
 ) -> dict[str, NDArray[np.float64]]:
     """Return those of these arrays of numbers that a `.npz` archive has.
 
-    Raises InvalidFileError on failure; other members are not read.
+    `plain` returns the name that is meant by one as the archive spells it. Raises
+    InvalidFileError on failure; other members are not read.
     """
-    wanted = dict.fromkeys(names, replace(NUMBERS, optional=True))
     try:
         with open_regular(path) as file, zipfile.ZipFile(file) as archive:
+            own = [name.removesuffix(".npy") for name in archive.namelist()]
+            meant = {name: plain(name) for name in own if plain(name) in names}
+            wanted = dict.fromkeys(meant, replace(NUMBERS, optional=True))
             arrays = read_members(archive, wanted, RECORDED)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except READABLE:
         raise _damaged(path) from None
-    return {name: _as_float(array, path) for name, array in arrays.items()}
+    return {meant[name]: _as_float(array, path) for name, array in arrays.items()}
 
 
 def _as_float(array: NDArray[Any], path: Path | str) -> NDArray[np.float64]:

@@ -18,7 +18,6 @@ from .smpl_bodies import (
     bodies_of_parameters,
     people_of_parameters,
     plain_name,
-    spelled,
 )
 
 
@@ -82,8 +81,7 @@ def open_smpl(
     .. [1] Mahmood, Ghorbani, Troje, Pons-Moll, Black (2019). AMASS: Archive of motion capture
        as surface shapes. ICCV.
     """
-    found = read_archive_members(path, (*spelled(READ_ARRAYS), "posed_joints"))
-    arrays = {plain_name(name): array for name, array in found.items()}
+    arrays = read_archive_members(path, (*READ_ARRAYS, "posed_joints"), plain_name)
     if "posed_joints" in arrays and not {*ROTATIONS, *ROOT} & arrays.keys():
         return open_kimodo(path, scale=scale, progress=progress)
     people = enumerate(people_of_parameters(arrays), start=1)

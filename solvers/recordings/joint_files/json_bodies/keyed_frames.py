@@ -7,11 +7,12 @@ from typing import Any
 
 from ....errors import InvalidFileError
 from ...containers import JsonMember
+from ...conventions import FRAME_KEY
 from .bodies import name_of_body
 from .joined_frames import missing_before
 from .people import IDENTITY_KEYS, PEOPLE_KEYS, POINT_KEYS, is_no_position, is_position
 from .stamps import RATE_KEYS
-from .takes import FRAME_KEY, Take, has_people, keyed_take, numbered_take, take_of, with_rate
+from .takes import Take, has_people, keyed_take, numbered_take, take_of, with_rate
 
 NAMES = ("name", "Name")
 TIME = "time"

@@ -22,7 +22,7 @@ from ...containers import (
     json_frame_files,
     json_members,
 )
-from ...conventions import Bodies, check_scale, rate_of_numbers
+from ...conventions import MAX_PEOPLE, Bodies, check_scale, rate_of_numbers
 from ...point_bodies import (
     read_time,
     second_of_times,
@@ -31,7 +31,6 @@ from ...point_bodies import (
 from .bodies import BodiesFrame, BodyJoints, open_frames
 from .body_recording import in_columns, recording_of_body
 from .joined_frames import (
-    MAX_PEOPLE,
     NumberedFrame,
     frozen_clocks,
     joined_frames,

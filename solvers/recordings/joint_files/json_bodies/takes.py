@@ -1,12 +1,12 @@
 """Find the frames of one take in a value of JSON: listed, or keyed by number or by joint."""
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ....errors import InvalidFileError
 from ...containers import shown
+from ...conventions import FRAME_KEY
 from ...point_bodies import has_layout
 from .people import (
     PEOPLE_KEYS,
@@ -20,8 +20,6 @@ from .people import (
 from .points import MIN_JOINTS
 from .stamps import NUMBERS_KEYS, RATE_KEYS, START_KEYS, is_number, listed_numbers, listed_times
 
-FRAME_KEY = re.compile(r"(?i)\s*(?:frame|f|t)?[\s_\-]*(\d+(?:\.\d+)?)\s*")
-"""Key of a frame: its number, or its time in seconds."""
 MAX_DEPTH = 6
 """Levels of members in which frames are looked for. It guards the depth of the recursion."""
 

@@ -17,9 +17,9 @@ from .parameters import (
     ROTATIONS,
     SCALES,
     plain_name,
-    spelled,
 )
 from .people import people_of_parameters, split_people
+from .rows import rows_of_frames
 
 __all__ = [
     "BODY",
@@ -40,7 +40,7 @@ __all__ = [
     "bodies_of_parameters",
     "people_of_parameters",
     "plain_name",
+    "rows_of_frames",
     "smpl_joints",
-    "spelled",
     "split_people",
 ]

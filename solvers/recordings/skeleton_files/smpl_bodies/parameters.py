@@ -132,13 +132,11 @@ def _joined_parts(arrays: Mapping[str, Array]) -> Array | None:
 
 
 def plain_name(name: str) -> str:
-    """Return a name such as `bodyPose` as `body_pose`; those of EasyMocap remain."""
+    """Return a name such as `bodyPose` or `BODY_POSE` as `body_pose`.
+
+    Those of EasyMocap remain.
+    """
     return name if name in OF_EASYMOCAP else re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
-
-
-def spelled(names: Collection[str]) -> list[str]:
-    """Return names, also as programs in JavaScript and Meshcapade's .smpl write them."""
-    return [*names, *(re.sub(r"_([a-z])", lambda m: m[1].upper(), name) for name in names)]
 
 
 def member(arrays: Mapping[str, Array], names: Collection[str]) -> Array | None:
