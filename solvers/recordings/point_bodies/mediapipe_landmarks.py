@@ -39,9 +39,14 @@ def is_normalized(points: Array) -> bool:
 
     A person of 1.5 m and more who stands in a scene exceeds 0 to 1 meter.
     """
+    return is_inside_picture(points) and not is_world(points)
+
+
+def is_inside_picture(points: Array) -> bool:
+    """Return whether x and y are fractions of a picture's size."""
     flat = points[..., :2][np.isfinite(points).all(axis=-1)]
     inside = (flat >= 0.0) & (flat <= 1.0)
-    return bool(inside.mean() >= MIN_INSIDE) and not is_world(points)
+    return bool(inside.mean() >= MIN_INSIDE)
 
 
 def is_of_picture(points: Array) -> bool:
