@@ -50,6 +50,8 @@ NEEDED_ROLES = frozenset(
     for part in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 )
 """Roles that a body must have."""
+MIN_JOINTS = 3
+"""Number of joints of a part of a body. By definition: those of a limb."""
 MAX_MISSING = len(NEEDED_ROLES) // 2
 """Limbs that may lack in points whose names are those of a body. By definition the half: an
 upper or a lower body is named like one."""
@@ -102,10 +104,16 @@ def missing_limbs(names: Sequence[str]) -> list[str]:
     keypoints = _keypoints(names)
     by_kind = (
         [each for each in LIMBS if each not in keypoints],
-        [NAMES_OF_ROLES[role] for role in NEEDED_ROLES - _roles(names)],
+        [NAMES_OF_ROLES[role] for role in NEEDED_ROLES - _roles(names).keys()],
     )
     shortest = min(by_kind, key=len)
     return sorted(shortest) if len(shortest) <= MAX_MISSING else []
+
+
+def are_joints(names: Sequence[str]) -> bool:
+    """Return whether these are names of several joints, of a body or a part of it."""
+    known = {*_roles(names).values()} | {*filter(_keypoint, names)}
+    return len(names) >= MIN_JOINTS and known >= {*names}
 
 
 def _keypoints(names: Sequence[str]) -> dict[str, int]:
@@ -129,15 +137,15 @@ def _keypoints(names: Sequence[str]) -> dict[str, int]:
     return keypoints
 
 
-def _roles(names: Sequence[str]) -> set[str]:
-    """Return the roles of points, also where only those of one side are there."""
+def _roles(names: Sequence[str]) -> dict[str, str]:
+    """Return points by their roles, also where only those of one side are there."""
     mirrored = [
         name[:-1] + OTHER_SIDE[name[-1]]
         for name in names
         if name[-1:] in OTHER_SIDE and not name[-2:-1].isalnum()
     ]
     roles = roles_by_name([*dict.fromkeys([*names, *mirrored])])
-    return {role for role, name in roles.items() if name in names}
+    return {role: name for role, name in roles.items() if name in names}
 
 
 def _keypoint(name: str) -> str:

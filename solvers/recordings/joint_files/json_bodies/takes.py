@@ -7,7 +7,7 @@ from typing import Any
 from ....errors import InvalidFileError
 from ...containers import shown
 from ...conventions import FRAME_KEY
-from ...point_bodies import has_layout
+from ...point_bodies import has_layout, key_of_root
 from .people import (
     PEOPLE_KEYS,
     POINT_KEYS,
@@ -119,6 +119,12 @@ def _stamped(take: Take, value: Mapping[str, Any]) -> Take:
         frames = [
             {key: time, **as_frame(frame)}
             for time, frame in zip(value[key], frames, strict=True)
+        ]
+    root = key_of_root(value)
+    if root and _path(value[root]) and len(value[root]) == len(take):
+        frames = [
+            {root: position, **as_frame(frame)}
+            for position, frame in zip(value[root], frames, strict=True)
         ]
     is_unique = len({*numbers}) == len(take)
     stamped = Take(zip(numbers if is_unique else take, frames, strict=True))
