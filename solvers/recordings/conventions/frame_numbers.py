@@ -8,8 +8,12 @@ import numpy as np
 
 from ...progress import Progress, Remark
 
-FRAME_KEY = re.compile(r"(?i)\s*(?:frame|f|t)?[\s_\-]*(\d+(?:\.\d+)?)\s*")
-"""Key of a frame: its number, or its time in seconds."""
+IMAGE = r"\.(?:jpe?g|png)"
+FRAME_KEY = re.compile(
+    rf"(?i)\s*(?:(?:frame|f|t)?[\s_\-]*|.{{0,200}}\D(?=\d+{IMAGE}\s*$))"
+    rf"(\d+(?:\.\d+)?)(?:{IMAGE})?\s*"
+)
+"""Key of a frame: its number, its time in seconds, or the file of its image."""
 MAX_PEOPLE = 16
 """Number of people without names or identities in a frame, above which they are frames. It
 guards frames that are called `body_0000` and so on; a stream has as many people."""

@@ -1,11 +1,12 @@
 """Recognize the body in points of any program, by names, bones or the number of points."""
 
-from .landmark_recording import as_fractions, landmark_columns, recording_from_landmarks
+from .landmark_recording import as_fractions, recording_from_landmarks
 from .mediapipe_landmarks import (
     HIPS,
     LANDMARK_JOINTS,
     N_POINTS,
     is_world,
+    landmark_columns,
     with_computed_joints,
 )
 from .named_points import are_joints, body_of_named_points, missing_limbs

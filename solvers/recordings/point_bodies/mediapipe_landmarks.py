@@ -1,5 +1,8 @@
 """Names, axes and the check for flat landmarks for all readers of MediaPipe's landmarks."""
 
+import re
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...arrays import Array
@@ -15,6 +18,26 @@ whose origin is a corner, it is 0.5 and more, since hips are in the middle of a 
 MIN_INSIDE = 0.95
 """Coordinates in a picture, a fraction of all. It guards takes of scenes, with a third and more
 outside; MediaPipe also guesses limbs that leave the picture."""
+
+
+WORD_START = re.compile(r"[ \-]|(?<=[a-z])(?=[A-Z])")
+
+
+def landmark_columns(names: Sequence[str]) -> list[int] | None:
+    """Return the columns of MediaPipe's landmarks; None if a name of them is missing.
+
+    All may begin with the same words, as with `body_` next to the hands of freemocap.
+    """
+    plain = {WORD_START.sub("_", name.rpartition(".")[2]).lower(): at
+             for at, name in reversed([*enumerate(names)])}  # fmt: skip
+    starts = {
+        name.removesuffix(BODY_POINTS[0]) for name in plain if name.endswith(BODY_POINTS[0])
+    }
+    for start in sorted(starts, key=len):
+        columns = [plain.get(start + name) for name in BODY_POINTS]
+        if None not in columns:
+            return [at for at in columns if at is not None]
+    return None
 
 
 def is_world(points: Array) -> bool:

@@ -15,14 +15,14 @@ from ...progress import Progress, Remark, unwatched
 from ..containers import JsonMember, describe_frame_files, json_content, json_frame_files
 from ..conventions import FRAME_KEY, MAX_PEOPLE, Bodies, rate_of_numbers, step_between
 from .smpl_bodies import (
-    BODY_SCALES,
+    CONSTANT,
     N_BODY_POSE,
     N_NUMBERS,
     POSES,
     RATES,
     READ_ARRAYS,
-    SCALES,
     bodies_of_parameters,
+    joined_frames,
     people_of_parameters,
     plain_name,
     rows_of_frames,
@@ -52,8 +52,6 @@ NUMBERS = ("frame", "frame_id", "frame_index", "frame_number")
 """Members with the number of a frame."""
 MAX_SPREAD = 10
 """Frames per one of the file, up to which the others are missing. It bounds the memory."""
-CONSTANT = frozenset((*RATES, *SCALES, *BODY_SCALES))
-"""Names of what a take has once."""
 KNOWN_NAMES = frozenset((*READ_ARRAYS, *IDENTITIES, *NUMBERS))
 
 
@@ -114,7 +112,7 @@ def open_smpl_json(
         )
     people = dict[str, dict[str, Array]]()
     for name in dict.fromkeys(name for frame in frames for name in frame):
-        split = people_of_parameters(_joined(path, name, frames))
+        split = people_of_parameters(joined_frames(path, name, frames))
         for number, each in enumerate(split, start=1):
             people[f"{name} {number}" if len(split) > 1 else name] = each
     return bodies_of_parameters(path, people, scale=scale, height=height, on_floor=on_floor)
@@ -272,24 +270,3 @@ def _n_frames(frames: list[_Frame]) -> int:
         if name in BODY
     )
     return max(lengths, default=0)
-
-
-def _joined(path: Path | str, name: str, frames: list[_Frame]) -> dict[str, Array]:
-    """Return the arrays of a person in all frames, NaN where the person or one is missing."""
-    if len(frames) == 1:
-        return frames[0][name]
-    own = [frame.get(name) for frame in frames]
-    first = dict[str, Array]()
-    for arrays in own:
-        first = {**(arrays or {}), **first}
-    joined = {key: first[key] for key in first if key in CONSTANT}
-    for key in first.keys() - CONSTANT:
-        missing = np.full_like(first[key], np.nan)
-        rows = [missing if arrays is None else arrays.get(key, missing) for arrays in own]
-        rows = [row if len(row) == 1 else row[None] for row in rows]
-        if len({row.shape for row in rows}) > 1:
-            raise InvalidFileError(
-                f"{path}: the number of parameters of body {name} changes. Export it again."
-            )
-        joined[key] = np.concatenate(rows)
-    return joined

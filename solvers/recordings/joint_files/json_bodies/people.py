@@ -21,9 +21,9 @@ from .points import (
 )
 
 POINT_KEYS = (*LANDMARK_KEYS, *either_case(
-    "keypoints3d", "keypoints_3d", "joints3d", "joints_3d", "joints3D",
+    "keypoints3d", "keypoints_3d", "joints3d", "joints_3d", "joints3D", "3d_joints",
     "pose_keypoints_3d", "pose3d", "pose_3d", "poses_3d", "positions", "joints", "keypoints",
-    "bones", "points", "xyz",
+    "bones", "points", "xyz", "segments",
 ))  # fmt: skip
 """Members with the joints of a person."""
 IN_WORLD = re.compile(
@@ -78,8 +78,9 @@ JOINT = re.compile(
 NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*(\[\s*){2,}[-\d]")
 """The first frame of those that are keyed by their number."""
 LISTED_POINT = re.compile(
-    rb"\{(?:[^{}\[\]]{0,99}\"\w{1,99}\"\s{0,9}:\s{0,9}\{)?[^{}\[\]]{0,199}\"[xX]\"\s*:\s*\"?-?\d"
-    rb"[^{}\[\],]{0,99},\s{0,99}\"[yY]\"[^{}\[\],]{0,99},\s{0,99}\"[zZ]\"\s*:\s*\"?-?\d"
+    rb"\{(?:[^{}\[\]]{0,99}\"\w{1,99}\"\s{0,9}:\s{0,9}\{)?[^{}\[\]]{0,199}"
+    rb"\"(?:p|pos)?[xX]\"\s*:\s*\"?-?\d[^{}\[\],]{0,99},\s{0,99}"
+    rb"\"(?:p|pos)?[yY]\"[^{}\[\],]{0,99},\s{0,99}\"(?:p|pos)?[zZ]\"\s*:\s*\"?-?\d"
 )
 """An object with x, y and z, or with one as its member."""
 ROW_OF_POINTS = re.compile(

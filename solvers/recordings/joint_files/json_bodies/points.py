@@ -110,7 +110,7 @@ def position_of(joint: Any) -> Any:
             inner = _nested(inner, INNER_KEYS)
         if isinstance(inner, Mapping):
             lower = {str(key).lower(): value for key, value in inner.items()}
-            axes = [f"{each}{axis}" for each in ("", "camera") for axis in "xyz"]
+            axes = [f"{each}{axis}" for each in ("", "p", "pos", "camera") for axis in "xyz"]
             found = [lower[axis] for axis in axes if axis in lower]
             return found[:3] if len(found) >= 3 else inner
         joint = inner

@@ -18,7 +18,15 @@ from .people import (
     people_of_frame,
 )
 from .points import MIN_JOINTS
-from .stamps import NUMBERS_KEYS, RATE_KEYS, START_KEYS, is_number, listed_numbers, listed_times
+from .stamps import (
+    NUMBERS_KEYS,
+    RATE_KEYS,
+    START_KEYS,
+    is_number,
+    listed_numbers,
+    listed_times,
+    rate_of,
+)
 
 MAX_DEPTH = 6
 """Levels of members in which frames are looked for. It guards the depth of the recursion."""
@@ -134,8 +142,8 @@ def _stamped(take: Take, value: Mapping[str, Any]) -> Take:
 
 def with_rate(takes: dict[str, Take], value: Mapping[str, Any]) -> dict[str, Take]:
     """Return takes with the rate that a value states next to them."""
-    stated = (float(value[key]) for key in RATE_KEYS if is_number(value.get(key)))
-    rate = next(stated, None)
+    stated = (rate_of(value.get(key)) for key in RATE_KEYS)
+    rate = next((rate for rate in stated if rate > 0.0), None)
     for take in takes.values():
         take.rate = rate if take.rate is None else take.rate
     return takes

@@ -19,11 +19,12 @@ from .parameters import (
     plain_name,
 )
 from .people import people_of_parameters, split_people
-from .rows import rows_of_frames
+from .rows import CONSTANT, joined_frames, rows_of_frames
 
 __all__ = [
     "BODY",
     "BODY_SCALES",
+    "CONSTANT",
     "NAMES",
     "N_BODY",
     "N_BODY_POSE",
@@ -38,6 +39,7 @@ __all__ = [
     "SCALES",
     "VIDEO_UP",
     "bodies_of_parameters",
+    "joined_frames",
     "people_of_parameters",
     "plain_name",
     "rows_of_frames",

@@ -14,7 +14,9 @@ ROTATIONS = (
     "poses", "smpl_poses", "fullpose", "smpl_pose", "pred_rotmat", "pose_world", "pose",
 )  # fmt: skip
 """Names of all rotations; of the last two, WHAM's, the first one is in the world."""
-OF_CAMERA = frozenset(("pred_rotmat", "pose", "cam_trans"))
+OF_CAMERA = frozenset((
+    "pred_rotmat", "pose", "cam_trans", "pred_cam_t_full", "cam_t_full", "pred_cam_t", "cam_t",
+))  # fmt: skip
 """Names of rotations and positions that video models give relative to the camera."""
 ROOT = ("root_orient", "global_orient")
 BODY_POSE = ("pose_body", "body_pose")
@@ -22,9 +24,9 @@ HANDS = ("pose_hand",)
 LEFT_HAND, RIGHT_HAND = ("left_hand_pose",), ("right_hand_pose",)
 POSITIONS = (
     "trans_world", "trans", "transl", "translation", "smpl_trans", "pred_trans",
-    "body_translation", "cam_trans",
+    "body_translation", "cam_trans", "pred_cam_t_full", "cam_t_full", "pred_cam_t", "cam_t",
 )  # fmt: skip
-"""Names of the position of the root; the last one is ROMP's, in the axes of the camera."""
+"""Names of the position of the root; from `cam_trans` on in the axes of the camera."""
 RATES = ("mocap_frame_rate", "mocap_framerate", "frame_rate", "framerate", "fps")
 SCALES = ("smpl_scaling",)
 BODY_SCALES = ("scale",)

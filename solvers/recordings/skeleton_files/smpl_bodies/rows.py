@@ -1,23 +1,30 @@
 """Put arrays of SMPL bodies that are written in one row in frames."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from ....arrays import Array
+from ....errors import InvalidFileError
 from .parameters import (
     BODY_POSE,
+    BODY_SCALES,
     HANDS,
     LEFT_HAND,
     N_BODY_POSE,
     N_HAND,
     N_NUMBERS,
     POSITIONS,
+    RATES,
     RIGHT_HAND,
     ROOT,
     ROTATIONS,
+    SCALES,
 )
 
+CONSTANT = frozenset((*RATES, *SCALES, *BODY_SCALES))
+"""Names of what a take has once."""
 ROWS: dict[str, Collection[int]] = {
     **dict.fromkeys((*ROOT, *POSITIONS, "Rh", "Th"), (3,)),
     **dict.fromkeys((*LEFT_HAND, *RIGHT_HAND), (N_HAND,)),
@@ -61,3 +68,26 @@ def _n_frames(arrays: Mapping[str, Array]) -> int:
 def _change(poses: Array) -> float:
     """Return the mean change from one pose to the next."""
     return float(np.abs(np.diff(poses, axis=0)).mean()) if len(poses) > 1 else np.inf
+
+
+def joined_frames(
+    path: Path | str, name: str, frames: Sequence[Mapping[str, Mapping[str, Array]]]
+) -> dict[str, Array]:
+    """Return the arrays of a person in all frames, NaN where the person or one is missing."""
+    if len(frames) == 1:
+        return dict(frames[0][name])
+    own = [frame.get(name) for frame in frames]
+    first = dict[str, Array]()
+    for arrays in own:
+        first = {**(arrays or {}), **first}
+    joined = {key: first[key] for key in first if key in CONSTANT}
+    for key in first.keys() - CONSTANT:
+        missing = np.full_like(first[key], np.nan)
+        rows = [missing if arrays is None else arrays.get(key, missing) for arrays in own]
+        rows = [row if len(row) == 1 else row[None] for row in rows]
+        if len({row.shape for row in rows}) > 1:
+            raise InvalidFileError(
+                f"{path}: the number of parameters of body {name} changes. Export it again."
+            )
+        joined[key] = np.concatenate(rows)
+    return joined

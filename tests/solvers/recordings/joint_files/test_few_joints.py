@@ -1,4 +1,4 @@
-"""Tables of a few joints are markers, if their names are those of joints."""
+"""Tables of joints that begin with the same word, that are few, or that lack the head."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, forward_kinematics
+from solvers.motion.skeletons import BODY_POINTS
 from solvers.samples import walking_gait
 
 F = 40
@@ -51,6 +52,40 @@ def test_it_is_said_that_they_are_no_complete_body(make_reader, walk, collected_
     make_reader("take.csv")(table(LEG, walk), progress=progress)
 
     assert any("a few joints of a body" in str(message) for message in messages)
+
+
+LIMBS = {
+    "shoulder": "UpperArm", "elbow": "LowerArm", "wrist": "Hand",
+    "hip": "UpperLeg", "knee": "LowerLeg", "ankle": "Foot",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("prefix", ["", "body_", "kp."])
+def test_limbs_without_a_head_stand(read_any, walk, prefix):
+    """Before, they lay on the floor: no joint above the hips showed which way is up."""
+    names = {f"{prefix}{side}_{part}": side + role
+             for side in ("left", "right") for part, role in LIMBS.items()}  # fmt: skip
+
+    recording = read_any(table(names, walk))
+
+    found = [recording.names.index(name.removeprefix(prefix)) for name in names]
+    expected = np.stack([walk[role] for role in names.values()], axis=1)
+    assert_allclose(recording.tracks.positions[:, found], expected, atol=1e-4)
+
+
+def test_landmarks_may_have_hands_next_to_them(read_any, walk, rng):
+    """freemocap calls them body_ and right_hand_; before, all were markers."""
+    points = {f"body_{name}": walk["head"] for name in BODY_POINTS}
+    for side in ("left", "right"):
+        points |= {f"body_{side}_{part}": walk[side + role] for part, role in LIMBS.items()}
+        points[f"body_{side}_foot_index"] = walk[f"{side}Toes"]
+    hands = {f"right_hand_{k:04d}": walk["rightHand"] + rng.normal(size=3) for k in range(21)}
+    points |= hands
+
+    recording = read_any(table({name: name for name in points}, points))
+
+    knee = recording.tracks.positions[:, recording.names.index("left_knee")]
+    assert_allclose(knee, walk["leftLowerLeg"], atol=1e-4)
 
 
 @pytest.mark.parametrize("names", [{"a": "hips", "b": "head", "c": "leftFoot"},

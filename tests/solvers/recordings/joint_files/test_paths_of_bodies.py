@@ -133,6 +133,36 @@ def test_people_may_be_in_a_scene_and_points_in_a_member(read_any, walk, key):
     check(read_any(json.dumps({"fps": 30, "frames": frames})), walk)
 
 
+@pytest.mark.parametrize("point", [
+    lambda name, p: {"name": name, "pos": p},
+    lambda name, p: {"name": name, "px": p[0], "py": p[1], "pz": p[2]},
+])  # fmt: skip
+def test_segments_with_positions_are_joints(read_any, walk, point):
+    """Before, the file was of an unknown format."""
+    frames = [
+        {"segments": [point(name, p) for name, p in zip(SMPL, frame.tolist(), strict=True)]}
+        for frame in walk
+    ]
+
+    check(read_any(json.dumps({"fps": "30", "frames": frames})), walk)
+
+
+@pytest.mark.parametrize(
+    "stated", [{"fps": "50"}, {"rate": 50}, {"metadata": {"frameRate": "50,0"}}]
+)
+def test_rates_may_be_texts(read_any, walk, stated):
+    """Before, 30 Hz were assumed."""
+    content = {**stated, "frames": [{"joints3d": frame.tolist()} for frame in walk]}
+
+    assert read_any(json.dumps(content)).frame_rate == 50.0
+
+
+def test_frames_may_be_keyed_by_their_images(read_any, walk):
+    frames = {f"img/{k + 1:06d}.jpg": {"3d_joints": p.tolist()} for k, p in enumerate(walk)}
+
+    check(read_any(json.dumps(frames)), walk)
+
+
 def test_numbered_names_of_joints_are_recognized(read_any, walk):
     """CMU Panoptic calls them joints19; before, the file was of an unknown format."""
     bodies = [{"id": 0, "joints22": p.ravel().tolist()} for p in walk]

@@ -6,9 +6,10 @@ import json
 import numpy as np
 import pytest
 from pytest import approx
+from scipy.spatial.transform import Rotation
 
 from solvers.errors import InvalidFileError
-from solvers.recordings import list_bodies
+from solvers.recordings import list_bodies, read_recording
 from solvers.recordings.skeleton_files.smpl_bodies import rows_of_frames
 
 F = 40
@@ -104,3 +105,37 @@ def test_names_of_joints_in_archives_may_have_capitals(read_any):
 
     with pytest.raises(InvalidFileError, match="2D points of images"):
         read_any(file.getvalue())
+
+
+@pytest.mark.parametrize("name", ["{:05d}_0.npz", "frame{}.npz"])
+def test_an_archive_for_each_frame_is_one_take(tmp_path, name):
+    """SMPLer-X writes them; before, the chosen one came in as a take of one frame."""
+    for number in range(F):
+        if number != 7:
+            arrays = {key: np.array([each]) for key, each in frame(number).items()}
+            np.savez(tmp_path / name.format(number), betas=np.zeros((1, 10)), **arrays)
+
+    motion = read_recording(tmp_path / name.format(3))
+
+    assert motion.n_frames == F
+    assert np.flatnonzero(np.isnan(motion.rotations).any(axis=(1, 2))).tolist() == [7]
+    assert np.nanmax(motion.root_positions[:, 0]) == approx(1.1)
+
+
+def test_an_archive_of_one_frame_alone_is_a_pose(tmp_path):
+    np.savez(tmp_path / "pose.npz", **{key: np.array(each) for key, each in frame(9).items()})
+
+    assert read_recording(tmp_path / "pose.npz").n_frames == 1
+
+
+def test_frames_may_be_keyed_by_their_images(read_any):
+    """4D-Humans does so, with matrices of one person in each list."""
+    frames = {}
+    for number in range(F):
+        vectors = poses(72)[number].reshape(24, 3)
+        matrices = Rotation.from_rotvec(vectors).as_matrix().tolist()
+        body = {"global_orient": matrices[:1], "body_pose": matrices[1:],
+                "pred_cam_t": TRAVEL[number].tolist()}  # fmt: skip
+        frames[f"out/img/{number + 1:06d}.jpg"] = {"time": number, "smpl": [body]}
+
+    check(read_any(json.dumps(frames)))
