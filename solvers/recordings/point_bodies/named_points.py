@@ -125,13 +125,15 @@ def are_joints(names: Sequence[str]) -> bool:
 
 
 def without_prefix(names: Sequence[str]) -> list[str]:
-    """Return names without the words that all begin with, such as `body_` of freemocap."""
+    """Return names without the words that all begin with, such as `body_`, but for a side."""
     first, last = min(names, default=""), max(names, default="")
     n_shared = next(
         (at for at, (a, b) in enumerate(zip(first, last, strict=False)) if a != b), 0
     )
     shared = PREFIX.match(first[:n_shared])
-    return [name[shared.end() :] if shared else name for name in names]
+    if shared is None or not SIDES.keys().isdisjoint(re.findall("[a-z]+", shared[0].lower())):
+        return list(names)
+    return [name[shared.end() :] for name in names]
 
 
 def _keypoints(names: Sequence[str]) -> dict[str, int]:

@@ -14,6 +14,9 @@ TRACKERS = {
     "head": "head", "waist": "hips", "left_hand": "leftHand", "right_hand": "rightHand",
     "left_foot": "leftFoot", "right_foot": "rightFoot",
 }  # fmt: skip
+LEG_BEHIND_ITS_SIDE = {
+    "L_Hip": "leftUpperLeg", "L_Knee": "leftLowerLeg", "L_Ankle": "leftFoot",
+}  # fmt: skip
 LEG = {"LHip": "leftUpperLeg", "LKnee": "leftLowerLeg", "LAnkle": "leftFoot"}
 
 
@@ -35,7 +38,7 @@ def table(names, walk):
     return "\n".join([",".join(titles), *rows])
 
 
-@pytest.mark.parametrize("names", [TRACKERS, LEG])
+@pytest.mark.parametrize("names", [TRACKERS, LEG, LEG_BEHIND_ITS_SIDE])
 def test_a_few_joints_are_read_as_markers(read_any, walk, names):
     """Before, they were refused as too few for a body."""
     tracks = read_any(table(names, walk))
