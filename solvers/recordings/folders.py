@@ -9,7 +9,7 @@ from .depth_files import is_depth_folder
 from .formats import detect_format
 from .read_recording import is_depth_recording
 
-FRAME_SUFFIXES = (".json", ".npy")
+FRAME_SUFFIXES = (".json", ".npy", ".npz")
 """Endings of files that may hold a single frame."""
 MAX_FRAME_BYTES = 1 << 20
 """Size of a file, bytes, above which it holds more than one frame. It bounds the run time: the

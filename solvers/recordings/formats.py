@@ -66,9 +66,11 @@ from .marker_files import (
     open_trc,
     open_vicon_csv,
 )
-from .numpy_files import is_frame_npy, is_point_archive, open_npy, open_point_archive
+from .numpy_files import is_frame_npy, open_npy
+from .point_archives import is_point_archive, open_point_archive
 from .refuse_stand_ins import REFUSALS
 from .skeleton_files import (
+    is_frame_smpl,
     is_frame_smpl_json,
     is_kimodo,
     is_mvnx,
@@ -132,6 +134,7 @@ FORMATS = (
         open_smpl,
         has_skeleton=True,
         lacks_bones=True,
+        is_one_frame=is_frame_smpl,
     ),
     Format(
         "SMPL parameters in JSON",

@@ -1,6 +1,7 @@
 """Read the arrays of NumPy files, which state little but their shape."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,30 +11,41 @@ from ..motion import JointRecording, Motion, Tracks
 from ..motion.humanoid import ADULT_STATURE_M
 from ..progress import Progress, Remark, unwatched
 from .containers import (
-    archive_names,
     describe_frame_files,
     frame_files,
-    read_archive_members,
     read_array,
 )
-from .conventions import DEFAULT_FRAME_RATE, Bodies, check_scale, common_rate, observed_body
+from .conventions import DEFAULT_FRAME_RATE, Bodies, check_scale, observed_body
 from .joint_files import read_freemocap_points
-from .point_bodies import body_of_points, has_layout, points_of_array, read_body
+from .point_bodies import (
+    body_of_named_points,
+    body_of_points,
+    has_layout,
+    in_room,
+    points_of_array,
+    read_body,
+    stand_body,
+)
 from .skeleton_files import is_motion_x, read_motion_x
 
 HUMANML3D_FEATURES = 263
-POINT_MEMBERS = (
-    "positions", "joints", "joint_positions", "joints3d", "joints_3d", "keypoints3d",
-    "keypoints_3d", "kps3d", "pose3d", "pose_3d", "poses3d", "poses_3d", "points3d",
-    "points_3d", "pose_world_landmarks", "world_landmarks", "landmarks", "pred_xyz_jts", "xyz",
-    "points", "keypoints", "reconstruction", "predictions", "arr_0",
-)  # fmt: skip
-"""Names of joints in archives, the clear ones first."""
-RATE_MEMBERS = ("fps", "frame_rate", "framerate", "mocap_frame_rate", "mocap_framerate")
-"""Names of frames per second in archives."""
 MAX_ROUNDING = 1e-2
 """Difference from a rotation, relative to 1, up to which numbers are one. It guards points on a
 sphere of radius 1; rotations of 16 bits are off by 1e-3."""
+
+
+class Stated(NamedTuple):
+    """What an archive states next to the points."""
+
+    rate: float | None
+    """Frames per second."""
+    roots: Array | None
+    """Transforms of the body, shape (n_frames, 4, 4), which joints may be relative to."""
+    names: tuple[str, ...]
+    """Of the joints; empty without any."""
+
+
+NOTHING_STATED = Stated(None, None, ())
 
 
 def open_npy(
@@ -87,7 +99,7 @@ def open_npy(
         )
     if _is_frame(array):
         array = _read_frames(path, array.shape, progress)
-    return _open_points(path, array, scale)
+    return open_points(path, array, scale)
 
 
 def is_frame_npy(path: Path | str) -> bool:
@@ -119,47 +131,11 @@ def _read_frames(path: Path | str, shape: tuple[int, ...], progress: Progress) -
     return np.stack(frames)
 
 
-def is_point_archive(head: bytes) -> bool:
-    """Return whether a file is an `.npz` archive with joints, from its beginning and end."""
-    names = {name.lower() for name in archive_names(head)}
-    return "depth" not in names and not names.isdisjoint(POINT_MEMBERS)
-
-
-def open_point_archive(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Bodies[JointRecording | Tracks]:
-    """Open the points of an `.npz` archive as `open_npy` does.
-
-    Raises
-    ------
-    InvalidFileError
-        The file is missing or damaged, or has no points over time.
-    InvalidSettingError
-        The scale is not positive.
-    SolveCancelled
-        Raised by `progress`.
-    """
-    check_scale(scale)
-    members = read_archive_members(path, POINT_MEMBERS)
-    found = next((members[name] for name in POINT_MEMBERS if name in members), None)
-    if found is None:
-        raise InvalidFileError(f"{path} has no array of joints. Export it again.")
-    return _open_points(path, found, scale, _stated_rate(path))
-
-
-def _stated_rate(path: Path | str) -> float | None:
-    """Return the frames per second that an archive states; None if it states none."""
-    try:
-        members = read_archive_members(path, RATE_MEMBERS)
-    except InvalidFileError:  # words or None in place of a number
-        return None
-    stated = (members[name] for name in RATE_MEMBERS if name in members)
-    rate = next((float(each.item()) for each in stated if each.size == 1), 0.0)
-    return common_rate(rate) if 0.0 < rate < np.inf else None
-
-
-def _open_points(
-    path: Path | str, array: Array, scale: float | None, rate: float | None = None
+def open_points(
+    path: Path | str,
+    array: Array,
+    scale: float | None,
+    stated: Stated = NOTHING_STATED,
 ) -> Bodies[JointRecording | Tracks]:
     """List the bodies of an array; several are on its first or second axis."""
     _refuse_rotations(path, array)
@@ -169,14 +145,18 @@ def _open_points(
             str(number),
             np.flatnonzero(np.isfinite(points).all(axis=2).any(axis=1)),
             len(points),
-            len(points) / (rate or DEFAULT_FRAME_RATE),
+            len(points) / (stated.rate or DEFAULT_FRAME_RATE),
         )
         for number, points in enumerate(bodies, start=1)
         if len(bodies) > 1
     )
 
     def read(index: int, progress: Progress) -> JointRecording | Tracks:
-        return _read_points(path, points_of_array(path, bodies[index]), scale, rate, progress)
+        points = points_of_array(path, bodies[index])
+        n_roots = 0 if stated.roots is None else len(stated.roots)
+        is_alone = len(bodies) == 1 and n_roots == len(points)
+        own = stated if is_alone else stated._replace(roots=None)
+        return _read_points(path, points, scale, own, progress)
 
     return Bodies(str(path), listed, read)
 
@@ -225,14 +205,20 @@ def _read_points(
     path: Path | str,
     points: Array,
     scale: float | None,
-    rate: float | None,
+    stated: Stated,
     progress: Progress,
 ) -> JointRecording | Tracks:
     points = np.where(np.isfinite(points).all(axis=-1)[..., None], points, np.nan)
+    n_points, rate = points.shape[1], stated.rate or DEFAULT_FRAME_RATE
+    is_named = len(stated.names) == n_points
+    named = body_of_named_points(stated.names, points) if is_named else None
+    if named is not None:
+        placed = in_room(named.names, named.positions, stated.roots)
+        return stand_body(path, named.names, placed, rate=rate, scale=scale, progress=progress)
     body = body_of_points(path, points)
-    n_points = points.shape[1]
     if body is not None:
-        return read_body(path, body, scale, progress, rate=rate)
+        body = body._replace(positions=in_room(body.names, body.positions, stated.roots))
+        return read_body(path, body, scale, progress, rate=stated.rate)
     if body is None and has_layout(n_points):
         progress(
             0.9,
@@ -241,4 +227,6 @@ def _read_points(
                 " the joints as a joint CSV, which has names"
             ),
         )
-    return read_freemocap_points(path, points, scale, rate or DEFAULT_FRAME_RATE, progress)
+    return read_freemocap_points(
+        path, points, scale, stated.rate or DEFAULT_FRAME_RATE, progress
+    )

@@ -11,6 +11,13 @@ HDF5 = b"\x89HDF\r\n\x1a\n"
 SAFETENSORS = re.compile(rb"[\x00-\xff]{8}\s*\{\s*\"[^\"]+\"\s*:\s*\{\s*\"(dtype|format)\"")
 HTR = re.compile(rb"\s*\[Header\]\s*(#[^\n]*\n\s*)*FileType\s+[hg]tr")
 
+THREE_TRACK = re.compile(
+    rb"\"(?:tracks|hierarchy)\"\s*:\s*\[\s*\{[^\[\]]{0,300}\"(?:times|keys)\"\s*:\s*\["
+    rb"|\"name\"\s*:\s*\"[^\"]{1,200}\.(?:quaternion|position|scale)\"\s*,\s*"
+    rb"\"(?:times|values|type)\"\s*:"
+)
+"""The first track of an AnimationClip, whose name is that of a bone and its property."""
+
 Detector = Callable[[bytes], bool]
 
 
@@ -69,6 +76,24 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
         _starts(HDF5),
         "{path} is an HDF5 file. Save its 3D points as a NumPy array of the shape (frames,"
         " joints, 3), with numpy.save.",
+    ),
+    (
+        "columns of data science",
+        _starts(b"PAR1", b"ARROW1"),
+        "{path} is a table of Parquet or Arrow. Save it as CSV where it was made, such as with"
+        " pandas.read_parquet(file).to_csv(file).",
+    ),
+    (
+        "common data format",
+        _starts(b"\xcd\xf3\x00\x01", b"\xcd\xf2\x60\x02"),
+        "{path} is a CDF file, as of Human3.6M. Save its 3D joints as a NumPy array of the"
+        " shape (frames, joints, 3), with numpy.save.",
+    ),
+    (
+        "clip of three.js",
+        lambda head: THREE_TRACK.search(head) is not None,
+        "{path} is an animation of three.js. Export the animated model as GLB, with its"
+        " GLTFExporter.",
     ),
     (
         "tensors",

@@ -213,6 +213,11 @@ TABLES: dict[str, tuple[str, ...]] = {
         "Clavicle", "Shoulder", "Forearm", "Hand",
         "Thigh", "Shin", "Foot", "Toe",
     ),
+    "Meta": (  # Movement SDK and body tracking of OpenXR and WebXR
+        "hips", "spine_lower", "spine_middle", "chest", "neck", "head",
+        "shoulder", "arm_upper", "arm_lower", "hand_wrist",
+        "upper_leg leg_upper", "lower_leg leg_lower", "foot_ankle", "foot_ball",
+    ),
     "Theia": (
         "pelvis", "abdomen", "thorax torso", "", "neck", "head",
         "clavicle", "uarm", "larm", "hand",

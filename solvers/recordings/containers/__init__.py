@@ -35,6 +35,7 @@ from .stored_arrays import (
     archive_names,
     read_archive,
     read_archive_members,
+    read_archive_words,
     read_array,
 )
 from .stored_bytes import (
@@ -127,6 +128,7 @@ __all__ = [
     "printable",
     "read_archive",
     "read_archive_members",
+    "read_archive_words",
     "read_array",
     "read_bytes",
     "read_number",

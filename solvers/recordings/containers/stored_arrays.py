@@ -3,7 +3,7 @@
 import os
 import re
 import zipfile
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ ZIP_MEMBER, ZIP_ENTRY = b"PK\x03\x04", b"PK\x01\x02"
 MAX_NUMBER = float(np.finfo(np.float32).max)
 """Without unit. By definition: what sensors and networks store has 32 bits."""
 NUMBERS = Values("fiu", None, finite=False)
+WORDS = Values("U", None)
 
 
 def read_array(path: Path | str) -> NDArray[np.float64]:
@@ -73,21 +74,40 @@ def _name_in_header(content: bytes, start: int, length_at: int, name_at: int) ->
 
 
 def read_archive_members(
-    path: Path | str, names: Collection[str]
+    path: Path | str, names: Collection[str], plain: Callable[[str], str] = str
 ) -> dict[str, NDArray[np.float64]]:
     """Return those of these arrays of numbers that a `.npz` archive has.
 
-    Raises InvalidFileError on failure; other members are not read.
+    `plain` returns the name that is meant by one as the archive spells it. Raises
+    InvalidFileError on failure; other members are not read.
     """
-    wanted = dict.fromkeys(names, replace(NUMBERS, optional=True))
+    found = _read_members(path, names, plain, NUMBERS)
+    return {name: _as_float(array, path) for name, array in found.items()}
+
+
+def read_archive_words(path: Path | str, names: Collection[str]) -> tuple[str, ...]:
+    """Return the texts in the first of these members that a `.npz` archive has, if any.
+
+    Members with other content are none. Raises InvalidFileError for a damaged archive.
+    """
+    found = _read_members(path, names, str.lower, WORDS)
+    return next((tuple(map(str, array.ravel())) for array in found.values()), ())
+
+
+def _read_members(
+    path: Path | str, names: Collection[str], plain: Callable[[str], str], values: Values
+) -> dict[str, NDArray[Any]]:
     try:
         with open_regular(path) as file, zipfile.ZipFile(file) as archive:
+            own = [name.removesuffix(".npy") for name in archive.namelist()]
+            meant = {name: plain(name) for name in own if plain(name) in names}
+            wanted = dict.fromkeys(meant, replace(values, optional=True))
             arrays = read_members(archive, wanted, RECORDED)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except READABLE:
         raise _damaged(path) from None
-    return {name: _as_float(array, path) for name, array in arrays.items()}
+    return {meant[name]: array for name, array in arrays.items()}
 
 
 def _as_float(array: NDArray[Any], path: Path | str) -> NDArray[np.float64]:

@@ -46,7 +46,7 @@ from .file_axes import (
 )
 from .flat_takes import question_of_depth
 from .floor import floor_level, lacks_floor, put_on_floor, question_of_floor
-from .frame_numbers import rate_of_numbers, step_between
+from .frame_numbers import FRAME_KEY, MAX_PEOPLE, rate_of_numbers, step_between
 from .points import (
     METERS,
     axes_of_points,
@@ -84,6 +84,8 @@ __all__ = [
     "ALL_BODIES",
     "CENTIMETER",
     "DEFAULT_FRAME_RATE",
+    "FRAME_KEY",
+    "MAX_PEOPLE",
     "MAX_TIME_S",
     "METERS",
     "MILLIMETER",

@@ -1,5 +1,6 @@
 """The numbers of frames: their step, and what it means for the rate."""
 
+import re
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -7,6 +8,15 @@ import numpy as np
 
 from ...progress import Progress, Remark
 
+IMAGE = r"\.(?:jpe?g|png)"
+FRAME_KEY = re.compile(
+    rf"(?i)\s*(?:(?:frame|f|t)?[\s_\-]*|.{{0,200}}\D(?=\d+{IMAGE}\s*$))"
+    rf"(\d+(?:\.\d+)?)(?:{IMAGE})?\s*"
+)
+"""Key of a frame: its number, its time in seconds, or the file of its image."""
+MAX_PEOPLE = 16
+"""Number of people without names or identities in a frame, above which they are frames. It
+guards frames that are called `body_0000` and so on; a stream has as many people."""
 MAX_ROUNDING = 1e-6
 """Difference of a ratio of numbers to a whole one. It bounds the rounding of numbers with
 fractions."""

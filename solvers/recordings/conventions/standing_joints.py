@@ -37,6 +37,10 @@ MIN_SPREAD_FRACTION = 0.06
 hand: in the rest poses of these takes it is 0.09 to 0.88, in a folded one 0."""
 
 
+TOP_ROLES = ("head", "neck", "chest", "leftUpperArm", "rightUpperArm")
+"""Roles above the hips of who stands, the clear ones first."""
+
+
 class StandingJoints(NamedTuple):
     """The joints that show where a body stands."""
 
@@ -50,7 +54,7 @@ class StandingJoints(NamedTuple):
     def from_roles(cls, roles: Mapping[str, int]) -> "StandingJoints | None":
         """Return the joints by role; None where they do not show a body."""
         feet = [roles[role] for role in ("leftFoot", "rightFoot") if role in roles]
-        top = next((roles[role] for role in ("head", "neck", "chest") if role in roles), None)
+        top = next((roles[role] for role in TOP_ROLES if role in roles), None)
         if top is None or "hips" not in roles or not feet:
             return None
         return cls(roles["hips"], top, feet, sorted(roles.values()))

@@ -27,6 +27,7 @@ from ..point_bodies import (
     Coordinate,
     TimeCells,
     TimeName,
+    are_joints,
     body_of_named_points,
     column_of_times,
     completed_times,
@@ -202,7 +203,9 @@ def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[M
 
 def _has_points(titles: Sequence[str]) -> bool:
     columns = _columns(titles)
-    return columns is not None and len(columns.names) >= MIN_POINTS
+    return columns is not None and (
+        len(columns.names) >= MIN_POINTS or are_joints(columns.names)
+    )
 
 
 def _points_of(

@@ -16,11 +16,15 @@ from ..conventions import (
     stand_markers,
 )
 from ..point_bodies import (
+    are_joints,
     body_of_named_points,
     body_of_points,
+    in_room,
+    key_of_root,
     missing_limbs,
     read_body,
     stand_body,
+    transforms_at,
 )
 
 MIN_CONFIDENCE = 0.9
@@ -59,15 +63,17 @@ def recording_of_points(
     body = body_of_named_points(names, points) if is_named else None
     lacking = missing_limbs(names) if body is None and is_named else []
     unnamed = None if body is not None or lacking else body_of_points(path, points)
+    key = key_of_root(names)
+    roots = None if key is None else transforms_at(points[:, names.index(key)])
     if unnamed is not None and (not is_named or unnamed.confidence > MIN_CONFIDENCE):
-        return read_body(path, unnamed, unit, progress, times)
+        placed = in_room(unnamed.names, unnamed.positions, roots)
+        return read_body(path, unnamed._replace(positions=placed), unit, progress, times)
     if times is None:
         progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     if body is not None:
-        return stand_body(
-            path, body.names, body.positions, times=times, scale=unit, progress=progress
-        )
-    progress(0.8, _remark_of_markers(lacking))
+        placed = in_room(body.names, body.positions, roots)
+        return stand_body(path, body.names, placed, times=times, scale=unit, progress=progress)
+    progress(0.8, _remark_of_markers(names, lacking))
     rate = DEFAULT_FRAME_RATE
     if times is not None:
         resampler = ConstantRate(path, times)
@@ -77,7 +83,9 @@ def recording_of_points(
     return stand_markers(names, points * unit, rate, unit, "")
 
 
-def _remark_of_markers(lacking: Sequence[str]) -> Remark:
+def _remark_of_markers(names: Sequence[str], lacking: Sequence[str]) -> Remark:
+    if not lacking and are_joints(names):
+        return Remark("The points are a few joints of a body and are imported as markers")
     if not lacking:
         return Remark("The names are those of no body; the points become markers")
     return Remark(

@@ -1,14 +1,15 @@
 """Recognize the body in points of any program, by names, bones or the number of points."""
 
-from .landmark_recording import as_fractions, landmark_columns, recording_from_landmarks
+from .landmark_recording import as_fractions, recording_from_landmarks
 from .mediapipe_landmarks import (
     HIPS,
     LANDMARK_JOINTS,
     N_POINTS,
     is_world,
+    landmark_columns,
     with_computed_joints,
 )
-from .named_points import body_of_named_points, missing_limbs
+from .named_points import are_joints, body_of_named_points, missing_limbs
 from .point_arrays import (
     body_of_points,
     points_of_array,
@@ -24,6 +25,13 @@ from .point_titles import (
     names_of_positions,
     numbered_axes,
     without_letter,
+)
+from .relative_positions import (
+    NAMES_OF_ROOT,
+    in_room,
+    key_of_root,
+    name_of_root,
+    transforms_at,
 )
 from .suffixes import groups_by_suffix
 from .time_units import (
@@ -41,10 +49,12 @@ from .unnamed_joints import has_layout
 __all__ = [
     "HIPS",
     "LANDMARK_JOINTS",
+    "NAMES_OF_ROOT",
     "N_POINTS",
     "Coordinate",
     "TimeCells",
     "TimeName",
+    "are_joints",
     "as_fractions",
     "body_of_named_points",
     "body_of_points",
@@ -53,10 +63,13 @@ __all__ = [
     "coordinate_of_title",
     "groups_by_suffix",
     "has_layout",
+    "in_room",
     "is_quantity",
     "is_world",
+    "key_of_root",
     "landmark_columns",
     "missing_limbs",
+    "name_of_root",
     "names_of_positions",
     "numbered_axes",
     "over_midnight",
@@ -68,6 +81,7 @@ __all__ = [
     "second_of_times",
     "stand_body",
     "time_name",
+    "transforms_at",
     "with_computed_joints",
     "without_letter",
     "without_undetected",

@@ -1,7 +1,5 @@
 """Make recordings of MediaPipe's landmarks, of the world or triangulated by cameras."""
 
-import re
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -40,15 +38,6 @@ PERCENT = 100.0
 MIN_PERCENT = 2.0
 """Largest confidence of a take, a ratio, above which it is in percent. Chosen by hand: it
 guards scores from 0 to 1 that exceed 1 a little."""
-WORD_START = re.compile(r"[ \-]|(?<=[a-z])(?=[A-Z])")
-
-
-def landmark_columns(names: Sequence[str]) -> list[int] | None:
-    """Return the columns of MediaPipe's landmarks; None if a name of them is missing."""
-    plain = {WORD_START.sub("_", name.rpartition(".")[2]).lower(): at
-             for at, name in reversed([*enumerate(names)])}  # fmt: skip
-    columns = [plain.get(name) for name in BODY_POINTS]
-    return None if None in columns else [at for at in columns if at is not None]
 
 
 def recording_from_landmarks(

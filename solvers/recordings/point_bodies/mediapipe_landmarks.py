@@ -1,5 +1,8 @@
 """Names, axes and the check for flat landmarks for all readers of MediaPipe's landmarks."""
 
+import re
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...arrays import Array
@@ -15,6 +18,26 @@ whose origin is a corner, it is 0.5 and more, since hips are in the middle of a 
 MIN_INSIDE = 0.95
 """Coordinates in a picture, a fraction of all. It guards takes of scenes, with a third and more
 outside; MediaPipe also guesses limbs that leave the picture."""
+
+
+WORD_START = re.compile(r"[ \-]|(?<=[a-z])(?=[A-Z])")
+
+
+def landmark_columns(names: Sequence[str]) -> list[int] | None:
+    """Return the columns of MediaPipe's landmarks; None if a name of them is missing.
+
+    All may begin with the same words, as with `body_` next to the hands of freemocap.
+    """
+    plain = {WORD_START.sub("_", name.rpartition(".")[2]).lower(): at
+             for at, name in reversed([*enumerate(names)])}  # fmt: skip
+    starts = {
+        name.removesuffix(BODY_POINTS[0]) for name in plain if name.endswith(BODY_POINTS[0])
+    }
+    for start in sorted(starts, key=len):
+        columns = [plain.get(start + name) for name in BODY_POINTS]
+        if None not in columns:
+            return [at for at in columns if at is not None]
+    return None
 
 
 def is_world(points: Array) -> bool:
@@ -39,9 +62,14 @@ def is_normalized(points: Array) -> bool:
 
     A person of 1.5 m and more who stands in a scene exceeds 0 to 1 meter.
     """
+    return is_inside_picture(points) and not is_world(points)
+
+
+def is_inside_picture(points: Array) -> bool:
+    """Return whether x and y are fractions of a picture's size."""
     flat = points[..., :2][np.isfinite(points).all(axis=-1)]
     inside = (flat >= 0.0) & (flat <= 1.0)
-    return bool(inside.mean() >= MIN_INSIDE) and not is_world(points)
+    return bool(inside.mean() >= MIN_INSIDE)
 
 
 def is_of_picture(points: Array) -> bool:

@@ -8,7 +8,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...motion import roles_by_name
-from ...motion.skeletons import COMPUTED_JOINTS
+from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS
+from .mediapipe_landmarks import landmark_columns
 
 PARTS = {
     "shoulder": "shoulder", "elbow": "elbow", "wrist": "wrist", "hip": "hip", "knee": "knee",
@@ -50,6 +51,10 @@ NEEDED_ROLES = frozenset(
     for part in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 )
 """Roles that a body must have."""
+PREFIX = re.compile(r".*[\W_]")
+"""Words up to a separator."""
+MIN_JOINTS = 3
+"""Number of joints of a part of a body. By definition: those of a limb."""
 MAX_MISSING = len(NEEDED_ROLES) // 2
 """Limbs that may lack in points whose names are those of a body. By definition the half: an
 upper or a lower body is named like one."""
@@ -75,7 +80,9 @@ def body_of_named_points(names: Sequence[str], points: Array) -> NamedBody | Non
     names : length n_points
     points : shape (n_frames, n_points, 3)
     """
-    keypoints = _keypoints(names)
+    if (landmarks := landmark_columns(names)) is not None:
+        names, points = BODY_POINTS, points[:, landmarks]
+    keypoints = _keypoints(without_prefix(names))
     if keypoints.keys() >= {*LIMBS}:
         return _with_centers({key: points[:, column] for key, column in keypoints.items()})
     roles = roles_by_name(names)
@@ -99,13 +106,34 @@ def missing_limbs(names: Sequence[str]) -> list[str]:
 
     Points are those of a body if they have most of its limbs.
     """
-    keypoints = _keypoints(names)
+    keypoints = _keypoints(without_prefix(names))
     by_kind = (
         [each for each in LIMBS if each not in keypoints],
-        [NAMES_OF_ROLES[role] for role in NEEDED_ROLES - _roles(names)],
+        [NAMES_OF_ROLES[role] for role in NEEDED_ROLES - _roles(names).keys()],
     )
     shortest = min(by_kind, key=len)
     return sorted(shortest) if len(shortest) <= MAX_MISSING else []
+
+
+def are_joints(names: Sequence[str]) -> bool:
+    """Return whether these are names of several joints, of a body or a part of it."""
+    known = {*_roles(names).values()}
+    plain = without_prefix(names)
+    return len(names) >= MIN_JOINTS and all(
+        name in known or _keypoint(end) for name, end in zip(names, plain, strict=True)
+    )
+
+
+def without_prefix(names: Sequence[str]) -> list[str]:
+    """Return names without the words that all begin with, such as `body_`, but for a side."""
+    first, last = min(names, default=""), max(names, default="")
+    n_shared = next(
+        (at for at, (a, b) in enumerate(zip(first, last, strict=False)) if a != b), 0
+    )
+    shared = PREFIX.match(first[:n_shared])
+    if shared is None or not SIDES.keys().isdisjoint(re.findall("[a-z]+", shared[0].lower())):
+        return list(names)
+    return [name[shared.end() :] for name in names]
 
 
 def _keypoints(names: Sequence[str]) -> dict[str, int]:
@@ -129,15 +157,15 @@ def _keypoints(names: Sequence[str]) -> dict[str, int]:
     return keypoints
 
 
-def _roles(names: Sequence[str]) -> set[str]:
-    """Return the roles of points, also where only those of one side are there."""
+def _roles(names: Sequence[str]) -> dict[str, str]:
+    """Return points by their roles, also where only those of one side are there."""
     mirrored = [
         name[:-1] + OTHER_SIDE[name[-1]]
         for name in names
         if name[-1:] in OTHER_SIDE and not name[-2:-1].isalnum()
     ]
     roles = roles_by_name([*dict.fromkeys([*names, *mirrored])])
-    return {role for role, name in roles.items() if name in names}
+    return {role: name for role, name in roles.items() if name in names}
 
 
 def _keypoint(name: str) -> str:

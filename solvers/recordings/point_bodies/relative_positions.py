@@ -1,14 +1,24 @@
 """Find positions that are not in the room: relative to parent bones, or to the hips."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ...arrays import Array
 from ...errors import InvalidFileError
+from ...motion import roles_by_name
 from ...progress import Progress, Remark
 
+NAMES_OF_ROOT = (
+    "transworld", "roottranslation", "roottrans", "roottransform", "rootposition", "rootpos",
+    "bodytransform", "bodyposition", "bodytranslation", "anchortransform", "hipsposition",
+    "hipposition", "pelvisposition", "globaltranslation", "globaltrans", "transl", "trans",
+    "translation", "smpltrans", "predtrans", "predcamtfull", "camtfull", "predcamt", "camt",
+    "camtrans", "root", "transform", "position",
+)  # fmt: skip
+"""Names of the position of a body whose joints are relative to it, the clear ones first."""
 MAX_SWAY_FRACTION = 0.01
 """Range of the hips relative to the size of the body, a ratio, up to which they are kept in
 place. Chosen by hand: hips of who stands still sway by 2 cm, which is above it."""
@@ -47,6 +57,47 @@ def refuse_parent_positions(path: Path | str, points: Array, roles: Mapping[str,
         )
 
 
+def name_of_root(name: str) -> str:
+    """Return a name as `NAMES_OF_ROOT` spells it."""
+    return re.sub(r"[\W_]", "", name).lower()
+
+
+def transforms_at(positions: Array) -> Array:
+    """Return the transforms, shape (n_frames, 4, 4), of bodies at positions, (n_frames, 3)."""
+    transforms = np.tile(np.eye(4), (len(positions), 1, 1))
+    transforms[:, :3, 3] = positions
+    return transforms
+
+
+def key_of_root(names: Iterable[str]) -> str | None:
+    """Return which of these names is that of the position of a body; None without one."""
+    plain = {name_of_root(name): name for name in names}
+    return next((plain[name] for name in NAMES_OF_ROOT if name in plain), None)
+
+
+def in_room(names: Sequence[str], points: Array, roots: Array | None) -> Array:
+    """Return joints where the body is, if they are relative to its position.
+
+    They are if the hips stay at one place, and that is not the position of the body.
+
+    Parameters
+    ----------
+    names : names of joints with humanoid roles
+    points : shape (n_frames, n_joints, 3), in the unit and axes of the file
+    roots : shape (n_frames, 4, 4), or None
+        The transform of the body in each frame, NaN where it is not stated.
+    """
+    roles = {role: list(names).index(name) for role, name in roles_by_name(names).items()}
+    if roots is None or not {"leftUpperLeg", "rightUpperLeg"} <= roles.keys():
+        return points
+    hips, size, are_still = _hips(points, roles)
+    distance = np.linalg.norm(hips - roots[:, :3, 3], axis=1)
+    known = distance[np.isfinite(distance)]
+    if not are_still or not len(known) or np.median(known) <= MAX_CENTER_FRACTION * size:
+        return points
+    return np.asarray(points @ roots[:, :3, :3].swapaxes(1, 2) + roots[:, None, :3, 3])
+
+
 def report_still_hips(points: Array, roles: Mapping[str, int], progress: Progress) -> None:
     """Say so if feet step while the hips stay, as in positions relative to the hips.
 
@@ -56,15 +107,8 @@ def report_still_hips(points: Array, roles: Mapping[str, int], progress: Progres
     roles : joints by humanoid role, both upper legs and feet among them
     progress : Progress
     """
-    hips = points[:, [roles["leftUpperLeg"], roles["rightUpperLeg"]]].mean(axis=1)
-    middles = [hips] if "hips" not in roles else [hips, points[:, roles["hips"]]]
-    extents = np.fmax.reduce(points, axis=1) - np.fmin.reduce(points, axis=1)
-    known = extents[np.isfinite(extents).all(axis=1)]
-    size = float(np.median(known, axis=0).max()) if len(known) else 0.0
-    sway = min(map(_range, middles))
+    _, size, are_still = _hips(points, roles)
     step = max(_range(points[:, roles[role]]) for role in ("leftFoot", "rightFoot"))
-    away = float(np.nan_to_num(np.linalg.norm(hips, axis=1)).max())
-    are_still = sway <= MAX_SWAY_FRACTION * size or away <= MAX_CENTER_FRACTION * size
     if are_still and step > MIN_STEP_FRACTION * size > 0.0:
         progress(
             0.9,
@@ -73,6 +117,19 @@ def report_still_hips(points: Array, roles: Mapping[str, int], progress: Progres
                 " positions in the room, if your program has them"
             ),
         )
+
+
+def _hips(points: Array, roles: Mapping[str, int]) -> tuple[Array, float, bool]:
+    """Return the path of the hips, the size of the body, and whether the hips stay."""
+    hips = points[:, [roles["leftUpperLeg"], roles["rightUpperLeg"]]].mean(axis=1)
+    middles = [hips] if "hips" not in roles else [hips, points[:, roles["hips"]]]
+    extents = np.fmax.reduce(points, axis=1) - np.fmin.reduce(points, axis=1)
+    known = extents[np.isfinite(extents).all(axis=1)]
+    size = float(np.median(known, axis=0).max()) if len(known) else 0.0
+    sway = min(map(_range, middles))
+    away = float(np.nan_to_num(np.linalg.norm(hips, axis=1)).max())
+    are_still = sway <= MAX_SWAY_FRACTION * size or away <= MAX_CENTER_FRACTION * size
+    return hips, size, are_still
 
 
 def _range(path: Array) -> float:

@@ -6,12 +6,13 @@ from .kimodo import is_kimodo, open_kimodo
 from .motion_x import is_motion_x, read_motion_x
 from .mvnx import is_mvnx, open_mvnx
 from .segment_recordings import recording_from_segments
-from .smpl import is_smpl, open_smpl
+from .smpl import is_frame_smpl, is_smpl, open_smpl
 from .smpl_json import is_frame_smpl_json, is_smpl_json, open_smpl_json
 from .vrma import is_vrma, read_vrma
 
 __all__ = [
     "find_skeleton",
+    "is_frame_smpl",
     "is_frame_smpl_json",
     "is_kimodo",
     "is_motion_x",

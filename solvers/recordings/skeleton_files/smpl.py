@@ -1,11 +1,18 @@
 """Read the parameter files of SMPL bodies: AMASS, SMPL-X and what video models write."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
+from ...arrays import Array
 from ...motion import Motion
 from ...motion.humanoid import ADULT_STATURE_M
-from ...progress import Progress, unwatched
-from ..containers import archive_names, read_archive_members
+from ...progress import Progress, Remark, unwatched
+from ..containers import (
+    archive_names,
+    describe_frame_files,
+    frame_files,
+    read_archive_members,
+)
 from ..conventions import Bodies
 from .kimodo import open_kimodo
 from .smpl_bodies import (
@@ -16,9 +23,10 @@ from .smpl_bodies import (
     ROOT,
     ROTATIONS,
     bodies_of_parameters,
+    joined_frames,
     people_of_parameters,
     plain_name,
-    spelled,
+    rows_of_frames,
 )
 
 
@@ -50,7 +58,8 @@ def open_smpl(
     needed: they are those of an adult, scaled to `height`. The height above the floor depends
     on them too, so the feet are put on the floor. Which way is up is estimated from the body
     (`estimate_up_axis`): AMASS has Z up, most video models Y. Poses with an axis too many are
-    those of several people (`split_people`).
+    those of several people (`split_people`). A file of one frame stands for all files of its
+    take (`frame_files`).
 
     Parameters
     ----------
@@ -82,10 +91,30 @@ def open_smpl(
     .. [1] Mahmood, Ghorbani, Troje, Pons-Moll, Black (2019). AMASS: Archive of motion capture
        as surface shapes. ICCV.
     """
-    found = read_archive_members(path, (*spelled(READ_ARRAYS), "posed_joints"))
-    arrays = {plain_name(name): array for name, array in found.items()}
+    arrays = _arrays(path)
     if "posed_joints" in arrays and not {*ROTATIONS, *ROOT} & arrays.keys():
         return open_kimodo(path, scale=scale, progress=progress)
+    files = frame_files(path).frames() if _has_one_frame(arrays) else []
+    if len(files) > 1:
+        frames = [{} if file is None else {"1": _arrays(file)} for file in files]
+        arrays = joined_frames(path, "1", frames)
+        progress(0.5, Remark(describe_frame_files(len(files))))
     people = enumerate(people_of_parameters(arrays), start=1)
     named = {str(number): person for number, person in people}
     return bodies_of_parameters(path, named, scale=scale, height=height, on_floor=on_floor)
+
+
+def is_frame_smpl(path: Path | str) -> bool:
+    """Return whether a file holds the pose of one frame."""
+    return _has_one_frame(_arrays(path))
+
+
+def _arrays(path: Path | str) -> dict[str, Array]:
+    return rows_of_frames(
+        read_archive_members(path, (*READ_ARRAYS, "posed_joints"), plain_name)
+    )
+
+
+def _has_one_frame(arrays: Mapping[str, Array]) -> bool:
+    lengths = [len(arrays[name]) for name in POSES if name in arrays and arrays[name].ndim]
+    return max(lengths, default=0) == 1

@@ -13,31 +13,33 @@ from ...motion import Motion
 from ...motion.humanoid import ADULT_STATURE_M
 from ...progress import Progress, Remark, unwatched
 from ..containers import JsonMember, describe_frame_files, json_content, json_frame_files
-from ..conventions import Bodies, rate_of_numbers, step_between
+from ..conventions import FRAME_KEY, MAX_PEOPLE, Bodies, rate_of_numbers, step_between
 from .smpl_bodies import (
-    BODY_SCALES,
+    CONSTANT,
     N_BODY_POSE,
     N_NUMBERS,
     POSES,
     RATES,
     READ_ARRAYS,
-    SCALES,
     bodies_of_parameters,
+    joined_frames,
     people_of_parameters,
+    plain_name,
+    rows_of_frames,
 )
 
-IDENTITIES = ("id", "track_id", "person_id", "personID")
+IDENTITIES = ("id", "track_id", "person_id")
 BODY = (*POSES, "pose")
 OF_SMPL = (*{*POSES} - {"poses", "body_pose"},)
 """Names that nothing else has."""
 NEXT_TO_POSES = ("Rh", "Th", "betas", "shapes", "trans", "transl", "smpl_trans")
-LIST = rb'"(?:%s)"\s*:\s*\['
+LIST = rb'(?i)"(?:%s)"\s*:\s*\['
 OWN_NAME, POSE_NAME, OTHER_NAME = (
-    re.compile(LIST % "|".join(names).encode())
+    re.compile(LIST % "|".join(names).replace("_", "_?").encode())
     for names in (OF_SMPL, ("poses", "pose"), NEXT_TO_POSES)
 )
 LONG_ROW = re.compile(
-    rb'"poses"\s*:\s*(?:\[\s*){1,3}((?:\s*-?\d[^,\[\]]*,){62}[^\[\]]*)(?P<end>\]|\Z)'
+    rb'(?i)"poses"\s*:\s*(?:\[\s*){1,3}((?:\s*-?\d[^,\[\]]*,){62}[^\[\]]*)(?P<end>\]|\Z)'
 )
 """A pose of 63 and more numbers, which may be longer than the first bytes of a file."""
 IN_WORLD = re.compile(r"(?i)global|world")
@@ -46,12 +48,11 @@ NUMBERED = re.compile(r"\D*\d+")
 """Key of one of several people."""
 MAX_DEPTH = 4
 """Levels of members in which a body is looked for. It guards the depth of the recursion."""
-NUMBERS = ("frame", "frame_id", "frameId", "frame_index", "frameIndex", "frame_number")
+NUMBERS = ("frame", "frame_id", "frame_index", "frame_number")
 """Members with the number of a frame."""
 MAX_SPREAD = 10
 """Frames per one of the file, up to which the others are missing. It bounds the memory."""
-CONSTANT = frozenset((*RATES, *SCALES, *BODY_SCALES))
-"""Names of what a take has once."""
+KNOWN_NAMES = frozenset((*READ_ARRAYS, *IDENTITIES, *NUMBERS))
 
 
 def is_smpl_json(head: bytes) -> bool:
@@ -111,7 +112,7 @@ def open_smpl_json(
         )
     people = dict[str, dict[str, Array]]()
     for name in dict.fromkeys(name for frame in frames for name in frame):
-        split = people_of_parameters(_joined(path, name, frames))
+        split = people_of_parameters(joined_frames(path, name, frames))
         for number, each in enumerate(split, start=1):
             people[f"{name} {number}" if len(split) > 1 else name] = each
     return bodies_of_parameters(path, people, scale=scale, height=height, on_floor=on_floor)
@@ -125,19 +126,33 @@ def _frames(members: Iterable[JsonMember], progress: Progress) -> list[_Frame]:
     """Return the frames of a take, which may be one with the arrays of all."""
     frames = []
     for member in members:
-        rows, common = _rows(member.value, progress)
+        rows, common = _rows(_with_plain_names(member.value), progress)
         for row in rows:
             people = _bodies(row, MAX_DEPTH)
             frames.append({name: {**common, **_arrays(body)} for name, body in people})
     return frames
 
 
+def _with_plain_names(value: Any) -> Any:
+    """Return members by the names that are known, however programs spell these."""
+    if isinstance(value, Mapping):
+        plain = {name: plain_name(name) for name in value}
+        return {
+            plain[name] if plain[name] in KNOWN_NAMES else name: _with_plain_names(each)
+            for name, each in value.items()
+        }
+    if isinstance(value, list) and any(isinstance(each, Mapping) for each in value):
+        return [_with_plain_names(each) for each in value]
+    return value
+
+
 def _rows(value: Any, progress: Progress) -> tuple[list[Any], dict[str, Array]]:
     """Return the frames that a value lists, otherwise itself, and what it states of all."""
+    value = _as_list(value)
     if isinstance(value, list) and not any(map(_has_identity, value)):
         return _by_number(value, _numbers_of(value)), {}
     if isinstance(value, Mapping) and not _is_body(value):
-        listed = [each for each in value.values() if _is_list_of_frames(each)]
+        listed = [each for each in map(_as_list, value.values()) if _is_list_of_frames(each)]
         if len(listed) == 1:
             stated, numbers = _arrays(value), _numbers_of(listed[0])
             common = {name: stated[name] for name in stated if name in CONSTANT}
@@ -146,6 +161,25 @@ def _rows(value: Any, progress: Progress) -> tuple[list[Any], dict[str, Array]]:
                 common[name] = np.array(rate_of_numbers(sorted(numbers), rate, progress))
             return _by_number(listed[0], numbers), common
     return [value], {}
+
+
+def _as_list(value: Any) -> Any:
+    """Return frames that are keyed by their numbers as a list; other values as they are.
+
+    There are more of them than people.
+    """
+    if not isinstance(value, Mapping) or len(value) <= MAX_PEOPLE:
+        return value
+    keys = [FRAME_KEY.fullmatch(key) for key in value]
+    if not all(keys):
+        return value
+    numbers = [float(key[1]) for key in keys if key]
+    if not all(number.is_integer() for number in numbers):
+        return [row for _, row in sorted(zip(numbers, value.values(), strict=True))]
+    return [
+        {**row, NUMBERS[0]: int(number)} if isinstance(row, Mapping) else row
+        for number, row in zip(numbers, value.values(), strict=True)
+    ]
 
 
 def _numbers_of(rows: list[Any]) -> list[int]:
@@ -213,17 +247,16 @@ def _identity(body: Mapping[str, Any], default: str) -> str:
 
 
 def _arrays(body: Mapping[str, Any]) -> dict[str, Array]:
-    """Return the arrays of numbers among members; a row of numbers is one frame."""
+    """Return the arrays of numbers among members; a row of numbers is one frame or all."""
     arrays = dict[str, Array]()
     for name in READ_ARRAYS:
         try:
             array = np.array(body.get(name), dtype=np.float64)
         except (ValueError, TypeError, OverflowError):
             continue
-        is_row = array.ndim == 1 and name not in CONSTANT
         if array.size and (array.ndim or (name in CONSTANT and name in body)):
-            arrays[name] = array[None] if is_row else array
-    return arrays
+            arrays[name] = array
+    return rows_of_frames(arrays)
 
 
 def _n_frames(frames: list[_Frame]) -> int:
@@ -237,24 +270,3 @@ def _n_frames(frames: list[_Frame]) -> int:
         if name in BODY
     )
     return max(lengths, default=0)
-
-
-def _joined(path: Path | str, name: str, frames: list[_Frame]) -> dict[str, Array]:
-    """Return the arrays of a person in all frames, NaN where the person or one is missing."""
-    if len(frames) == 1:
-        return frames[0][name]
-    own = [frame.get(name) for frame in frames]
-    first = dict[str, Array]()
-    for arrays in own:
-        first = {**(arrays or {}), **first}
-    joined = {key: first[key] for key in first if key in CONSTANT}
-    for key in first.keys() - CONSTANT:
-        missing = np.full_like(first[key], np.nan)
-        rows = [missing if arrays is None else arrays.get(key, missing) for arrays in own]
-        rows = [row if len(row) == 1 else row[None] for row in rows]
-        if len({row.shape for row in rows}) > 1:
-            raise InvalidFileError(
-                f"{path}: the number of parameters of body {name} changes. Export it again."
-            )
-        joined[key] = np.concatenate(rows)
-    return joined

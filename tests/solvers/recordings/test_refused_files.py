@@ -111,6 +111,21 @@ def object_array() -> bytes:
             npz(pred_joint_coords=np.ones((3, 127, 3)), pred_cam_t=np.ones((3, 3))),
             "NumPy archive without joints of a known name .*pred_cam_t",
         ),
+        (b"PAR1" + bytes(99), "Save it as CSV where it was made"),
+        (b"\xcd\xf3\x00\x01" + bytes(99), "CDF file.*NumPy array"),
+        (
+            '{"name": "Walk", "tracks": [{"name": "Hips.position", "times": [0]}]}',
+            "animation of three.js",
+        ),
+        (
+            '{"animations": [{"tracks": [{"type": "quaternion", "name": "a.quaternion",'
+            ' "times": [0, 1]}]}]}',
+            "animation of three.js",
+        ),
+        (
+            npz(keypoints=np.random.default_rng(0).uniform(0.2, 0.9, (20, 17, 3))),
+            "holds 2D points of images",
+        ),
         ("a note on the take", "unknown format. Export it as BVH, FBX, GLB"),
         ("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "git lfs pull"),
     ],

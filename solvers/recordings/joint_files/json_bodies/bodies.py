@@ -30,6 +30,8 @@ class BodyJoints(NamedTuple):
     """Shape (n_joints,), NaN where the file has none."""
     names: tuple[str, ...] = ()
     """Of the joints, where they may be others in each frame; otherwise empty."""
+    root: Array | None = None
+    """Transform of the body, shape (4, 4), which joints may be relative to."""
 
 
 class BodiesFrame(NamedTuple):
@@ -124,6 +126,15 @@ def stacked(body: str, frames: list[BodiesFrame]) -> tuple[Array, Array | None]:
     positions = np.stack([(each or gap).positions for each in found])
     confidence = np.stack([(each or gap).confidence for each in found])
     return positions, as_fractions(confidence, positions)
+
+
+def roots_of(body: str, frames: list[BodiesFrame]) -> Array | None:
+    """Return the transforms of a body, (n_frames, 4, 4), NaN where missing, or None."""
+    found = [frame.bodies[body].root if body in frame.bodies else None for frame in frames]
+    if all(root is None for root in found):
+        return None
+    missing = np.full((4, 4), np.nan)
+    return np.asarray(np.stack([missing if root is None else root for root in found]))
 
 
 def name_of_body(body: Mapping[str, Any], keys: tuple[str, ...], count: int) -> str:

@@ -12,13 +12,14 @@ from ...conventions import DEFAULT_FRAME_RATE
 from ...point_bodies import (
     body_of_named_points,
     body_of_points,
+    in_room,
     landmark_columns,
     read_body,
     recording_from_landmarks,
     refuse_pictures,
     stand_body,
 )
-from .bodies import BodiesFrame, BodyJoints, stacked
+from .bodies import BodiesFrame, roots_of, stacked
 
 MAX_SPREAD = 20
 """Columns of named joints in all frames for each point in them, a ratio. It bounds the memory
@@ -54,7 +55,7 @@ def in_columns(
             positions = np.full((len(columns), 3), np.nan)
             confidence = np.full(len(columns), np.nan)
             positions[at], confidence[at] = joints.positions, joints.confidence
-            joints = BodyJoints(positions, confidence)
+            joints = joints._replace(positions=positions, confidence=confidence, names=())
         placed.append(frame._replace(bodies={} if joints is None else {body: joints}))
     return tuple(columns), placed
 
@@ -101,9 +102,12 @@ def recording_of_body(
         marks = np.dstack([points, visibility])[:, landmarks]
         return recording_from_landmarks(path, marks, times, rate, scale, progress)
     found = body_of_named_points(names, points) if is_named else None
+    roots = roots_of(body, frames)
     if found is None:
         unnamed = body_of_points(path, points)
         if unnamed is not None:
+            placed = in_room(unnamed.names, unnamed.positions, roots)
+            unnamed = unnamed._replace(positions=placed)
             return read_body(path, unnamed, scale, progress, times, rate)
         if is_named:
             raise InvalidFileError(
@@ -120,7 +124,7 @@ def recording_of_body(
     return stand_body(
         path,
         found.names,
-        found.positions,
+        in_room(found.names, found.positions, roots),
         times=times,
         rate=rate or DEFAULT_FRAME_RATE,
         scale=scale,

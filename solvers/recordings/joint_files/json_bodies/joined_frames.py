@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from ....errors import InvalidFileError
 from ...containers import JsonMember
-from ...conventions import step_between
+from ...conventions import MAX_PEOPLE, step_between
 from ...point_bodies import time_name
 from .bodies import BodiesFrame, BodyJoints
 from .people import PART, PEOPLE_KEYS, POINT_KEYS, has_word
@@ -17,9 +17,6 @@ from .stamps import NUMBER_KEYS
 
 MAX_MISSING_FRAMES = 100_000
 """Missing numbers, frames, that a file may have. It bounds the memory of damaged files."""
-MAX_PEOPLE = 16
-"""Number of people without names or identities in a frame, above which they are frames. It
-guards frames that are called `body_0000` and so on; a stream has as many people."""
 WITHOUT_IDENTITY = frozenset(("0", "untracked 0"))
 """What people who are alone in a row are called if it does not say who they are."""
 NAME_OF_PERSON = re.compile(

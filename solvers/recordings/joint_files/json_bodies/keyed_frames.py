@@ -7,14 +7,18 @@ from typing import Any
 
 from ....errors import InvalidFileError
 from ...containers import JsonMember
+from ...conventions import FRAME_KEY
+from ...point_bodies import key_of_root
 from .bodies import name_of_body
 from .joined_frames import missing_before
 from .people import IDENTITY_KEYS, PEOPLE_KEYS, POINT_KEYS, is_no_position, is_position
 from .stamps import RATE_KEYS
-from .takes import FRAME_KEY, Take, has_people, keyed_take, numbered_take, take_of, with_rate
+from .takes import Take, has_people, keyed_take, numbered_take, take_of, with_rate
 
 NAMES = ("name", "Name")
 TIME = "time"
+ROOT = "path of the body"
+"""Key of the positions of the body in all frames, whatever the file calls them."""
 
 
 def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[JsonMember]:
@@ -55,12 +59,20 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
             yield second
         yield from rest
     groups.append(("", _people_of(numbered, path) or {"": numbered_take(numbered)}))
-    yield from _by_number("", keyed_take(positions, path), 0.0, path)
+    yield from _of_positions(positions, path)
     takes = _with_own_names(groups, yielded)
     yield from _rate_of(takes.values(), path)
     start = min((number for take in takes.values() for number in take), default=0.0)
     for name, take in takes.items():
         yield from _by_number(name, take, start, path)
+
+
+def _of_positions(positions: Mapping[str, list[Any]], path: Path | str) -> Iterator[JsonMember]:
+    """Yield the frames of joints by their positions, or else where the body is in them."""
+    take = keyed_take(positions, path)
+    yield from _by_number("", take, 0.0, path)
+    if not take and (key := key_of_root(positions)):
+        yield JsonMember(ROOT, positions[key], 1.0)
 
 
 def _with_own_names(

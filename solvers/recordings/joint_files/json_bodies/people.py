@@ -1,11 +1,12 @@
 """Find the people in a frame of JSON, and their joints, however these are nested."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
 from typing import Any, NamedTuple
 
-from ...point_bodies import is_quantity
+from ....arrays import Array
+from ...point_bodies import is_quantity, key_of_root
 from .bodies import name_of_body
 from .points import (
     LANDMARK_KEYS,
@@ -15,13 +16,14 @@ from .points import (
     members,
     points_of,
     position_of,
+    transform_of,
     width_of,
 )
 
 POINT_KEYS = (*LANDMARK_KEYS, *either_case(
-    "keypoints3d", "keypoints_3d", "joints3d", "joints_3d", "joints3D",
+    "keypoints3d", "keypoints_3d", "joints3d", "joints_3d", "joints3D", "3d_joints",
     "pose_keypoints_3d", "pose3d", "pose_3d", "poses_3d", "positions", "joints", "keypoints",
-    "bones", "points", "xyz",
+    "bones", "points", "xyz", "segments",
 ))  # fmt: skip
 """Members with the joints of a person."""
 IN_WORLD = re.compile(
@@ -32,7 +34,7 @@ IN_WORLD = re.compile(
 """Key of the joints of a person in the world, next to which others may be in a picture."""
 PEOPLE_KEYS = either_case("instances", "people", "persons", "bodies", "skeletons",
                           "annots", "actors", "characters", "humans", "subjects",
-                          "players", "users")  # fmt: skip
+                          "players", "users", "detections", "outputs")  # fmt: skip
 """Members with the people of a frame."""
 IDENTITY_KEYS = either_case("id", "track_id", "person_id", "body_id", "personID",
                             "tracking_id", "trackingId")  # fmt: skip
@@ -76,8 +78,9 @@ JOINT = re.compile(
 NUMBERED = re.compile(rb"\s*\{\s*\"\w*\d\"\s*:\s*(\[\s*){2,}[-\d]")
 """The first frame of those that are keyed by their number."""
 LISTED_POINT = re.compile(
-    rb"\{(?:[^{}\[\]]{0,99}\"\w{1,99}\"\s{0,9}:\s{0,9}\{)?[^{}\[\]]{0,199}\"[xX]\"\s*:\s*\"?-?\d"
-    rb"[^{}\[\],]{0,99},\s{0,99}\"[yY]\"[^{}\[\],]{0,99},\s{0,99}\"[zZ]\"\s*:\s*\"?-?\d"
+    rb"\{(?:[^{}\[\]]{0,99}\"\w{1,99}\"\s{0,9}:\s{0,9}\{)?[^{}\[\]]{0,199}"
+    rb"\"(?:p|pos)?[xX]\"\s*:\s*\"?-?\d[^{}\[\],]{0,99},\s{0,99}"
+    rb"\"(?:p|pos)?[yY]\"[^{}\[\],]{0,99},\s{0,99}\"(?:p|pos)?[zZ]\"\s*:\s*\"?-?\d"
 )
 """An object with x, y and z, or with one as its member."""
 ROW_OF_POINTS = re.compile(
@@ -85,6 +88,10 @@ ROW_OF_POINTS = re.compile(
     rb"(?:\s*\[(?:\s*-?\d[^\s,\[\]]*\s*[,\]]){3}\s*,){7}"
 )
 """Eight points of a member whose key is that of a pose, whatever it is called."""
+ROW_OF_NUMBERS = re.compile(
+    rb"\"\w*(?i:3d|joints?|kpts?|keypoints?)\d*\"\s*:\s*\[(?:\s*-?\d[^\s,\[\]]*\s*,){23}"
+)
+"""The same points as numbers in a row."""
 ONLY_EMPTY = re.compile(rb"\s*\[[\s\[\],nul]{1000,}")
 """The begin of a list whose first 1000 bytes are empty frames. Chosen by hand: it guards short
 JSON of something else."""
@@ -97,6 +104,8 @@ class JsonPerson(NamedTuple):
     points: Points
     is_identified: bool = True
     """Whether the file says who it is; otherwise it is a place in a list."""
+    root: Array | None = None
+    """Transform of the person, shape (4, 4), which joints may be relative to."""
 
 
 def is_frames_json(head: bytes) -> bool:
@@ -106,7 +115,8 @@ def is_frames_json(head: bytes) -> bool:
     if head.lstrip()[:1] not in {b"{", b"["}:
         return False
     n_points = sum(1 for _ in islice(LISTED_POINT.finditer(head), MIN_JOINTS))
-    is_listed = n_points == MIN_JOINTS or ROW_OF_POINTS.search(head) is not None
+    rows = (ROW_OF_POINTS, ROW_OF_NUMBERS)
+    is_listed = n_points == MIN_JOINTS or any(row.search(head) for row in rows)
     return is_listed or JOINT.search(head) is not None
 
 
@@ -118,9 +128,31 @@ def people_of_frame(frame: Any, key: str = "") -> Iterator[JsonPerson]:
         people = (found for found in members(frame, PEOPLE_KEYS) if isinstance(found, list))
         listed = next(people, None)
         if listed is None:
-            yield from _person(frame, name_of_body(frame, IDENTITY_KEYS, 0))
+            alone = [*_person(frame, name_of_body(frame, IDENTITY_KEYS, 0))]
+            yield from alone or _people_of_scene(frame)
         else:
-            yield from _listed_people(listed, key, "0")
+            found = [*_listed_people(listed, key, "0")]
+            yield from _with_root(found, frame) if len(found) == 1 else found
+
+
+def _with_root(people: Iterable[JsonPerson], body: Mapping[str, Any]) -> Iterator[JsonPerson]:
+    """Yield people with the transform that is stated here, if they have none of their own."""
+    root = _root_of(body)
+    for each in people:
+        yield each if each.root is not None else each._replace(root=root)
+
+
+def _people_of_scene(frame: Mapping[str, Any]) -> Iterator[JsonPerson]:
+    """Yield the people whom a member of a frame lists, such as its scene."""
+    for inner in frame.values():
+        if isinstance(inner, Mapping) and not inner.keys().isdisjoint(PEOPLE_KEYS):
+            yield from people_of_frame(inner)
+
+
+def _root_of(body: Mapping[str, Any]) -> Array | None:
+    """Return the transform of a person next to the joints; None if it is not stated."""
+    key = key_of_root(map(str, body))
+    return None if key is None else transform_of(body.get(key))
 
 
 def _listed_people(values: list[Any], key: str, identity: str) -> Iterator[JsonPerson]:
@@ -144,11 +176,14 @@ def _person(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
     found = _key_of_points(body)
     joints = body.get(found)
     if points := points_of(joints, found):
-        yield JsonPerson(identity, points)
+        yield JsonPerson(identity, points, root=_root_of(body))
     elif isinstance(joints, list):
         is_alone = len(joints) == 1 and isinstance(joints[0], list)
-        yield from _listed_people(joints[0] if is_alone else joints, found, identity)
-    elif not joints:
+        people = _listed_people(joints[0] if is_alone else joints, found, identity)
+        yield from _with_root(people, body)
+    elif isinstance(joints, Mapping) and joints:
+        yield from _person(joints, identity)
+    else:
         yield from _keyed_people(body, identity)
 
 

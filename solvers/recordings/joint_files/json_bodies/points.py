@@ -27,7 +27,8 @@ NAME_KEYS = either_case("name", "joint", "joint_name", "jointName", "bone", "bon
                         "jointType", "id")  # fmt: skip
 """Members with the name of a joint, where joints are objects in a list."""
 POSITION_KEYS = either_case("worldPosition", "world_position", "globalPosition",
-                            "global_position", "position", "pos", "translation", "location",
+                            "global_position", "worldTransform", "modelTransform",
+                            "model_transform", "position", "pos", "translation", "location",
                             "coordinates", "coords", "p", "transform", "matrix")  # fmt: skip
 """Members with the position of a joint, those of the room first, or with its matrix."""
 INNER_KEYS = ("xyz", "v", "value")
@@ -37,6 +38,8 @@ MAX_CONFIDENCE = 100.0
 """Confidence in percent, by definition; larger numbers are something else."""
 MIN_JOINTS = 8
 """Number of joints of a person. It guards JSON of something else."""
+LAST_ROW = (0.0, 0.0, 0.0, 1.0)
+"""Of a transform, by definition."""
 MAX_ROUNDING = 1e-3
 """Difference between the length of a unit quaternion and 1, as a ratio. It bounds the rounding
 to three decimals, by which quaternions differ from positions."""
@@ -107,13 +110,23 @@ def position_of(joint: Any) -> Any:
             inner = _nested(inner, INNER_KEYS)
         if isinstance(inner, Mapping):
             lower = {str(key).lower(): value for key, value in inner.items()}
-            axes = [f"{each}{axis}" for each in ("", "camera") for axis in "xyz"]
+            axes = [f"{each}{axis}" for each in ("", "p", "pos", "camera") for axis in "xyz"]
             found = [lower[axis] for axis in axes if axis in lower]
             return found[:3] if len(found) >= 3 else inner
         joint = inner
-    if isinstance(joint, list) and len(joint) in {4, 16}:
-        return _translation(joint)
-    return joint
+    matrix = _matrix(joint)
+    return joint if matrix is None else matrix[:3, 3].tolist()
+
+
+def transform_of(value: Any) -> Array | None:
+    """Return a matrix of 4 x 4, or that of a position; None for other values."""
+    inner = _nested(value, POSITION_KEYS) if isinstance(value, Mapping) else value
+    matrix = _matrix(inner)
+    position = position_of(value)
+    if matrix is None and width_of(position) == 3:
+        matrix = np.eye(4)
+        matrix[:3, 3] = [np.nan if each is None else each for each in position]
+    return matrix
 
 
 def _nested(values: Mapping[str, Any], keys: tuple[str, ...]) -> Any:
@@ -159,17 +172,16 @@ def _names_of(joints: list[Mapping[str, Any]]) -> tuple[str, ...]:
     return ()
 
 
-def _translation(values: list[Any]) -> Any:
-    """Return the translation of a matrix, by rows or columns; other values as they are."""
+def _matrix(values: Any) -> Array | None:
+    """Return a transform of 4 x 4 numbers, by rows or columns; None for other values."""
+    if not isinstance(values, list) or len(values) not in {4, 16}:
+        return None
     try:
         matrix = np.array(values, dtype=np.float64).reshape(4, 4)
     except (ValueError, TypeError, OverflowError):
-        return values
-    if np.array_equal(matrix[3], (0.0, 0.0, 0.0, 1.0)):
-        return matrix[:3, 3].tolist()
-    if np.array_equal(matrix[:, 3], (0.0, 0.0, 0.0, 1.0)):
-        return matrix[3, :3].tolist()
-    return values
+        return None
+    by_orientation = (matrix, matrix.T)
+    return next((each for each in by_orientation if np.array_equal(each[3], LAST_ROW)), None)
 
 
 def _array(values: list[Any]) -> Array | None:

@@ -22,7 +22,7 @@ from ...containers import (
     json_frame_files,
     json_members,
 )
-from ...conventions import Bodies, check_scale, rate_of_numbers
+from ...conventions import MAX_PEOPLE, Bodies, check_scale, rate_of_numbers
 from ...point_bodies import (
     read_time,
     second_of_times,
@@ -31,15 +31,14 @@ from ...point_bodies import (
 from .bodies import BodiesFrame, BodyJoints, open_frames
 from .body_recording import in_columns, recording_of_body
 from .joined_frames import (
-    MAX_PEOPLE,
     NumberedFrame,
     frozen_clocks,
     joined_frames,
     without_header,
 )
-from .keyed_frames import json_by_frame
-from .people import people_of_frame
-from .points import MIN_JOINTS
+from .keyed_frames import ROOT, json_by_frame
+from .people import JsonPerson, people_of_frame
+from .points import MIN_JOINTS, transform_of
 from .stamps import NUMBER_KEYS, StatedRate, is_number, stamps_of_frame, stated_rates
 
 LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
@@ -162,32 +161,39 @@ def _read_content(
     second: float | None = None
     names: list[str] = []
     times: list[float] = []
+    roots: list[Array | None] = []
     n_several = 0
     for member in json_by_frame(without_header(members), path):
         value = member.value
         if member.key in LIST_OF_NAMES and isinstance(value, str):
             names.append(value)
-        is_object = isinstance(value, dict)
-        if not is_object and (name := time_name(member.key)):
+        if not isinstance(value, dict) and (name := time_name(member.key)):
             time, second = read_time(value, name.second)
             times.append(time)
             continue
+        if member.key == ROOT:
+            roots = [transform_of(position) for position in value]
+            continue
         people = [*people_of_frame(value, member.key)]
         n_several += sum(not person.is_identified for person in people) > 1
-        found = {person.identity: BodyJoints(*person.points) for person in people}
-        stamps = stamps_of_frame(value) if is_object else {}
-        number = _number_of(value) if is_object else np.nan
         if not people:
             stated += ((member.key, rate) for rate in stated_rates({member.key: value}))
-        row = NumberedFrame(number, BodiesFrame(np.nan, found, member.done))
-        rows.append((member.key, stamps, row))
+        rows.append(_row_of(member, people))
         progress(0.8 * member.done, "Reading")
     if n_several:
         progress(0.8, _remark_of_unidentified(n_several))
     by_key, second = _by_key(rows, second, progress)
-    frames = _timed(joined_frames(by_key, path), times)
+    frames = _with_roots(_timed(joined_frames(by_key, path), times), roots)
     rate = _rate_of_frames(rows, frames, _best_rate(rows, stated), progress)
     return _Content(frames, rate, second, tuple(names))
+
+
+def _row_of(member: JsonMember, people: Iterable[JsonPerson]) -> _Row:
+    """Return the key of a member, the times that it states, and its people as a frame."""
+    value = member.value if isinstance(member.value, dict) else {}
+    found = {each.identity: BodyJoints(*each.points, root=each.root) for each in people}
+    frame = BodiesFrame(np.nan, found, member.done)
+    return member.key, stamps_of_frame(value), NumberedFrame(_number_of(value), frame)
 
 
 def _by_key(
@@ -244,6 +250,18 @@ def _timed(frames: list[BodiesFrame], times: list[float]) -> list[BodiesFrame]:
     if len(times) != len(frames) or not all(np.isnan(frame.time) for frame in frames):
         return frames
     return [frame._replace(time=time) for frame, time in zip(frames, times, strict=True)]
+
+
+def _with_roots(frames: list[BodiesFrame], roots: list[Array | None]) -> list[BodiesFrame]:
+    """Return frames with the transforms of a person who is alone, if there is one for each."""
+    if len(roots) != len(frames) or len({who for frame in frames for who in frame.bodies}) > 1:
+        return frames
+    return [
+        frame._replace(
+            bodies={who: joints._replace(root=root) for who, joints in frame.bodies.items()}
+        )
+        for frame, root in zip(frames, roots, strict=True)
+    ]
 
 
 def _number_of(frame: Mapping[str, Any]) -> float:

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...containers import NUMBER
 from ...point_bodies import read_time, time_name
 from .points import either_case, members
 
@@ -13,7 +14,7 @@ NUMBER_KEYS = either_case("frame", "frame_id", "frame_number", "frame_index", "f
 """Members with the number of a frame."""
 HEADER_KEYS = either_case("header", "meta", "metadata")
 """Members with the time of a frame, as in messages of ROS."""
-SAMPLING_KEYS = either_case("sample_rate", "sampleRate", "sampling_rate", "frequency")
+SAMPLING_KEYS = either_case("sample_rate", "sampleRate", "sampling_rate", "frequency", "rate")
 """Members with the rate, or with another one, such as that of sound."""
 RATE_KEYS = (*either_case("fps", "frame_rate", "framerate", "frameRate", "frames_per_second",
                           "framesPerSecond", "video_fps", "videoFps"), "FPS",
@@ -80,6 +81,13 @@ def is_number(value: Any) -> bool:
     return is_real and abs(value) < MAX_NUMBER
 
 
+def rate_of(value: Any) -> float:
+    """Return a rate in hertz, which may be a text; 0 for other values."""
+    if isinstance(value, str) and NUMBER.fullmatch(value.strip().encode()):
+        value = float(value.replace(",", "."))
+    return float(value) if is_number(value) else 0.0
+
+
 class StatedRate(NamedTuple):
     """Rate that a file states, in hertz; the smallest one is the best."""
 
@@ -97,7 +105,7 @@ def stated_rates(value: Any, depth: int = 0) -> Iterator[StatedRate]:
     if not isinstance(value, Mapping) or depth >= MAX_RATE_DEPTH:
         return
     for order, key in enumerate(RATE_KEYS):
-        rate = float(value[key]) if is_number(value.get(key)) else 0.0
+        rate = rate_of(value.get(key))
         is_sampling = key in SAMPLING_KEYS
         if 0.0 < rate <= (MAX_SAMPLING_HZ if is_sampling else MAX_NUMBER):
             yield StatedRate(is_sampling, depth, order, rate)

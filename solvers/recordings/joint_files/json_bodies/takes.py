@@ -1,13 +1,13 @@
 """Find the frames of one take in a value of JSON: listed, or keyed by number or by joint."""
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ....errors import InvalidFileError
 from ...containers import shown
-from ...point_bodies import has_layout
+from ...conventions import FRAME_KEY
+from ...point_bodies import has_layout, key_of_root
 from .people import (
     PEOPLE_KEYS,
     POINT_KEYS,
@@ -18,10 +18,16 @@ from .people import (
     people_of_frame,
 )
 from .points import MIN_JOINTS
-from .stamps import NUMBERS_KEYS, RATE_KEYS, START_KEYS, is_number, listed_numbers, listed_times
+from .stamps import (
+    NUMBERS_KEYS,
+    RATE_KEYS,
+    START_KEYS,
+    is_number,
+    listed_numbers,
+    listed_times,
+    rate_of,
+)
 
-FRAME_KEY = re.compile(r"(?i)\s*(?:frame|f|t)?[\s_\-]*(\d+(?:\.\d+)?)\s*")
-"""Key of a frame: its number, or its time in seconds."""
 MAX_DEPTH = 6
 """Levels of members in which frames are looked for. It guards the depth of the recursion."""
 
@@ -122,6 +128,12 @@ def _stamped(take: Take, value: Mapping[str, Any]) -> Take:
             {key: time, **as_frame(frame)}
             for time, frame in zip(value[key], frames, strict=True)
         ]
+    root = key_of_root(value)
+    if root and _path(value[root]) and len(value[root]) == len(take):
+        frames = [
+            {root: position, **as_frame(frame)}
+            for position, frame in zip(value[root], frames, strict=True)
+        ]
     is_unique = len({*numbers}) == len(take)
     stamped = Take(zip(numbers if is_unique else take, frames, strict=True))
     stamped.rate, stamped.is_timed = take.rate, take.is_timed or bool(key)
@@ -130,8 +142,8 @@ def _stamped(take: Take, value: Mapping[str, Any]) -> Take:
 
 def with_rate(takes: dict[str, Take], value: Mapping[str, Any]) -> dict[str, Take]:
     """Return takes with the rate that a value states next to them."""
-    stated = (float(value[key]) for key in RATE_KEYS if is_number(value.get(key)))
-    rate = next(stated, None)
+    stated = (rate_of(value.get(key)) for key in RATE_KEYS)
+    rate = next((rate for rate in stated if rate > 0.0), None)
     for take in takes.values():
         take.rate = rate if take.rate is None else take.rate
     return takes

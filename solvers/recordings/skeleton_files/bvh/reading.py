@@ -16,6 +16,7 @@ from ...conventions import (
     Bodies,
     UpAxisName,
     check_scale,
+    common_rate,
     conventions_of,
     observed_body,
     reinterpreted,
@@ -36,6 +37,14 @@ MIN_FRAMES_FRACTION = 0.9
 """Rows relative to the number in the header below which the file may be cut short. Chosen by
 hand: some programs count one frame more than they write. It decides a sentence of the report
 only."""
+MS_PER_S = 1000.0
+"""Milliseconds per second, by definition."""
+MIN_FRAME_MS, MAX_FRAME_MS = 4.0, 100.0
+"""Frame times in milliseconds instead of seconds, if they are no common rate. By definition
+those of 250 to 10 Hz, which is what capture software records."""
+MAX_RATE_ROUNDING = 1e-3
+"""Rounding of rates that are stated in place of frame times, hertz. By definition that of the
+common ones, to three digits."""
 MAX_BLANK_LINES = 4096
 MAX_HIERARCHY_BYTES = 1 << 24
 """Maximum length of the hierarchy, bytes."""
@@ -128,7 +137,7 @@ def _read_bodies(
     bodies = read_hierarchies(_hierarchy(reader, path), path)
     n_joints = sum(map(len, bodies))
     check_n_joints(path, n_joints)
-    stated_rate, n_announced = _frame_rate(reader)
+    stated_rate, n_announced = _frame_rate(reader, progress)
     frame_rate = stated_rate or DEFAULT_RATE_HZ
     widths = [sum(len(joint.channels) for joint in joints) for joints in bodies]
     if not sum(widths):
@@ -211,7 +220,7 @@ def _hierarchy(reader: LineReader, path: Path | str) -> bytes:
     raise InvalidFileError(f"{path} has no MOTION section: it is cut short. Export it again.")
 
 
-def _frame_rate(reader: LineReader) -> tuple[float | None, int]:
+def _frame_rate(reader: LineReader, progress: Progress) -> tuple[float | None, int]:
     """Take the lines before the first frame; return the rate in hertz, and how many follow.
 
     The rate is None where none is stated, or one that no recording has.
@@ -221,7 +230,7 @@ def _frame_rate(reader: LineReader) -> tuple[float | None, int]:
     while line := reader.peek():
         words = line[0].lower().replace(b":", b" ").split()
         if words[:2] == [b"frame", b"time"] and len(words) == 3:
-            rate = _rate_from_time(words[2].decode("ascii", "replace"))
+            rate = _stated_rate(words[2].decode("ascii", "replace"), progress)
         elif (
             words[:1] == [b"frames"] and words[1:] and words[1].isdigit() and len(words[1]) < 10
         ):
@@ -230,6 +239,21 @@ def _frame_rate(reader: LineReader) -> tuple[float | None, int]:
             break
         reader.take()
     return rate, n_frames
+
+
+def _stated_rate(word: str, progress: Progress) -> float | None:
+    """Return the rate of a frame time, in place of which may be the rate or milliseconds."""
+    rate = _rate_from_time(word)
+    time = 0.0 if rate is None else 1.0 / rate
+    common = min(COMMON_RATES, key=lambda each: abs(each - time))
+    if abs(common - time) < MAX_RATE_ROUNDING:
+        rate = float(common)
+    elif MIN_FRAME_MS <= time <= MAX_FRAME_MS:
+        rate = common_rate(MS_PER_S / time)
+    else:
+        return rate
+    progress(0.1, Remark(f"A frame time of {time:g} is interpreted as {rate:g} Hz"))
+    return rate
 
 
 def _rate_from_time(word: str) -> float | None:

@@ -17,13 +17,14 @@ from .parameters import (
     ROTATIONS,
     SCALES,
     plain_name,
-    spelled,
 )
 from .people import people_of_parameters, split_people
+from .rows import CONSTANT, joined_frames, rows_of_frames
 
 __all__ = [
     "BODY",
     "BODY_SCALES",
+    "CONSTANT",
     "NAMES",
     "N_BODY",
     "N_BODY_POSE",
@@ -38,9 +39,10 @@ __all__ = [
     "SCALES",
     "VIDEO_UP",
     "bodies_of_parameters",
+    "joined_frames",
     "people_of_parameters",
     "plain_name",
+    "rows_of_frames",
     "smpl_joints",
-    "spelled",
     "split_people",
 ]

@@ -14,7 +14,9 @@ ROTATIONS = (
     "poses", "smpl_poses", "fullpose", "smpl_pose", "pred_rotmat", "pose_world", "pose",
 )  # fmt: skip
 """Names of all rotations; of the last two, WHAM's, the first one is in the world."""
-OF_CAMERA = frozenset(("pred_rotmat", "pose", "cam_trans"))
+OF_CAMERA = frozenset((
+    "pred_rotmat", "pose", "cam_trans", "pred_cam_t_full", "cam_t_full", "pred_cam_t", "cam_t",
+))  # fmt: skip
 """Names of rotations and positions that video models give relative to the camera."""
 ROOT = ("root_orient", "global_orient")
 BODY_POSE = ("pose_body", "body_pose")
@@ -22,9 +24,9 @@ HANDS = ("pose_hand",)
 LEFT_HAND, RIGHT_HAND = ("left_hand_pose",), ("right_hand_pose",)
 POSITIONS = (
     "trans_world", "trans", "transl", "translation", "smpl_trans", "pred_trans",
-    "body_translation", "cam_trans",
+    "body_translation", "cam_trans", "pred_cam_t_full", "cam_t_full", "pred_cam_t", "cam_t",
 )  # fmt: skip
-"""Names of the position of the root; the last one is ROMP's, in the axes of the camera."""
+"""Names of the position of the root; from `cam_trans` on in the axes of the camera."""
 RATES = ("mocap_frame_rate", "mocap_framerate", "frame_rate", "framerate", "fps")
 SCALES = ("smpl_scaling",)
 BODY_SCALES = ("scale",)
@@ -132,13 +134,11 @@ def _joined_parts(arrays: Mapping[str, Array]) -> Array | None:
 
 
 def plain_name(name: str) -> str:
-    """Return a name such as `bodyPose` as `body_pose`; those of EasyMocap remain."""
+    """Return a name such as `bodyPose` or `BODY_POSE` as `body_pose`.
+
+    Those of EasyMocap remain.
+    """
     return name if name in OF_EASYMOCAP else re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
-
-
-def spelled(names: Collection[str]) -> list[str]:
-    """Return names, also as programs in JavaScript and Meshcapade's .smpl write them."""
-    return [*names, *(re.sub(r"_([a-z])", lambda m: m[1].upper(), name) for name in names)]
 
 
 def member(arrays: Mapping[str, Array], names: Collection[str]) -> Array | None:

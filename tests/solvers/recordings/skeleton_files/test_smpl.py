@@ -131,7 +131,7 @@ def test_scaled_positions_of_aist(tmp_path):
         {"poses": np.zeros((F, 10)), "trans": np.zeros((F, 3))},
         {"poses": np.zeros((F, 66)), "trans": np.zeros((F - 1, 3))},
         {"poses": np.zeros((0, 66)), "trans": np.zeros((0, 3))},
-        {"poses": np.zeros(66)},
+        {"poses": np.zeros(67)},
         {"poses": np.tile(2.0 * np.eye(3), (F, 24, 1, 1)), "trans": np.zeros((F, 3))},
         {"poses": np.zeros((F, 144)), "trans": np.zeros((F, 3))},
         {"poses": np.zeros((2, F, 72)), "trans": np.zeros((3, F, 3))},

@@ -128,3 +128,19 @@ def test_cut_files_and_unusual_rates_are_reported(read, collected_messages):
     said = " ".join(map(str, messages))
     assert "announces 900 frames but has 30" in said
     assert "states 1 frames per second" in said
+
+
+@pytest.mark.parametrize(
+    ("time", "rate"), [("30", 30.0), ("120.0", 120.0), ("33.3333", 30.0), ("8.33", 120.0)]
+)
+def test_a_rate_or_milliseconds_in_place_of_the_frame_time(
+    read, collected_messages, time, rate
+):
+    """Before, the take played at a thirtieth of a frame per second."""
+    messages, collect = collected_messages
+    head, row = bvh_text(hierarchy(1)).split("0.01\n")
+
+    motion = read(f"{head}{time}\n{row * 30}", progress=collect)
+
+    assert motion.frame_rate == pytest.approx(rate, rel=1e-3)
+    assert any("is interpreted as" in str(message) for message in messages)

@@ -1,0 +1,85 @@
+"""Read the joints of NumPy archives, with what these state next to them."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ..arrays import Array
+from ..errors import InvalidFileError
+from ..motion import JointRecording, Tracks
+from ..progress import Progress, unwatched
+from .containers import archive_names, read_archive_members, read_archive_words
+from .conventions import Bodies, check_scale, common_rate
+from .numpy_files import Stated, open_points
+from .point_bodies import NAMES_OF_ROOT, name_of_root, transforms_at
+
+POINT_MEMBERS = (
+    "positions", "joints", "joint_positions", "joints3d", "joints_3d", "keypoints3d",
+    "keypoints_3d", "kps3d", "pose3d", "pose_3d", "poses3d", "poses_3d", "points3d",
+    "points_3d", "pose_world_landmarks", "world_landmarks", "landmarks", "pred_xyz_jts", "xyz",
+    "points", "keypoints", "reconstruction", "predictions", "arr_0",
+)  # fmt: skip
+"""Names of joints in archives, the clear ones first."""
+RATE_MEMBERS = ("fps", "frame_rate", "framerate", "mocap_frame_rate", "mocap_framerate")
+"""Names of frames per second in archives."""
+NAME_MEMBERS = (
+    "joint_names", "joints_names", "keypoint_names", "keypoints_names", "marker_names",
+    "landmark_names", "bone_names", "names", "labels",
+)  # fmt: skip
+"""Names of the names of joints in archives."""
+
+
+def is_point_archive(head: bytes) -> bool:
+    """Return whether a file is an `.npz` archive with joints, from its beginning and end."""
+    names = {name.lower() for name in archive_names(head)}
+    return "depth" not in names and not names.isdisjoint(POINT_MEMBERS)
+
+
+def open_point_archive(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording | Tracks]:
+    """Open the points of an `.npz` archive as `open_npy` does.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing or damaged, or has no points over time.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    members = read_archive_members(path, POINT_MEMBERS, str.lower)
+    found = next((members[name] for name in POINT_MEMBERS if name in members), None)
+    if found is None:
+        raise InvalidFileError(f"{path} has no array of joints. Export it again.")
+    stated = Stated(_stated_rate(path), _root_path(path), _stated_names(path))
+    return open_points(path, found, scale, stated)
+
+
+def _stated_names(path: Path | str) -> tuple[str, ...]:
+    """Return the names of the joints that an archive states; empty without any."""
+    try:
+        return read_archive_words(path, NAME_MEMBERS)
+    except InvalidFileError:  # pickled words
+        return ()
+
+
+def _root_path(path: Path | str) -> Array | None:
+    """Return the transforms of one body that an archive states, (n_frames, 4, 4)."""
+    members = read_archive_members(path, NAMES_OF_ROOT, name_of_root)
+    found = next((members[name] for name in NAMES_OF_ROOT if name in members), np.empty(0))
+    is_path = found.size > 0 and found.shape[-1] == 3 and found.size == 3 * max(found.shape[:2])
+    return transforms_at(found.reshape(-1, 3)) if is_path else None
+
+
+def _stated_rate(path: Path | str) -> float | None:
+    """Return the frames per second that an archive states; None if it states none."""
+    try:
+        members = read_archive_members(path, RATE_MEMBERS, str.lower)
+    except InvalidFileError:  # words or None in place of a number
+        return None
+    stated = (members[name] for name in RATE_MEMBERS if name in members)
+    rate = next((float(each.item()) for each in stated if each.size == 1), 0.0)
+    return common_rate(rate) if 0.0 < rate < np.inf else None
