@@ -14,7 +14,7 @@ from secrets import token_hex
 from tokenize import TokenError
 from typing import BinaryIO
 
-from .errors import FileAccessError, InvalidFileError
+from .errors import FileAccessError
 
 # Errors that numpy and zipfile raise on truncated or altered files.
 DAMAGE = (
@@ -39,6 +39,11 @@ def reason_of(error: OSError) -> str:
 def unreadable(path: Path | str, error: OSError) -> FileAccessError:
     """Return the error for a file or folder that the system does not allow to read."""
     return FileAccessError(f"{path} cannot be read ({reason_of(error)}).")
+
+
+def unwritable(path: Path | str, error: OSError) -> FileAccessError:
+    """Return the error for a file or folder that the system does not allow to write."""
+    return FileAccessError(f"{path} cannot be written: {reason_of(error)}.")
 
 
 def real_path(path: Path | str) -> Path:
@@ -101,7 +106,7 @@ def write_atomically(path: Path | str) -> Iterator[Path]:
 
     Raises
     ------
-    InvalidFileError
+    FileAccessError
         The folder is missing or may not be written to, or the disk is full.
     """
     path = Path(path)
@@ -115,7 +120,7 @@ def write_atomically(path: Path | str) -> Iterator[Path]:
         finally:
             part.unlink(missing_ok=True)
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be written: {reason_of(error)}.") from None
+        raise unwritable(path, error) from None
 
 
 def remove_leftovers(paths: Iterable[Path]) -> None:

@@ -26,6 +26,9 @@ MAX_ASYMMETRY = 1e-4
 """Difference between elements of a covariance across its diagonal, as a fraction of its
 largest; products of many frames round differently on either side. By definition of single
 precision 1e-7, times the root of a million frames."""
+MAX_NUMBER = 2.0**53
+"""Largest size of a learned number, a ratio of the largest in a file to 1. By definition of
+double precision: next to larger ones, 1 is rounded away, and their products may overflow."""
 READABLE = (*DAMAGE, RuntimeError)
 """Errors of zipfile and numpy on damaged archives; RuntimeError on encrypted ones."""
 
@@ -75,7 +78,7 @@ class Values:
     minimum, maximum : float
         Valid range.
     finite : bool
-        Whether NaN and infinity are invalid.
+        Whether NaN, infinity and numbers above `MAX_NUMBER` are invalid.
     optional : bool
         Whether the member may be missing.
     or_empty : bool
@@ -246,16 +249,18 @@ def _check_values(name: str, array: NDArray[Any], values: Values) -> None:
         return
     if values.finite and not np.isfinite(array).all():
         raise DamagedMemberError(f"not all numbers are finite, first of {name}")
+    if values.finite and array.dtype.kind == "f" and (np.abs(array) > MAX_NUMBER).any():
+        raise DamagedMemberError(f"{name} has numbers out of range")
     too_small = values.minimum > -np.inf and (array < values.minimum).any()
     if too_small or (values.maximum < np.inf and (array > values.maximum).any()):
         raise DamagedMemberError(f"{name} has numbers out of range")
-    if values.least_eigenvalue is not None and not _are_covariances(
+    if values.least_eigenvalue is not None and not are_covariances(
         array.astype(np.float64), values.least_eigenvalue
     ):
         raise DamagedMemberError(f"{name} holds a matrix that is not a covariance")
 
 
-def _are_covariances(matrices: NDArray[np.float64], least_eigenvalue: float) -> bool:
+def are_covariances(matrices: NDArray[np.float64], least_eigenvalue: float) -> bool:
     """Return whether matrices (..., n, n) are symmetric, with eigenvalues of this size."""
     if not matrices.size:
         return True

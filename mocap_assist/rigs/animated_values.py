@@ -54,7 +54,7 @@ class _Value(NamedTuple):
     name: str
     is_custom: bool
     held: Any
-    """None where there is no such property."""
+    """None where there is nothing that keys change."""
 
     @classmethod
     def of(cls, animated: bpy.types.Object, path: str) -> "_Value":
@@ -66,8 +66,7 @@ class _Value(NamedTuple):
             held = holder[name] if is_custom else getattr(holder, name)
         except (ValueError, KeyError, AttributeError):
             held = None
-        alone = held is None or isinstance(held, (bool, int, float, str))
-        return cls(owner, name, is_custom, held if alone else tuple(held))
+        return cls(owner, name, is_custom, _animatable(held))
 
     def put_back(self, animated: bpy.types.Object) -> None:
         if self.held is None:
@@ -77,6 +76,19 @@ class _Value(NamedTuple):
             holder[self.name] = self.held
         else:
             setattr(holder, self.name, self.held)
+
+
+def _animatable(held: Any) -> Any:
+    """Return a number, a choice or a tuple of numbers; None for all that no keys change.
+
+    A file may have curves of anything: groups of properties and pointers to data stay.
+    """
+    if isinstance(held, (bool, int, float, str)):
+        return held
+    is_array = hasattr(held, "__len__") and not hasattr(held, "keys")
+    values = tuple(held) if is_array else ()
+    is_numeric = all(isinstance(value, (bool, int, float)) for value in values)
+    return values if values and is_numeric else None
 
 
 def _holder(animated: bpy.types.Object, owner: str) -> Any:

@@ -15,6 +15,7 @@ from secrets import token_hex
 from threading import Event, Thread
 from typing import Any, NamedTuple
 
+from ...files import unwritable
 from ...json_text import parse_json
 from ...processes import host_name, is_running, this_machine
 
@@ -57,10 +58,13 @@ def claimed(path: Path, batch: str = "") -> Iterator[Claim]:
 
     Raises
     ------
-    OSError
-        The folder of the claim has vanished, or may not be written to.
+    FileAccessError
+        The folder of the claim has vanished, or may not be written to, or the disk is full.
     """
-    files, holder = _claim(path, batch)
+    try:
+        files, holder = _claim(path, batch)
+    except OSError as error:
+        raise unwritable(path.parent, error) from None
     if holder is not None:
         is_own_batch = bool(batch) and holder.get("batch") == batch
         yield Claim(str(holder.get("host", UNKNOWN_HOST)), is_own_batch=is_own_batch)

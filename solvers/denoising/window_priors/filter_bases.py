@@ -11,10 +11,10 @@ from ...archives import ArchiveLayout
 from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion, Tracks
-from ...npz_members import flags, integers, numbers, words
+from ...npz_members import are_covariances, flags, integers, numbers, words
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
-from ..channels import ExampleChannels, Moments
+from ..channels import BODY_POSITION, ExampleChannels, Moments
 from .lag_covariance import LagCovariance, find_leading_eigenpairs
 from .window_prior import count_slow_coefficients
 from .windows import Windows
@@ -29,6 +29,14 @@ MIN_ANY_DEVIATION = 1e-6
 errors."""
 N_REFERENCE = 12
 """Numbers stored of the reference of a channel, by definition of the file."""
+MIN_RATE_HZ, MAX_RATE_HZ, MAX_WINDOW_S = 5.0, 240.0, 3.0
+"""Hertz, hertz and seconds: limits of the settings. They bound the run time of Clean."""
+MIN_EIGENVALUE_RATIO = -1e-9
+"""Fraction of the largest element of a covariance. By definition the rounding of a sum of many
+windows in double precision."""
+MAX_LENGTH_ERROR = 1e-6
+"""Ratio by which the length of a unit quaternion may differ from 1. By definition of double
+precision."""
 LAYOUT = ArchiveLayout(
     "filter bases",
     3,
@@ -37,10 +45,10 @@ LAYOUT = ArchiveLayout(
         "references": numbers("parts", N_REFERENCE),
         "mean": numbers("3*parts"),
         "vectors": numbers("bases", "window", "3*parts"),
-        "values": numbers("bases"),
+        "values": numbers("bases", minimum=0.0),
         "moving": integers("moving", minimum=0),
         "slow": numbers("slow", "moving", "slow", "moving"),
-        "fast": numbers("fast", "moving"),
+        "fast": numbers("fast", "moving", minimum=0.0),
         "clip_means": numbers("pieces", "moving"),
         "frame_rate": numbers(),
         "n_clips": integers(minimum=1),
@@ -57,11 +65,11 @@ class FilterBasesSettings(Settings):
 
     window: float = setting(
         20 / 30, "Length of the motion patterns; longer patterns cover more of a movement",
-        unit="s", minimum=0.1, maximum=3.0,
+        unit="s", minimum=0.1, maximum=MAX_WINDOW_S,
     )  # fmt: skip
     frame_rate: float = setting(
         30.0, "Frame rate of the stored patterns; higher keeps faster movements",
-        unit="Hz", minimum=5.0, maximum=240.0, advanced=True,
+        unit="Hz", minimum=MIN_RATE_HZ, maximum=MAX_RATE_HZ, advanced=True,
     )  # fmt: skip
 
     @property
@@ -152,10 +160,27 @@ def _fault(bases: FilterBases) -> str:
     n_slow = len(bases.slow)
     if not bases.vectors.size or len(bases.fast) != bases.window - n_slow:
         return "the shapes do not fit, first that of fast"
-    if not np.isin(bases.moving, np.arange(len(bases.mean))).all():
-        return "they refer to channels that do not exist"
     rate = float(bases.frame_rate)
-    return "" if rate > 0.0 else f"a frame rate of {rate:g} Hz"
+    if not MIN_RATE_HZ <= rate <= MAX_RATE_HZ:
+        return f"a frame rate of {rate:g} Hz"
+    if bases.window > round(MAX_WINDOW_S * rate):
+        return f"their patterns are longer than {MAX_WINDOW_S:g} s"
+    if len(set(bases.keys)) < len(bases.keys):
+        return "a joint is there twice"
+    if not set(bases.moving) <= set(range(len(bases.mean))):
+        return "they refer to channels that do not exist"
+    if not bases.of_points and not _are_rotations(
+        bases.references[bases.keys != BODY_POSITION]
+    ):
+        return "the reference of a joint is not a rotation"
+    slow = bases.slow.reshape(n_slow * len(bases.moving), -1)
+    return "" if are_covariances(slow, MIN_EIGENVALUE_RATIO) else "slow is not a covariance"
+
+
+def _are_rotations(references: Array) -> bool:
+    """Return whether these are the three unit quaternions of each joint."""
+    lengths = np.linalg.norm(references.reshape(len(references), -1, 4), axis=-1)
+    return bool((np.abs(lengths - 1.0) < MAX_LENGTH_ERROR).all())
 
 
 def learn_filter_bases(

@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ...gestures import Gesture, GestureEvent, GestureRecognizer, GestureSettings, Mode
-from ...motion import JointRecording
+from ...motion import JointRecording, Skeleton
 from ...motion.humanoid import POSTURE_JOINTS, posture_joint_indices
 from ...recordings.streams import (
     LiveFrame,
@@ -63,9 +63,13 @@ class LiveSession:
         return self._recognizer.mode
 
     def add(self, frames: Iterable[StreamFrame]) -> SessionUpdate:
-        """Process frames of one body; return the new frame, events and query."""
+        """Process frames of one body that arrived together; return what they show.
+
+        Frames with other joints than the last one are dropped. A sender that renames its joints
+        in every frame would stop the window, as finding their roles takes time.
+        """
         update = SessionUpdate(None, (), None, "")
-        for frame in frames:
+        for frame in _with_last_joints(list(frames)):
             joints = joints_from_pose(frame) if isinstance(frame, PoseFrame) else frame
             update = self._add_frame(update, joints)
         return update
@@ -104,6 +108,16 @@ class LiveSession:
             self._performed = []
             return _performance(update, frames)
         return update
+
+
+def _with_last_joints(frames: list[StreamFrame]) -> list[StreamFrame]:
+    """Return the frames that have the joints of the last one."""
+    return [frame for frame in frames if _joints_of(frame) == _joints_of(frames[-1])]
+
+
+def _joints_of(frame: StreamFrame) -> Skeleton | tuple[str, ...]:
+    """Return what the roles of the joints are found from."""
+    return frame.skeleton if isinstance(frame, PoseFrame) else frame.names
 
 
 def _performance(update: SessionUpdate, frames: list[LiveFrame]) -> SessionUpdate:

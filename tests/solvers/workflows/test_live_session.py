@@ -9,15 +9,17 @@ from numpy.testing import assert_allclose
 from solvers.gestures.events import Gesture
 from solvers.gestures.recognition import Mode
 from solvers.gestures.settings import GestureSettings
-from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
+from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor, find_humanoid_map
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
-from solvers.recordings.streams import StreamReader
+from solvers.recordings.streams import PoseFrame, StreamReader
+from solvers.recordings.streams.frames import pose_frames
 from solvers.recordings.streams.frames.joint_frames import (
     LiveFrame,
     encode_frame,
     frames_from_recording,
 )
-from solvers.samples import PerformanceSettings, perform_gestures
+from solvers.samples import GaitSettings, PerformanceSettings, perform_gestures, walking_gait
+from solvers.workflows.live import live_session
 from solvers.workflows.live.live_session import NO_END, TOO_SHORT, LiveSession, pose_from_frame
 
 
@@ -118,6 +120,41 @@ def test_without_frames_nothing_happens():
     news = LiveSession().add([])
 
     assert (news.frame, news.events, news.query, news.message) == (None, (), None, "")
+
+
+def test_roles_are_found_once_when_frames_with_other_joints_come_together(monkeypatch):
+    searched = []
+    monkeypatch.setattr(
+        live_session, "posture_joint_indices", lambda names: searched.append(names) or {}
+    )
+    frames = [
+        LiveFrame(number / 30, 0, ("head", f"joint {number}"), np.ones((2, 3)), np.ones(2))
+        for number in range(20)
+    ]
+
+    news = LiveSession().add(frames)
+
+    assert searched == [frames[-1].names] and news.frame is frames[-1]
+
+
+def test_roles_of_bones_are_found_once_when_other_skeletons_come_together(monkeypatch):
+    searched = []
+
+    def find(skeleton):
+        searched.append(skeleton)
+        return find_humanoid_map(skeleton)
+
+    monkeypatch.setattr(pose_frames, "find_humanoid_map", find)
+    walk = walking_gait(GaitSettings(duration=1.0))
+    skeletons = [replace(walk.skeleton) for _ in range(20)]
+    frames = [
+        PoseFrame(number / 30, 0, skeleton, walk.rotations[0], walk.root_positions[0])
+        for number, skeleton in enumerate(skeletons)
+    ]
+
+    LiveSession().add(frames)
+
+    assert searched == [skeletons[-1]]
 
 
 @pytest.mark.parametrize("names", [("a", "b"), ("Head",), ("hips", "head")])

@@ -1,6 +1,6 @@
 """Select the frames of one body from a live stream, and build a recording from them."""
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol
@@ -206,8 +206,7 @@ def recording_from_frames(frames: Sequence[LiveFrame]) -> JointRecording:
     """
     if not frames:
         raise InvalidFileError(f"{PERFORMANCE} has no frames.")
-    named = [frame.names for frame in frames]
-    names = max(set(named), key=named.count)
+    ((names, _),) = Counter(frame.names for frame in frames).most_common(1)
     frames = [frame for frame in frames if frame.names == names]
     states = [frame.states for frame in frames if frame.states is not None]
     return joint_recording(

@@ -8,6 +8,7 @@ import pytest
 
 from solvers.command_line.batches import parallel
 from solvers.command_line.sharing import claimed, claims
+from solvers.errors import FileAccessError
 
 
 def test_waiting_makes_the_take_of_a_process_that_ends(call, leg_file, tmp_path, monkeypatch):
@@ -143,6 +144,21 @@ def test_claims_on_a_share_without_links(tmp_path, monkeypatch):
         assert first.holder == ""
         assert second.holder == os.uname().nodename
 
+    assert not list(tmp_path.iterdir())
+
+
+def test_claim_names_its_folder_when_the_disk_is_full(tmp_path, monkeypatch):
+    def refuse(*_, **__):
+        raise OSError(
+            errno.ENOSPC, "No space left on device"
+        )  # without a name, as `write` does
+
+    monkeypatch.setattr(claims.Path, "write_text", refuse)
+
+    with pytest.raises(FileAccessError) as error, claimed(tmp_path / "take"):
+        pass
+
+    assert str(error.value) == f"{tmp_path} cannot be written: the disk is full."
     assert not list(tmp_path.iterdir())
 
 
