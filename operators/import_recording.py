@@ -46,6 +46,7 @@ class MOCAP_OT_import_recording(FilesOperator, bpy.types.Operator):
             return {"RUNNING_MODAL"}
         paths = chosen_paths(self)
         self.note, self.kinds = preview(context, paths), kinds_of(paths)
+        self.note_width = DIALOG_WIDTH_PX
         status: set[str] = context.window_manager.invoke_props_dialog(
             self, width=DIALOG_WIDTH_PX, confirm_text="Import"
         )

@@ -20,4 +20,4 @@ class MOCAP_OT_mark_issues(ActOperator, bpy.types.Operator):
     )
 
     def act(self, context: bpy.types.Context) -> str:
-        return (remove_issue_markers if self.remove else mark_issues)(context.scene)
+        return remove_issue_markers(context.scene) if self.remove else mark_issues(context)

@@ -15,6 +15,7 @@ from ..blender.time_slices import Sliced, Steps, in_thread, should_yield
 from ..scene.body import body_root
 from ..scene.history import playing_strips, was_thinned
 from ..scene.origin import origin_of
+from ..scene.played_time import played_time
 from ..scene.rig import Placement, Rig, read_rig
 from ..scene.units import meters_per_unit
 from .bone_channels import animated_curves, bone_path, read_bone, read_space
@@ -70,7 +71,8 @@ def read_take(
     yield from keyed.read_keys()
     if grid is None:
         own = keyed.curves_of_bones(rig)
-        grid = key_grid(own, range_bounds(choice, keyed.scene, own), recorded=recorded)
+        bounds = range_bounds(choice, keyed.scene, own, played_time(keyed.armature))
+        grid = key_grid(own, bounds, recorded=recorded)
     channels, travels = [], []
     for number, bone in enumerate(rig.bones):
         step = grid.step if recorded else None

@@ -11,6 +11,7 @@ from ...solvers.arrays import Array, Flags
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
+from ..scene.played_time import played_time
 from .bone_channels import animated_curves
 from .curves import CONSTANT, GENERATED, Channel, write_values
 
@@ -139,8 +140,9 @@ def _give_back(*_: object) -> None:
         curves = animated_curves(*played)
         for name in PROPERTIES:
             if (_path(name), 0) in curves and name not in armature:
+                frame = bpy.context.scene.frame_current_final
                 value = curves[_path(name), 0].curve.evaluate(
-                    bpy.context.scene.frame_current_final
+                    played_time(armature).action_frame(frame)
                 )
                 _declare(armature, name, int(value > 0.5))  # NaN is not
 

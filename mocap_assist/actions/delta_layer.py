@@ -41,8 +41,8 @@ N_CHANNELS = {
 }
 """Properties of a bone that a result may change, and how many channels each has."""
 TIMING = (
-    "action_frame_start", "action_frame_end", "scale", "repeat", "frame_start_raw",
-    "frame_end_raw",
+    "action_frame_start", "action_frame_end", "scale", "repeat", "use_reverse",
+    "frame_start_raw", "frame_end_raw",
 )  # fmt: skip
 """Properties of a strip that place its action in the scene, in the order to set them."""
 

@@ -9,6 +9,7 @@ import numpy as np
 from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
+from ..scene.played_time import PlayedTime
 from .curves import ON_FRAME, Channel
 
 MAX_RECORDED_STEP_FRAMES = 2.5
@@ -44,9 +45,9 @@ class FrameRange(Choice):
 
 
 def range_bounds(
-    choice: FrameRange, scene: bpy.types.Scene, channels: Sequence[Channel]
+    choice: FrameRange, scene: bpy.types.Scene, channels: Sequence[Channel], time: PlayedTime
 ) -> tuple[float, float]:
-    """Return the first and last frame of a range.
+    """Return the first and last frame of a range, as frames of the action.
 
     Raises
     ------
@@ -54,14 +55,14 @@ def range_bounds(
         There is no preview range, or no key is selected.
     """
     if choice is FrameRange.SCENE:
-        return float(scene.frame_start), float(scene.frame_end)
+        return time.action_range(scene.frame_start, scene.frame_end)
     if choice is FrameRange.PREVIEW:
         if not scene.use_preview_range:
             raise InvalidMotionError(
                 "The scene has no preview range. Set one in the timeline (P), or work on"
                 " another frame range."
             )
-        return float(scene.frame_preview_start), float(scene.frame_preview_end)
+        return time.action_range(scene.frame_preview_start, scene.frame_preview_end)
     if choice is FrameRange.SELECTED_KEYS:
         selected = [_selected_keys(channel) for channel in channels]
         times = np.concatenate([np.empty(0), *selected])

@@ -31,4 +31,4 @@ def perform_fix(
     sentence = write_fixed(scene, subject, settings, fixed)
     action, _ = played_source(fixed_subject(subject, fixed))
     text = "\n".join([sentence, *fixed.report["steps"]])
-    return text, {"action": action.name} | history.history(action)[-1] | fixed.report
+    return text, {"action": action.name, **history.history(action)[-1], **fixed.report}

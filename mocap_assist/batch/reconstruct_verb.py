@@ -57,4 +57,4 @@ def perform_reconstruct(
     )
     sentence = write_reconstructed(scene, armature, settings, rebuilt)
     action, _ = played_source(armature)
-    return sentence, {"action": action.name} | history.history(action)[-1]
+    return sentence, {"action": action.name, **history.history(action)[-1]}

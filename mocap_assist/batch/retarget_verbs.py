@@ -53,7 +53,7 @@ def perform_retarget(
     sentence = write_retargeted(scene, armature, settings, results)
     action = scene.objects[settings.choices.target].animation_data.action
     figures = {"n_actions": len(results.clips), "action": action.name}
-    return sentence, figures | history.history(action)[-1]
+    return sentence, {**figures, **history.history(action)[-1]}
 
 
 def add_unbake_options(parser: argparse.ArgumentParser) -> None:
@@ -79,4 +79,4 @@ def perform_unbake(
     result = solve_in_subprocess(read_unbaking(scene, armature, settings), arguments, progress)
     sentence = write_unbaked(scene, armature, settings, result)
     action = armature.animation_data.action
-    return sentence, {"action": action.name} | history.history(action)[-1]
+    return sentence, {"action": action.name, **history.history(action)[-1]}

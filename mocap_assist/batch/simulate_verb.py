@@ -36,4 +36,4 @@ def perform_simulate(
     )
     sentence = write_simulated(scene, armature, settings, result)
     action = armature.animation_data.action
-    return sentence, {"action": action.name} | history.history(action)[-1]
+    return sentence, {"action": action.name, **history.history(action)[-1]}

@@ -111,7 +111,7 @@ def _clean(
     cleaned = solve_in_subprocess(read_cleaning(scene, armature, settings), arguments, progress)
     sentence = write_cleaned(scene, armature, settings, cleaned)
     action, _ = played_source(armature)
-    return sentence, {"action": action.name} | history.history(action)[-1]
+    return sentence, {"action": action.name, **history.history(action)[-1]}
 
 
 def _check_options(parser: argparse.ArgumentParser) -> None:

@@ -1,14 +1,17 @@
 """Read and write JSON in custom properties, which users may have edited."""
 
 import json
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from math import isfinite
-from typing import Any, TypeVar
+from typing import Any, overload
 
 import bpy
 
 from ...solvers.json_text import parse_json
 
-Kind = TypeVar("Kind", dict[str, Any], list[Any])
+MAX_CACHED = 32
+"""Number of cached values. It bounds the memory."""
 
 
 def store_json(holder: Any, key: str, value: dict[str, Any] | list[Any]) -> None:
@@ -16,23 +19,34 @@ def store_json(holder: Any, key: str, value: dict[str, Any] | list[Any]) -> None
     holder[key] = json.dumps(value, ensure_ascii=False)
 
 
-def load_json(holder: bpy.types.ID, key: str, kind: type[Kind]) -> Kind:
+@overload
+def load_json(
+    holder: bpy.types.ID, key: str, kind: type[dict[str, Any]]
+) -> Mapping[str, Any]: ...
+@overload
+def load_json(holder: bpy.types.ID, key: str, kind: type[list[Any]]) -> Sequence[Any]: ...
+def load_json(holder: bpy.types.ID, key: str, kind: type[Any]) -> Any:
     """Return a value of `store_json`; an empty list or dictionary if there is none.
 
-    Infinities, NaN and numbers that overflow to infinity count as damage.
+    Infinities, NaN and numbers that overflow to infinity count as damage. A text is parsed
+    once, since panels ask for it at each redraw: the value must not be changed.
     """
-    return parse_stored(holder.get(key), kind)
+    return parse_stored(str(holder.get(key)), kind)
 
 
-def parse_stored(text: object, kind: type[Kind]) -> Kind:
+def parse_stored(text: str, kind: type[Any]) -> Any:
     """Parse a text like `load_json`."""
-    try:
-        value = parse_json(
-            str(text), parse_constant=_finite, parse_float=_finite, parse_int=_integer
-        )
-    except ValueError:
-        return kind()
+    value = _parsed(text)
     return value if isinstance(value, kind) else kind()
+
+
+@lru_cache(MAX_CACHED)
+def _parsed(text: str) -> Any:
+    """Return the value of a text; None if it is damaged."""
+    try:
+        return parse_json(text, parse_constant=_finite, parse_float=_finite, parse_int=_integer)
+    except ValueError:
+        return None
 
 
 def _finite(text: str) -> float:

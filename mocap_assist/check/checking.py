@@ -7,6 +7,7 @@ import bpy
 
 from ...solvers.arrays import Array
 from ...solvers.denoising import Issue
+from ...solvers.errors import InvalidMotionError
 from ..actions.armature_read import read_take
 from ..actions.contact_keys import FOOT_PROPERTIES, read_contacts
 from ..actions.limits import read_limits
@@ -14,7 +15,7 @@ from ..actions.markers.holders import markers_of, point_names
 from ..actions.markers.take import MarkerTake, read_markers
 from ..actions.take import ArmatureTake
 from ..blender.time_slices import Sliced, Steps
-from ..runtime.selection import played_source, select_only_bone, selected_subject
+from ..runtime.selection import played_source, select_only_bone, selected_subject, shown_frames
 from ..runtime.subject import Subject, check_unchanged
 from ..scene.scene_objects import choose
 from .button_settings import CheckBundle
@@ -90,12 +91,22 @@ def _summary(checked: Checked) -> str:
     return f"{found} found. Worst: {checked.issues[0].sentence}"
 
 
+def is_stale(checked: str, subject: bpy.types.Object | None) -> bool:
+    """Whether the subject plays another action than the one that was checked."""
+    if subject is None:
+        return True
+    try:
+        return bool(played_source(subject)[0].name != checked)
+    except InvalidMotionError:
+        return True
+
+
 def jump_to(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> None:
     """Set the current frame to the start of an issue and select only its bone or its marker.
 
     An armature in Object Mode enters Pose Mode, where the selected bone is visible.
     """
-    frame, subframe = divmod(issue.start, 1.0)
+    frame, subframe = divmod(shown_frames(context, issue)[0], 1.0)
     context.scene.frame_set(int(frame), subframe=subframe)
     subject = selected_subject(context)
     if subject is None:

@@ -11,6 +11,7 @@ from ..panel_parts.panel_layout import exists
 from ..runtime.selection import played_result, selected_subject
 from ..scene import history
 from .key_map import key_text
+from .reverting import why_not_revert
 
 REVERT = "mocap_assist.revert_to_raw"
 HOLD = "Hold {key} to see the raw take"
@@ -26,7 +27,7 @@ class ComparePanel(PanelMixin):
         _draw_actions(layout, context)
         draw_overlay_switches(layout, context)
         _draw_key(layout, context)
-        if exists(REVERT):
+        if exists(REVERT) and not why_not_revert(context):
             layout.operator(REVERT, icon="LOOP_BACK")
         if exists(EXPORT):
             draw_export(layout, context)

@@ -2,6 +2,8 @@
 
 import bpy
 
+from ..runtime.selection import shown_frames
+
 PREFIX = "Issue: "
 """Start of the name of such a marker: one that the animator renames is the animator's."""
 
@@ -11,12 +13,14 @@ def has_issue_markers(scene: bpy.types.Scene) -> bool:
     return any(each.name.startswith(PREFIX) for each in scene.timeline_markers)
 
 
-def mark_issues(scene: bpy.types.Scene) -> str:
+def mark_issues(context: bpy.types.Context) -> str:
     """Replace the markers by one at the first frame of each issue; return a message."""
+    scene = context.scene
     remove_issue_markers(scene)
     for issue in scene.mocap_assist.issues:
         name = f"{PREFIX}{issue.kind}, {issue.name}"
-        scene.timeline_markers.new(name, frame=round(issue.start)).select = False
+        first, _ = shown_frames(context, issue)
+        scene.timeline_markers.new(name, frame=round(first)).select = False
     n_issues = len(scene.mocap_assist.issues)
     return "1 issue marked." if n_issues == 1 else f"{n_issues} issues marked."
 

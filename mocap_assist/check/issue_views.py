@@ -9,7 +9,7 @@ from ..actions.frames import FrameRange
 from ..actions.markers.holders import markers_of, point_names
 from ..overlays.strip.drag import working_range
 from ..overlays.view_control import show_point
-from ..runtime.selection import selected_subject
+from ..runtime.selection import selected_subject, shown_frames
 
 VIEW, RANGE = "mocap_assist_issue_view", "mocap_assist_issue_range"
 FRAMES_AROUND = 4
@@ -47,21 +47,23 @@ def show_issue(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> No
         if point is not None:
             show_point(manager, point)
     if getattr(manager, RANGE):
-        preview_issue(context.scene, issue)
+        preview_issue(context, issue)
 
 
-def preview_issue(scene: bpy.types.Scene, issue: bpy.types.PropertyGroup) -> None:
+def preview_issue(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> None:
     """Set the preview range to an issue and the frames around it; keep the animator's own.
 
     A range of the animator's that a button works on stays: it would work on the issue alone.
     """
+    scene = context.scene
     if works_on_own(scene):
         return
+    first, last = shown_frames(context, issue)
     current = _preview_range(scene)
     own, shown = _ranges.get(scene.session_uid, (current, frozenset()))
     scene.use_preview_range = True
-    scene.frame_preview_start = round(issue.start) - FRAMES_AROUND
-    scene.frame_preview_end = round(issue.stop) + FRAMES_AROUND
+    scene.frame_preview_start = round(first) - FRAMES_AROUND
+    scene.frame_preview_end = round(last) + FRAMES_AROUND
     _ranges[scene.session_uid] = _Ranges(
         own if current in shown else current, shown | {_preview_range(scene)}
     )
@@ -107,7 +109,7 @@ def _range_switched(self: bpy.types.WindowManager, context: bpy.types.Context) -
                 scene.use_preview_range = is_used
         _ranges.clear()  # scenes of files that are closed
     elif 0 <= shown.active_issue < len(shown.issues):
-        preview_issue(context.scene, shown.issues[shown.active_issue])
+        preview_issue(context, shown.issues[shown.active_issue])
 
 
 def register() -> None:

@@ -4,7 +4,6 @@ from typing import Any
 
 import bpy
 
-from ...solvers.errors import InvalidMotionError
 from ..blender.mixins import PanelMixin
 from ..languages import translated
 from ..overlays.strip.switch import draw_strip_switch
@@ -12,8 +11,9 @@ from ..panel_parts.figure_rows import figure_rows, frames_text
 from ..panel_parts.fix_card import shown_card
 from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, is_wide
 from ..panel_parts.visibility import shows_take
-from ..runtime.selection import played_result, played_source, selected_subject
+from ..runtime.selection import played_result, selected_subject, shown_frames
 from ..scene import history
+from .checking import is_stale
 from .issue_markers import has_issue_markers
 from .issue_views import draw_view_switches
 
@@ -60,7 +60,8 @@ class MOCAP_UL_issues(bpy.types.UIList):
         _jump(row, index, translated(KINDS.get(item.kind, item.kind)), icon_name)
         row = row.split(factor=BONE_COLUMN)
         _jump(row, index, item.name, "NONE")
-        _jump(row, index, frames_text(item.start, item.stop if wide else item.start), "NONE")
+        first, last = shown_frames(context, item)
+        _jump(row, index, frames_text(first, last if wide else first), "NONE")
 
 
 class CheckPanel(PanelMixin):
@@ -133,16 +134,6 @@ def _draw_markers(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
     if scene.mocap_assist.issues:
         row.operator(MARK, text="Update Markers", icon="MARKER_HLT")
     row.operator(MARK, text="Remove Markers", icon="X").remove = True
-
-
-def is_stale(checked: str, subject: bpy.types.Object | None) -> bool:
-    """Whether the subject plays another action than the one that was checked."""
-    if subject is None:
-        return True
-    try:
-        return bool(played_source(subject)[0].name != checked)
-    except InvalidMotionError:
-        return True
 
 
 def _draw_thresholds(layout: bpy.types.UILayout, check: bpy.types.PropertyGroup) -> None:

@@ -1,8 +1,9 @@
 """Let an armature or markers play the recorded action for a while, and then the result again.
 
-The recorded action is really assigned, so meshes, constraints and children follow it. What was
-played before returns on every ending: also before a file is saved or loaded, before undo, and
-before a render.
+The recorded action is really assigned, so meshes, constraints and children follow it. Where the
+result plays on an NLA strip that was moved or scaled, the recorded action gets such a strip on
+a track above. What was played before returns on every ending: also before a file is saved or
+loaded, before undo, and before a render.
 """
 
 from contextlib import suppress
@@ -12,11 +13,14 @@ import bpy
 from bpy.app import handlers
 
 from ...solvers.errors import InvalidMotionError
+from ..actions.armature_write import new_strip
+from ..actions.delta_layer import TIMING
 from ..blender import compat
 from ..blender.block_references import BlockReference, SourceReference
 from ..runtime.selection import animated_objects, selected_subject
 from ..runtime.watch import why_busy
 from ..scene import history
+from ..scene.played_time import PlayedTime, played_time
 from .reverting import why_not_revert
 
 POSE = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
@@ -35,6 +39,8 @@ class _Shown(NamedTuple):
     """By bone, the values before; those of the object have an empty name."""
     frame: float
     """Of the scene, to which this pose belongs."""
+    track: str
+    """Name of the NLA track that plays the recorded action; empty where it is assigned."""
 
 
 _shown: list[_Shown] = []
@@ -59,8 +65,8 @@ def show_raw(context: bpy.types.Context) -> str:
         played = history.played_result(player)
         raw = played and history.raw_of(*played)
         if raw:
-            _shown.append(_remember(player, raw))
-            compat.assign(player, *raw)
+            shown = _remember(player, raw)
+            _shown.append(shown._replace(track=_play(player, raw)))
             message = message or f"{raw[0].name} (raw)"
     return message
 
@@ -89,18 +95,40 @@ def _remember(player: bpy.types.Object, raw: compat.Source) -> _Shown:
         for name, holder in posed.items()
     }
     references = BlockReference.of(player), SourceReference.of(raw), before or None
-    return _Shown(*references, pose, bpy.context.scene.frame_current_final)
+    return _Shown(*references, pose, bpy.context.scene.frame_current_final, "")
+
+
+def _play(player: bpy.types.Object, raw: compat.Source) -> str:
+    """Play the recorded action in the time of the result; return the name of a new track."""
+    strip = history.result_player(player)
+    if played_time(player)[:2] == PlayedTime()[:2] or not isinstance(strip, bpy.types.NlaStrip):
+        compat.assign(player, *raw)
+        return ""
+    animation = player.animation_data
+    animation.action = None
+    same = new_strip(animation, raw)
+    for name in TIMING:
+        setattr(same, name, getattr(strip, name))
+    return str(animation.nla_tracks[-1].name)
 
 
 def _copied(value: Any) -> Any:
     return value.copy() if hasattr(value, "copy") else tuple(value)
 
 
+def _ends(animation: bpy.types.AnimData, shown: _Shown) -> bool:
+    """Remove the track of the recorded action; return whether that was still played."""
+    if track := animation.nla_tracks.get(shown.track):
+        animation.nla_tracks.remove(track)
+        return True
+    return bool(animation.action == shown.raw.find()[0])
+
+
 def _restore(shown: _Shown) -> None:
     """Assign what was played, unless another action was assigned in the meantime."""
     player = shown.player.find()
     animation = player.animation_data
-    if animation is None or animation.action != shown.raw.find()[0]:
+    if animation is None or not _ends(animation, shown):
         return
     if shown.before is None:
         animation.action = None

@@ -4,7 +4,9 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ..runtime import after_result
+from ..runtime.selection import selected_subject
 from ..runtime.solver_operator import SolverOperator
+from .checking import is_stale
 
 _awaited: list[str] = []
 """Name of the scene that the next quiet check is for."""
@@ -50,8 +52,16 @@ def renew() -> None:
         area = max(window.screen.areas, key=lambda each: each.type == "VIEW_3D")
         region = next(each for each in area.regions if each.type == "WINDOW")
         with bpy.context.temp_override(window=window, area=area, region=region):
-            if check.poll():
+            if check.poll() and _is_outdated(window.scene):
                 check("INVOKE_DEFAULT", is_quiet=True)
+
+
+def _is_outdated(scene: bpy.types.Scene) -> bool:
+    """Whether the list is of another action than the one that is played.
+
+    A result of Fix brings its list along, and one for another rig changes nothing here.
+    """
+    return is_stale(scene.mocap_assist.checked, selected_subject(bpy.context))
 
 
 def register() -> None:

@@ -1,6 +1,7 @@
 """A depth recording as an object: an animated point cloud, read when shown."""
 
 import logging
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from enum import Enum
 from functools import lru_cache
@@ -71,7 +72,7 @@ class Shown:
         return cls.of(load_json(mesh, KEY, dict))
 
     @classmethod
-    def of(cls, data: dict[str, Any]) -> "Shown":
+    def of(cls, data: Mapping[str, Any]) -> "Shown":
         """Invert `as_dict`; raises ValueError, TypeError or KeyError for invalid data."""
         settings = with_present_names(DepthSettings, data["settings"])
         settings["held"] = CameraOrientation[settings["held"]]

@@ -15,8 +15,15 @@ from ..blender.time_slices import Sliced, Steps
 from ..library.button_settings import FindBundle
 from ..library.library_prior import own_origins
 from ..library.sources import library_path
-from ..runtime.selection import Bones, chosen_bones, played_source, why_not_read
+from ..runtime.selection import (
+    Bones,
+    chosen_bones,
+    first_animated_object,
+    played_source,
+    why_not_read,
+)
 from ..runtime.subject import Subject, check_unchanged
+from ..scene.played_time import played_time
 from ..scene.units import unit_of
 from . import searches
 from .chosen_parts import parts_of_bones
@@ -76,7 +83,8 @@ def list_found(
     scene, subject = here.find()
     yield from check_unchanged.steps(subject, solved_digest, problem)
     scene, subject = here.find()
-    grid = (float(query.grid.frames[0]), query.grid.step)
+    time = played_time(first_animated_object(subject))
+    grid = time.scene_frame(query.grid.frames[0]), time.scale * query.grid.step
     name = played_source(subject)[0].name
     fill_list(bpy.context, searches.keep(name, grid, unit_of(scene), finding))
     n_found = len(finding.found)

@@ -11,7 +11,14 @@ from ..library.auto_update_list import choices_are_kept
 from ..library.source_list import draw_sources
 from ..overlays.color_icons import square_icon
 from ..panel_parts.figure_rows import frames_text
-from ..panel_parts.panel_layout import draw_sentence, exists, folded, is_wide, settings_column
+from ..panel_parts.panel_layout import (
+    draw_sentence,
+    exists,
+    folded,
+    is_wide,
+    settings_column,
+    split_column,
+)
 from ..panel_parts.visibility import shows_take
 from ..runtime.selection import Bones
 from . import searches
@@ -88,9 +95,7 @@ def _draw_library(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     if body is not None:
         body.use_property_decorate = False
         draw_sources(body, library)
-        body.prop(library, "tags")
-        body.prop(library, "rig_file", text="Rig")
-        body.prop(library, "library_file", text="File")
+        _draw_source_settings(body, library)
         buttons = body.column(align=True)
         buttons.operator(INDEX, icon="FILE_REFRESH")
         kept = choices_are_kept(library.settings().choices)
@@ -100,6 +105,16 @@ def _draw_library(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         layout.progress(factor=state.fraction, type="BAR", text=text, translate=False)
     elif state.report:
         draw_sentence(layout, context, state.report)
+
+
+def _draw_source_settings(layout: bpy.types.UILayout, library: bpy.types.PropertyGroup) -> None:
+    """Draw what few need, folded."""
+    header, body = layout.panel("mocap_assist_library_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if body is not None:
+        column = split_column(body)
+        for name in ("tags", "rig_file", "library_file"):
+            column.prop(library, name)
 
 
 def _draw_query(column: bpy.types.UILayout, context: bpy.types.Context) -> None:

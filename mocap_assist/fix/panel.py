@@ -1,5 +1,6 @@
 """Panel: one button that fixes a take, and the card of what it did."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import bpy
@@ -115,7 +116,7 @@ def _draw_last_steps(layout: bpy.types.UILayout, context: bpy.types.Context) -> 
 
 
 def _draw_card(
-    box: bpy.types.UILayout, context: bpy.types.Context, card: dict[str, Any]
+    box: bpy.types.UILayout, context: bpy.types.Context, card: Mapping[str, Any]
 ) -> None:
     """Draw figures, the most important remark, the buttons, and the steps if unfolded."""
     table = box.column(align=True)

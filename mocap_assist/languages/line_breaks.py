@@ -1,6 +1,7 @@
 """Break sentences into lines, in languages without spaces between words, too."""
 
 import re
+from collections.abc import Callable
 from unicodedata import east_asian_width
 
 NO_START = "、。，．：；！？）」』】〕》”’ー々ぁぃぅぇぉっゃゅょァィゥェォッャュョ"
@@ -17,11 +18,11 @@ UNIT = re.compile(
 """What stays together: spaces, one wide character, or a word, each with its punctuation."""
 
 
-def broken_lines(text: str, max_letters: int) -> list[str]:
-    """Return lines that are at most so many letters wide, except for longer words."""
+def broken_lines(text: str, fits: Callable[[str], bool]) -> list[str]:
+    """Return lines that each fit, except for longer words."""
     lines = [""]
     for unit in UNIT.findall(text):
-        if lines[-1] and text_width(lines[-1] + unit.rstrip()) > max_letters:
+        if lines[-1] and not fits(lines[-1] + unit.rstrip()):
             lines.append("")
         lines[-1] += unit.lstrip() if not lines[-1] else unit
     return [line.rstrip() for line in lines if line.strip()]

@@ -15,7 +15,9 @@ class LibraryChoices(Settings):
     """File of the library, and the sources of its clips."""
 
     library_file: str = setting(
-        "", "File of the motion library; empty for the one that all your files share"
+        "",
+        "File that stores the library; empty for the one that all your projects share",
+        label="Library File",
     )
     sources: str = setting(
         "", "Recordings, .blend files and folders of them, separated by semicolons"
@@ -26,9 +28,14 @@ class LibraryChoices(Settings):
     )
     rig_file: str = setting(
         "",
-        "File (.blend) with the rig for actions from files that have no armature",
+        "File (.blend) with a rig, to read actions of files that have no armature themselves",
+        label="Action Rig",
     )
-    tags: str = setting("", "Tags to give these clips, separated by commas")
+    tags: str = setting(
+        "",
+        "Words such as walk, tired, separated by commas, shown with these clips when found",
+        label="Clip Tags",
+    )
 
 
 class LibraryBundle(NamedTuple):

@@ -14,6 +14,7 @@ from .stream_state import issue_text, sender_text
 
 LISTEN = "mocap_assist.listen"
 RECORD = "mocap_assist.record_live"
+PURPOSE = "Search the library with gestures, or record a live stream."
 STREAM = "live_protocol", "live_person"
 SETTINGS = (
     "duration", "live_limbs", "hold_feet", "keep_limits", "calibration_s", "smoothing",
@@ -42,6 +43,7 @@ class PerformPanel(PanelMixin):
 def _draw_buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the settings of the stream, and the buttons that receive it."""
     live = context.scene.mocap_assist.live
+    draw_sentence(layout, context, PURPOSE)
     column = split_column(layout)
     if preferences() is not None:
         column.prop(preferences(), "live_port")
@@ -50,8 +52,10 @@ def _draw_buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     layout.operator(LISTEN, icon="OUTLINER_OB_ARMATURE")
     if exists(RECORD) and selected_armature(context) is not None:
         column = settings_column(layout, context, "live")
-        for name in SETTINGS:
-            column.prop(live, name)
+        header, body = column.panel("mocap_assist_live_recording", default_closed=True)
+        header.label(text="Recording")
+        for name in SETTINGS if body else ():
+            body.prop(live, name)
         layout.operator(RECORD, icon="REC")
 
 

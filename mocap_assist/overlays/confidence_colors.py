@@ -9,6 +9,7 @@ from ...solvers.arrays import Single
 from ..actions.reliability_curves import Term, reliability_at, stored_terms
 from ..blender.compat import Source
 from ..scene import history
+from ..scene.played_time import played_time
 
 COLORS = np.array([
     [0.85, 0.07, 0.10, 1.0],  # unreliable
@@ -55,7 +56,7 @@ def available_terms(armature: bpy.types.Object) -> frozenset[Term]:
 def colored_bones_at(
     armature: bpy.types.Object, frame: float, term: Term = Term.COMBINED
 ) -> ColoredBones | None:
-    """Return the posed bones of an armature in the colors of a frame.
+    """Return the posed bones of an armature in the colors of a scene frame.
 
     A bone blends from the color of its own joint to that of the joint at its tail.
     """
@@ -63,6 +64,7 @@ def colored_bones_at(
     bones = list(armature.pose.bones)
     if source is None or not bones:
         return None
+    frame = played_time(armature).action_frame(frame)
     reliabilities = reliability_at(source, [bone.name for bone in bones], frame, term)
     if not reliabilities:
         return None

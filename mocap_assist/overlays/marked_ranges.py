@@ -110,6 +110,8 @@ GROUPS: Mapping[StripRow, StripRow] = {
     **{row: StripRow.CONTACTS for row, _ in CONTACT_ROWS},
 }
 """For each row, the one that replaces it in an editor without space for all rows."""
+IMPORTANCE = (StripRow.ISSUES, StripRow.CONFIDENCE, StripRow.CHANGED, StripRow.CONTACTS)
+"""Of joined rows, the order in which a low editor drops them, the last ones first."""
 LANES: Mapping[Mark, tuple[float, float]] = {
     **{mark: (0.5, 1.0) for _, mark in CONTACT_ROWS if mark.name.startswith("LEFT")},
     **{mark: (0.0, 0.5) for _, mark in CONTACT_ROWS if mark.name.startswith("RIGHT")},
@@ -137,6 +139,12 @@ def grouped(rows: Rows) -> Rows:
         group if len(found) > 1 else found[0]: sum((rows[row] for row in found), ())
         for group, found in members.items()
     }
+
+
+def most_important(rows: Rows, n_rows: int) -> Rows:
+    """Leave out all but a number of joined rows, in the order that they have."""
+    kept = sorted(rows, key=lambda row: IMPORTANCE.index(GROUPS.get(row, row)))[:n_rows]
+    return {row: found for row, found in rows.items() if row in kept}
 
 
 def ranges_of(frames: Array, step: float, mark: Mark) -> tuple[Range, ...]:

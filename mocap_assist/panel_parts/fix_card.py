@@ -1,5 +1,6 @@
 """The card of Fix My Take: what was done to an action, kept in the action until accepted."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import bpy
@@ -15,7 +16,7 @@ def keep_card(action: bpy.types.Action, report: dict[str, Any]) -> None:
     store_json(action, FIX_CARD, report)
 
 
-def shown_card(context: bpy.types.Context) -> dict[str, Any]:
+def shown_card(context: bpy.types.Context) -> Mapping[str, Any]:
     """Return the card of what the selection plays; empty if it has none."""
     action = _played_action(context)
     card = {} if action is None else load_json(action, FIX_CARD, dict)

@@ -2,23 +2,25 @@
 
 from collections.abc import Container
 from dataclasses import fields
+from functools import lru_cache
 
+import blf
 import bpy
 
 from ...solvers.settings import Settings, research_names
 from ..languages import broken_lines, translated
 from .preference_values import preferred
 
-LETTER_WIDTH_PX = 6.2
-"""Mean width of a letter of the interface, in pixels at scale 1."""
-BORDER_WIDTH_PX = 50
-"""Width of both borders of a panel, in pixels at scale 1."""
+BORDER_WIDTH_PX = 64
+"""Width of both borders of a panel, and of a box in it, in pixels at scale 1."""
 ICON_WIDTH_PX = 20
 """Width of the icon left of a sentence, in pixels at scale 1: Blender's unit of a widget."""
 MIN_WIDE_SIDEBAR_PX = 340
 """Pixels from which a sidebar has space for two columns; Blender's default one is narrower."""
-MIN_LINE_LETTERS = 24
-"""Letters of a line below which text is not wrapped further."""
+MIN_LINE_PX = 130
+"""Width in pixels at scale 1 below which text is not wrapped further."""
+MAX_CACHED = 128
+"""Number of cached sentences. It bounds the memory."""
 
 
 def exists(idname: str) -> bool:
@@ -36,7 +38,8 @@ def draw_sentence(
 
 def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = "NONE") -> None:
     """Draw a sentence, wrapped to a width in pixels at scale 1."""
-    lines = column_lines(translated(text), width - (ICON_WIDTH_PX if icon != "NONE" else 0))
+    free = width - BORDER_WIDTH_PX - (ICON_WIDTH_PX if icon != "NONE" else 0)
+    lines = column_lines(translated(text), free, points())
     column = layout.column(align=True)
     column.scale_y = 0.8
     for index, line in enumerate(lines):
@@ -47,11 +50,17 @@ def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = 
             column.label(text=line, translate=False, icon=shown)
 
 
-def column_lines(text: str, width: float) -> list[str]:
-    """Break a sentence into lines for a panel of that width."""
-    return broken_lines(
-        text, max(int((width - BORDER_WIDTH_PX) / LETTER_WIDTH_PX), MIN_LINE_LETTERS)
-    )
+@lru_cache(MAX_CACHED)
+def column_lines(text: str, width: float, font_size: float) -> tuple[str, ...]:
+    """Break a sentence into lines of a width in pixels, in the font of the interface."""
+    blf.size(0, font_size)
+    limit = max(width, MIN_LINE_PX)
+    return tuple(broken_lines(text, lambda line: blf.dimensions(0, line)[0] <= limit))
+
+
+def points() -> float:
+    """Return the size of the letters of panels, in pixels at scale 1."""
+    return float(bpy.context.preferences.ui_styles[0].widget.points)
 
 
 def is_wide(context: bpy.types.Context) -> bool:

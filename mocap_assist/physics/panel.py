@@ -12,6 +12,7 @@ from ..panel_parts.visibility import shows_armature
 from ..runtime.selection import why_not_change
 
 SIMULATE = "mocap_assist.simulate"
+PURPOSE = "Gives the body weight: feet carry it, and it neither floats nor sinks in."
 
 
 class PhysicsPanel(PanelMixin):
@@ -29,12 +30,22 @@ class PhysicsPanel(PanelMixin):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        draw_sentence(layout, context, PURPOSE)
         column = settings_column(layout, context, "simulate")
-        simulate = context.scene.mocap_assist.simulate
-        for name in folded(SimulateSettings, (), simulate):
-            row = column.row()
-            row.active = name != "ground_height" or simulate.ground != Ground.FEET.name
-            row.prop(simulate, name)
-        layout.operator(SIMULATE, icon="PHYSICS")
+        _draw_folded(column, context.scene.mocap_assist.simulate)
+        button = layout.row()
+        button.scale_y = 1.6
+        button.operator(SIMULATE, icon="PHYSICS")
         if reason := why_not_change(context):
             draw_sentence(layout, context, reason, icon="INFO")
+
+
+def _draw_folded(column: bpy.types.UILayout, simulate: bpy.types.PropertyGroup) -> None:
+    header, body = column.panel("mocap_assist_simulate_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if body is None:
+        return
+    for name in folded(SimulateSettings, (), simulate):
+        row = body.row()
+        row.active = name != "ground_height" or simulate.ground != Ground.FEET.name
+        row.prop(simulate, name)

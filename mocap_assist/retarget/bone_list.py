@@ -35,7 +35,7 @@ from .role_labels import role_label
 FIND, SAVE, LOAD = (
     f"mocap_assist.{name}" for name in ("find_bones", "save_bone_map", "load_bone_map")
 )
-ROLE_COLUMN = 0.54  # of the list's width
+ROLE_COLUMN = 0.36  # of a wide list
 PRESETS = {
     (SAVE, "source"): "Save Source Map",
     (SAVE, "target"): "Save Target Map",
@@ -61,19 +61,33 @@ class MOCAP_UL_bones(bpy.types.UIList):
     ) -> None:
         """Draw the role and both bones: missing ones in red, others with confidence bars.
 
-        A narrow list has bars for the less certain bone alone. Names are drawn without the
-        namespace, such as mixamorig:, which would leave no space for them.
+        A narrow list has bars for the less certain bone alone, and the role only in place of a
+        source bone that is missing: names would be cut. They are drawn without the namespace,
+        such as mixamorig:.
         """
         bars = {side: _bars(row, side) for side in SIDES}
         wide, known = is_wide(context), [each for each in bars.values() if each]
         lowest = min(known, key=BARS.__getitem__, default=None)
-        columns = layout.split(factor=ROLE_COLUMN, align=True)
-        _draw_cell(columns, role_label(row.name), None if wide else lowest)
+        role = role_label(row.name)
+        columns = _columns(layout, role, wide=wide)
         for side, mark in bars.items():
             armature, bone = listed_armature(listed, side), getattr(row, side)
             cell = columns.row()
+            cell.active = bool(bone)
             cell.alert = bool(bone) and armature is not None and bone not in armature.data.bones
-            _draw_cell(cell, bone.rpartition(":")[2] or "-", mark if wide else None)
+            is_first = side == SIDES[0]
+            missing = role if is_first and not wide else "-"
+            shown = mark if wide else lowest if is_first else None
+            _draw_cell(cell, bone.rpartition(":")[2] or missing, shown)
+
+
+def _columns(layout: bpy.types.UILayout, first: str, *, wide: bool) -> bpy.types.UILayout:
+    """Return the columns of source and target, in a wide list to the right of a first text."""
+    if not wide:
+        return layout.split(factor=0.5, align=True)
+    columns = layout.split(factor=ROLE_COLUMN, align=True)
+    columns.label(text=first, translate=False)
+    return columns.split(factor=0.5, align=True)
 
 
 def _bars(row: bpy.types.PropertyGroup, side: str) -> Mark | None:
@@ -201,12 +215,9 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     layout.operator(FIND, icon="VIEWZOOM")
     if not len(listed.rows):
         return
-    heads = layout.split(factor=ROLE_COLUMN, align=True)
-    wide = is_wide(context)
-    heads.label(text="" if wide else "Confidence")
+    heads = _columns(layout, translated("Body Parts"), wide=is_wide(context))
     for side in SIDES:
-        name, score = getattr(listed, side), getattr(listed, f"{side}_score")
-        heads.label(text=f"{name} {score:.0%}" if wide else f"{score:.0%}", translate=False)
+        heads.label(text=side.capitalize())
     layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
     _draw_legend(layout, context)
     draw_rest_switch(layout, context)
@@ -220,6 +231,7 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         draw_sentence(layout, context, marked, icon="ERROR")
     _draw_reasons(layout, context, row)
     column = layout.column(align=True)
+    column.label(text=role_label(row.name), translate=False)
     for side in SIDES:
         if (armature := listed_armature(listed, side)) is not None:
             column.prop_search(

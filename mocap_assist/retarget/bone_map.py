@@ -110,7 +110,7 @@ def explain_edited(side: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Co
     """Return the callback for edits of a bone on this side.
 
     All rows are explained again, because the roles of a limb depend on each other, and the
-    heading follows.
+    score follows.
     """
 
     def explain(row: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:

@@ -10,6 +10,7 @@ from ..actions.markers.holders import first_marker_of, holder_of, markers_of, po
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
+from ..scene.played_time import played_time
 
 
 class Bones(Choice):
@@ -94,6 +95,16 @@ def played_source(subject: bpy.types.Object) -> Source:
 def played_result(subject: bpy.types.Object | None) -> Source | None:
     """Return the result of Mocap Assist that the armature or the first marker plays."""
     return None if subject is None else history.played_result(first_animated_object(subject))
+
+
+def shown_frames(
+    context: bpy.types.Context, issue: bpy.types.PropertyGroup
+) -> tuple[float, float]:
+    """Return the first and last scene frame of an issue, as the selection plays its action."""
+    subject = selected_subject(context)
+    if subject is None:
+        return issue.start, issue.stop
+    return played_time(first_animated_object(subject)).scene_range(issue.start, issue.stop)
 
 
 def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:

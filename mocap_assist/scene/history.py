@@ -1,5 +1,6 @@
 """History of an action, stored in the action, and its link to the raw one."""
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from enum import Enum
 from typing import Any
@@ -43,7 +44,7 @@ def record(
     action[SOURCE] = source.get(SOURCE) or source
 
 
-def history(action: bpy.types.Action) -> list[dict[str, Any]]:
+def history(action: bpy.types.Action) -> list[Mapping[str, Any]]:
     """Return what was done, oldest first; nothing for an action of other origin."""
     return [entry for entry in load_json(action, HISTORY, list) if isinstance(entry, dict)]
 
@@ -90,7 +91,15 @@ def cleaned_from(played: Source) -> Source:
 
 
 def played_result(armature: bpy.types.Object) -> Source | None:
-    """Return the result of ours that an armature plays, as its action or on an NLA track.
+    """Return the result of ours that an armature plays, as its action or on an NLA track."""
+    player = result_player(armature)
+    return None if player is None else source_of(player)
+
+
+def result_player(
+    armature: bpy.types.Object,
+) -> bpy.types.AnimData | bpy.types.NlaStrip | None:
+    """Return what plays the result of ours: the animation of an armature, or an NLA strip.
 
     Muted tracks and strips play nothing. An assigned action that replaces the tracks hides
     them, unless it is the recorded one, or a fix of few bones.
@@ -103,7 +112,7 @@ def played_result(armature: bpy.types.Object) -> Source | None:
         raw = source and raw_of(source[0])
         if source and raw:
             is_below = player != animation
-            return None if is_below and _hides_tracks(animation, source, raw) else source
+            return None if is_below and _hides_tracks(animation, source, raw) else player
     return None
 
 

@@ -12,6 +12,7 @@ from ..blender.redrawing import redraw_views
 from ..overlays.body_drawing import Solid, draw_solid, solid
 from ..overlays.confidence_colors import color_from_reliability, reliability_source
 from ..overlays.view_drawing import ViewDrawing, visible_active
+from ..scene.played_time import played_time
 from .tracked_armature.body import TrackedBody, bones_of, is_tracked, posed_frames
 
 NEUTRAL_COLOR = np.array([0.62, 0.72, 0.85, 1.0])
@@ -39,7 +40,8 @@ def body_at(armature: bpy.types.Object | None, frame: float) -> Solid | None:
         return None
     names = [bones[name] for name in SEGMENTS]
     source = reliability_source(armature)
-    confidence = {} if source is None else reliability_at(source, names, frame)
+    played = played_time(armature).action_frame(frame)
+    confidence = {} if source is None else reliability_at(source, names, played)
     colors = np.array([
         color_from_reliability(confidence[name]) if name in confidence else NEUTRAL_COLOR
         for name in names

@@ -18,6 +18,7 @@ from ..runtime.played import Played
 from ..runtime.selection import played_source, selected_armature
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
+from ..scene.played_time import played_time
 from .hand_pose import HandPose
 from .live_body import BodyDisplay, LiveBody
 from .low_confidence import list_low_confidence
@@ -69,11 +70,14 @@ def read_retracking(
     take, played = yield from _read_played_take(armature)
     scene, armature = here.find()
     source = played_source(armature)
-    frame = round((scene.frame_current_final - take.frames[0]) / take.tracked.shown.step)
+    time = played_time(armature)
+    now = time.action_frame(scene.frame_current_final)
+    frame = round((now - take.frames[0]) / take.tracked.shown.step)
     if not 0 <= frame < len(take.frames):
+        first, last = time.scene_range(take.frames[0], take.frames[-1])
         raise InvalidMotionError(
             f"Frame {scene.frame_current_final:g} is not in the recording. Go to one from"
-            f" {take.frames[0]:.2f} to {take.frames[-1]:.2f}, and pose {armature.name} there."
+            f" {first:.2f} to {last:.2f}, and pose {armature.name} there."
         )
     correction = Correction(
         frame, take.pose(armature), _earlier_corrections(source, take, frame)

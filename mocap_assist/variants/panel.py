@@ -28,9 +28,10 @@ VARY, KEEP, SHEET, STACK, MARK, ASSIGN = (
 USE_OPERATOR = "mocap_assist.use_matches"
 MAIN = ("amount", "timing", "length")
 PARTS = ("trunk", "left_arm", "right_arm", "left_leg", "right_leg")
-OTHERS = ("pin_start", "pin_end")
-SEPARATE_SETTINGS = {"seed", *MAIN, *OTHERS, *PARTS}
+OTHERS = ("seed", "pin_start", "pin_end")
+SEPARATE_SETTINGS = {*MAIN, *OTHERS, *PARTS}
 CROWD = ("delay", "spread", "turn", "crowd_seed")
+HINT = "Tick similar actions, or none to vary the current one."
 MAX_LISTED = 30
 MIN_ROWS, MAX_ROWS = 3, 7  # rows of the list
 ROW, LARGE = 1.8, 7.0  # sizes of the pictures
@@ -97,6 +98,8 @@ def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
     ticked = split_names(context.scene.mocap_assist.vary.actions)
     armature = selected_armature(context)
     found = [] if armature is None else candidates(armature)
+    if len(found) > 1:
+        draw_sentence(column, context, HINT)
     box = column.column(align=True)
     for action in found[:MAX_LISTED]:
         icon = "CHECKBOX_HLT" if action.name in ticked else "CHECKBOX_DEHLT"
@@ -110,14 +113,13 @@ def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
 
 def _draw_settings(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) -> None:
     column.prop(vary, "n_variants", text="Variants")
-    column.prop(vary, "seed")
     for name in MAIN:
         column.prop(vary, name, slider=name != "length")
-    parts = column.column(align=True)
-    parts.use_property_split = False
-    for name in PARTS:
-        parts.prop(vary, name, slider=True)
     column.prop(vary, "plant_feet")
+    header, body = column.panel("mocap_assist_vary_parts", default_closed=True)
+    header.label(text="Body Parts")
+    for name in PARTS if body else ():
+        body.prop(vary, name, slider=True)
     _draw_folded(column, vary)
 
 

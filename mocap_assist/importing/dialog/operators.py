@@ -47,6 +47,7 @@ class FilesOperator(SettingsMixin):
         options=HIDDEN,
     )
     kinds: StringProperty(options=HIDDEN)
+    note_width = NOTE_WIDTH_PX
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -87,7 +88,7 @@ class FilesOperator(SettingsMixin):
         if bodies_to_choose(shown_paths(self)):
             self.layout.column().prop(self, "body_choice", expand=True)
         if self.note:
-            draw_lines(self.layout, self.note, NOTE_WIDTH_PX)
+            draw_lines(self.layout, self.note, self.note_width)
         kinds = self.kinds.split()
         for_depth = fitting(type(self).setting_names, [DEPTH])
         for name in fitting(type(self).setting_names, kinds or MOVING):

@@ -11,6 +11,7 @@ from mathutils import Matrix
 
 from ...actions.markers.holders import holder_of
 from ...blender.redrawing import redraw
+from ...scene.played_time import played_time
 from ..contacts import rings
 from ..strip import drawing as strip
 from ..view_drawing import Color, ViewDrawing, draw_in_front, draw_lines, visible_active
@@ -86,6 +87,7 @@ def draw(context: bpy.types.Context, look: Look) -> None:
 
 def _draw_figures(armature: bpy.types.Object, frame: float, look: Look) -> None:
     sources = figures.raw_and_clean(armature)
+    frame = played_time(armature).action_frame(frame)
     for source, color, is_raw in zip(sources, look.colors, (True, False), strict=True):
         if source is None:
             continue

@@ -12,6 +12,7 @@ from ...actions.bone_channels import animated_curves, curves_of, gaps_of, sample
 from ...actions.markers.holders import PATH, markers_of, source_of
 from ...blender.compat import Source
 from ...scene import history
+from ...scene.played_time import played_time
 from ...scene.units import unit_of
 
 TRAIL_S = 0.2
@@ -118,7 +119,7 @@ def lines_at(played: ComparedMarkers, scene: bpy.types.Scene) -> Array:
         return np.zeros((0, 2, 3))
     spaces = [each.matrix_world @ each.matrix_basis.inverted_safe() for each in played.markers]
     reach = round(TRAIL_S * scene.render.fps / scene.render.fps_base)
-    frame = scene.frame_current_final
+    frame = played_time(played.markers[0]).action_frame(scene.frame_current_final)
     size = CROSS_RADIUS_M / unit_of(scene)
     return trails_at(played, frame, reach).segments(frame, reach, size, np.array(spaces))
 

@@ -10,6 +10,7 @@ from ....solvers.arrays import Array, Single
 from ...actions.curves import Channel
 from ...blender import compat
 from ...scene import history
+from ...scene.played_time import PlayedTime, played_time
 from ..marked_ranges import MAX_STEPS_BETWEEN
 
 MAX_CURVES = 64
@@ -24,6 +25,8 @@ class CurvePair(NamedTuple):
     recorded_in: tuple[int, int]
     """Number of the recorded action in this session, and handle of its slot: in one action,
     the curves of many markers have the same data path."""
+    time: PlayedTime
+    """Of both: in Tweak Mode the editor shows keys at the frames of the strip."""
 
 
 def shown_pairs(context: bpy.types.Context) -> list[CurvePair]:
@@ -47,6 +50,7 @@ def _pairs_of(player: bpy.types.Object, visible: list[bpy.types.FCurve]) -> Iter
     recorded = played and history.raw_of(*played)
     if not (played and recorded):
         return
+    time = played_time(player)
     bag, recorded_bag = compat.channelbag(*played), compat.channelbag(*recorded)
     if bag is None or recorded_bag is None:
         return
@@ -57,7 +61,7 @@ def _pairs_of(player: bpy.types.Object, visible: list[bpy.types.FCurve]) -> Iter
             continue
         behind = recorded_bag.fcurves.find(path, index=index)
         if behind is not None and len(behind.keyframe_points) > 1:  # a line has two ends
-            yield CurvePair(curve, behind, recorded_in)
+            yield CurvePair(curve, behind, recorded_in, time)
 
 
 def curve_lines(curve: bpy.types.FCurve) -> Single:

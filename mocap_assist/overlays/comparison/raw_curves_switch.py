@@ -58,8 +58,8 @@ def _draw_pair(context: bpy.types.Context, pair: CurvePair, shader: Any) -> None
     )
     batch = _batch_of(pair, shader)
     with gpu.matrix.push_pop():
-        gpu.matrix.translate((0.0, offset))
-        gpu.matrix.scale((1.0, factor))
+        gpu.matrix.translate((pair.time.start, offset))
+        gpu.matrix.scale((pair.time.scale, factor))
         batch.draw(shader)
 
 

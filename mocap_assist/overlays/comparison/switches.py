@@ -27,8 +27,9 @@ def draw_overlay_switches(layout: bpy.types.UILayout, context: bpy.types.Context
     if manager.mocap_assist_wipe:
         column.prop(manager, "mocap_assist_wipe_position", slider=True)
     column.prop(manager, RAW_CURVES, toggle=True, icon="FCURVE")
-    is_on = any(getattr(manager, name) for name in (*map(PREFIX.__add__, SWITCHES), RAW_CURVES))
-    if is_on and preferences() is not None:
+    is_on = any(getattr(manager, f"{PREFIX}{name}") for name in SWITCHES)
+    is_graph = context.area is not None and context.area.type == "GRAPH_EDITOR"
+    if (is_on or (is_graph and getattr(manager, RAW_CURVES))) and preferences() is not None:
         _draw_colors(column)
 
 

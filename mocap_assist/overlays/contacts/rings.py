@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ....solvers.arrays import Array, Single
 from ....solvers.errors import InvalidMotionError
 from ...rigs.target_read import find_roles
+from ...scene.played_time import played_time
 from ..marked_ranges import COLORS, CONTACT_ROWS
 from ..strip.reading import contacts_of
 
@@ -49,10 +50,11 @@ def forget() -> None:
 
 
 def rings_at(armature: bpy.types.Object, frame: float) -> Rings | None:
-    """Return a ring for each part of the body in contact at a frame; None without any."""
+    """Return a ring for each part of the body in contact at a scene frame; None without any."""
     contacts = contacts_of(armature)
     if contacts is None:
         return None
+    frame = played_time(armature).action_frame(frame)
     standing = [is_in_contact(keys, frame) for keys in contacts]
     if not any(standing):
         return None

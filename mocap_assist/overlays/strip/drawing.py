@@ -9,7 +9,7 @@ import numpy as np
 
 from ....solvers.arrays import Single
 from ...languages import translated
-from ..marked_ranges import COLORS, LANES, Range, StripRow, grouped
+from ..marked_ranges import COLORS, LANES, Range, StripRow, grouped, most_important
 from . import labels, reading
 from .reading import Strip
 
@@ -18,7 +18,7 @@ MODES = {"TIMELINE", "DOPESHEET", "ACTION", "SHAPEKEY", "FCURVES"}
 """Of these editors, the modes whose keys are those of objects."""
 ROW_HEIGHT_PX, GAP_PX = 13, 3
 """Height of a row, and distance from the border, in pixels at scale 1."""
-MIN_LABELED_PX, MIN_ROW_PX = 10, 2
+MIN_LABELED_PX, MIN_ROW_PX = 10, 5
 """Height below which a row has no label, and its minimum, in pixels at scale 1."""
 MIN_STRIP_PX = 6
 """Minimum of the height of all rows, in pixels at scale 1: what a Timeline of default height
@@ -32,8 +32,9 @@ ROW_INSET = 0.08
 """Distance between two rows, as a fraction of their height."""
 BACKGROUND = (0.06, 0.06, 0.06, 0.7)
 
-_low_strips: dict[int, tuple[Strip, Strip]] = {}
-"""For each strip, the one whose related rows are joined, for editors of low height."""
+_low_strips: dict[tuple[int, int], tuple[Strip, Strip]] = {}
+"""For each strip and number of rows, the one whose related rows are joined, for editors of low
+height."""
 _batches: dict[tuple[int, float], tuple[Strip, Any]] = {}
 """Of ranges, in frames and rows."""
 
@@ -47,17 +48,24 @@ def forget() -> None:
 
 
 def fitting_strip(context: bpy.types.Context) -> Strip | None:
-    """Return the strip of an editor; related rows share one where labels have no space."""
+    """Return the strip of an editor; related rows share one where labels have no space.
+
+    Of these, a low editor has the most important ones.
+    """
     strip = reading.strip_of(context)
     if strip is None:
         return None
     _, height = strip_height(context, len(strip.rows))
-    if height >= MIN_LABELED_PX * context.preferences.system.ui_scale:
+    scale = context.preferences.system.ui_scale
+    if height >= MIN_LABELED_PX * scale:
         return strip
-    known = _low_strips.get(id(strip))
+    space = context.region.height - strip_bottom(context, len(strip.rows), scale)
+    key = id(strip), max(int((space / scale - RULER_PX) / MIN_ROW_PX), 1)
+    known = _low_strips.get(key)
     if known is None or known[0] is not strip:
         _make_room(_low_strips)
-        known = _low_strips[id(strip)] = strip, strip._replace(rows=grouped(strip.rows))
+        rows = most_important(grouped(strip.rows), key[1])
+        known = _low_strips[key] = strip, strip._replace(rows=rows)
     return known[1]
 
 
@@ -121,8 +129,7 @@ def strip_bottom(context: bpy.types.Context, n_rows: int, scale: float) -> float
 def row_height(space: float, n_rows: int, scale: float) -> float:
     """Return the height of a row: less than usual where a low editor has no more space."""
     free = (space - RULER_PX * scale) / n_rows
-    smallest = max(MIN_ROW_PX, MIN_STRIP_PX / n_rows)
-    return max(min(ROW_HEIGHT_PX * scale, free), smallest * scale)
+    return max(min(ROW_HEIGHT_PX * scale, free), MIN_STRIP_PX * scale / n_rows)
 
 
 def _draw_batch(batch: Any, corner: tuple[float, float], unit: tuple[float, float]) -> None:

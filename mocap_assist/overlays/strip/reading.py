@@ -15,6 +15,7 @@ from ...actions.reliability_curves import reliability_path
 from ...blender import compat
 from ...blender.compat import Source
 from ...scene import history
+from ...scene.played_time import PlayedTime, played_time
 from ..confidence_colors import reliability_source
 from ..marked_ranges import (
     CONTACT_ROWS,
@@ -61,6 +62,17 @@ class Strip(NamedTuple):
     step: float
     rows: Rows
 
+    def placed(self, time: PlayedTime) -> "Strip":
+        """Return the strip of frames of an action at the scene frames where that is played."""
+        rows = {
+            row: tuple(
+                Range(*time.scene_range(each.first, each.last), each.mark) for each in found
+            )
+            for row, found in self.rows.items()
+        }
+        ends = time.scene_range(self.first, self.last)
+        return Strip(*ends, abs(time.scale) * self.step, rows)
+
 
 class _StripKey(NamedTuple):
     """Key of a strip; it holds no data-blocks, since undo replaces them."""
@@ -69,6 +81,7 @@ class _StripKey(NamedTuple):
     bones: tuple[str, ...]
     checked: str
     n_issues: int
+    time: PlayedTime
 
 
 _actions: dict[tuple[int, int, int], ActionKeys | None] = {}
@@ -97,17 +110,17 @@ def strip_of(context: bpy.types.Context) -> Strip | None:
         return None
     shown = context.scene.mocap_assist
     is_checked = shown.checked == source[0].name
-    block = _block(armature, source)
+    block, time = _block(armature, source), played_time(armature)
     bones = _selected(armature)
-    key = _StripKey(
-        block, bones, shown.report if is_checked else "", len(shown.issues) * is_checked
-    )
+    report, n_issues = (shown.report, len(shown.issues)) if is_checked else ("", 0)
+    key = _StripKey(block, bones, report, n_issues, time)
     if key not in _strips:
         keys = _keys_of(block, armature, source)
         listed = shown.issues if is_checked else ()
         issues = [(each.start, each.stop, each.kind) for each in listed]
         _make_room(_strips)
-        _strips[key] = None if keys is None else strip_from(keys, frozenset(bones), issues)
+        strip = None if keys is None else strip_from(keys, frozenset(bones), issues)
+        _strips[key] = strip and strip.placed(time)
     return _strips[key]
 
 

@@ -34,7 +34,6 @@ REASONS: dict[str, tuple[str, ...]] = {
         "mocap_assist/markers/sticks.*",
         "mocap_assist/overlays/*",
         "mocap_assist/panel_parts/figure_rows.*",
-        "mocap_assist/panel_parts/panel_layout.*",
         "mocap_assist/track/body_overlay.*",
         "mocap_assist/ui/workspace.SPLITS",
         "mocap_assist/variants/panel.*",

@@ -5,7 +5,10 @@ import pytest
 
 @pytest.mark.usefixtures("all_panels")
 def test_panel_shows_button_and_port_before_listening(draw):
-    assert draw("MOCAP_PT_perform") == [
+    shown = draw("MOCAP_PT_perform")
+
+    assert " ".join(shown[:3]) == "Search the library with gestures, or record a live stream."
+    assert shown[3:] == [
         "live_port", "live_protocol", "live_person", "mocap_assist.listen",
     ]  # fmt: skip
 

@@ -40,6 +40,16 @@ def test_related_rows_share_one(load, ranges, drawing):
     assert 0.0 < right[0] < right[1] < 0.5
 
 
+def test_a_low_editor_has_the_most_important_rows(ranges):
+    row = ranges.StripRow
+    found = (ranges.Range(1.0, 9.0, ranges.Mark.LOW),)
+    rows = dict.fromkeys((row.CONFIDENCE, row.JITTER, row.FILLED, row.CONTACTS), found)
+
+    assert list(ranges.most_important(rows, 1)) == [row.JITTER]
+    assert list(ranges.most_important(rows, 2)) == [row.CONFIDENCE, row.JITTER]
+    assert list(ranges.most_important(rows, 9)) == list(rows)
+
+
 @pytest.fixture
 def stepping(load, actor):
     """Keys of the confidence of a bone, and of both feet."""
@@ -69,7 +79,7 @@ def test_markers_have_no_switch_as_they_have_no_strip(blank, draw):
 
 @pytest.mark.parametrize(
     ("space", "n_rows", "height"),
-    [(24, 1, 6), (24, 2, 3), (24, 4, 2), (44, 2, 10), (90, 2, 13)],
+    [(24, 1, 6), (44, 2, 10), (39, 3, 5), (90, 2, 13)],
 )
 def test_rows_are_as_high_as_the_space_between_keys_and_numbers(drawing, space, n_rows, height):
     assert drawing.row_height(2.0 * space, n_rows, 2.0) == 2.0 * height

@@ -189,7 +189,7 @@ def test_cache_has_no_blender_data(blank, reading, stepping):
 
     ((key, _),) = reading._strips.items()
 
-    assert all(type(part) in {int, str, tuple} for part in key)
+    assert all(isinstance(part, int | str | tuple) for part in key)
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     assert not reading._strips
 

@@ -25,7 +25,7 @@ def test_find_bones_fills_a_row_for_each_role_with_a_score(listed):
     assert listed.source_score > 0.9 and listed.target_score > 0.9
 
 
-def test_the_heading_follows_an_edited_bone(listed):
+def test_the_score_follows_an_edited_bone(listed):
     source = listed.source_score
     row = next(row for row in listed.rows if row.name == "leftLowerLeg")
     bone, row.target = row.target, "hand_l"
@@ -37,13 +37,21 @@ def test_the_heading_follows_an_edited_bone(listed):
     assert listed.target_score == 1.0
 
 
-def test_headings_have_no_names_where_these_would_be_cut(listed, load, draw, monkeypatch):
-    listed.source_score, listed.target_score = 0.98, 0.95
-    assert {"98%", "95%"} <= set(draw("MOCAP_PT_retarget"))
+@pytest.mark.parametrize("wide", [False, True])
+def test_columns_have_headings(listed, load, draw, monkeypatch, wide):
+    monkeypatch.setattr(load("mocap_assist.retarget.bone_list"), "is_wide", lambda _: wide)
 
-    monkeypatch.setattr(load("mocap_assist.retarget.bone_list"), "is_wide", lambda _: True)
-    shown = set(draw("MOCAP_PT_retarget"))
-    assert {f"{listed.source} 98%", "Unreal 95%"} <= shown and "98%" not in shown
+    shown = draw("MOCAP_PT_retarget")
+
+    assert {"Source", "Target"} <= set(shown) and ("Body Parts" in shown) == wide
+
+
+def test_a_narrow_list_names_the_role_where_the_source_lacks_a_bone(listed, load, draw):
+    assert "Lower Leg L" not in draw("MOCAP_PT_retarget")
+
+    next(row for row in listed.rows if row.name == "leftLowerLeg").source = ""
+
+    assert draw("MOCAP_PT_retarget").count("Lower Leg L") == 1
 
 
 def test_retarget_uses_the_list(listed, walker, give, blank, keys_of):

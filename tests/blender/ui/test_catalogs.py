@@ -149,12 +149,15 @@ def test_catalogs_keep_quotes_and_backslashes(languages, tmp_path):
 def test_lines_of_japanese_are_not_too_wide(languages):
     text = "テイクを「クリーン」でもう一度インポートしてください。終わりです。"
 
-    lines = languages.broken_lines(text, 20)
+    lines = languages.broken_lines(text, lambda line: len(line) <= 10)
 
     assert "".join(lines) == text and len(lines) > 2
     assert not any(line[0] in "。」" or line[-1] == "「" for line in lines)
-    assert all(len(line) <= 11 for line in lines)  # 20 letters, and a period
+    assert all(len(line) <= 11 for line in lines)  # and a period
 
 
 def test_lines_of_words_are_broken_at_spaces(languages):
-    assert languages.broken_lines("one two three", 8) == ["one two", "three"]
+    assert languages.broken_lines("one two three", lambda line: len(line) <= 8) == [
+        "one two",
+        "three",
+    ]

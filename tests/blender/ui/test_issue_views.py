@@ -166,6 +166,40 @@ def test_results_are_checked_again_in_a_window_of_their_scene(blank, load, monke
     assert pressed == windows[1:]
 
 
+def test_a_list_of_what_is_played_is_not_renewed(blank, actor, load, monkeypatch):
+    """A result of Fix brings its list along; a check would only lock all buttons."""
+    renewing, pressed = load("mocap_assist.check.renewing"), []
+    scene = blank.context.scene
+    view = SimpleNamespace(type="VIEW_3D", regions=[SimpleNamespace(type="WINDOW")])
+    window = SimpleNamespace(scene=scene, screen=SimpleNamespace(areas=[view]))
+    context = SimpleNamespace(
+        window_manager=SimpleNamespace(windows=[window]),
+        view_layer=blank.context.view_layer,
+        temp_override=lambda **_: nullcontext(),
+    )
+    check = PressedCheck(pressed)
+    ops = SimpleNamespace(mocap_assist=SimpleNamespace(measure_quality=check))
+    monkeypatch.setattr(renewing, "_awaited", [scene.name])
+    for press in (blank.ops.mocap_assist.measure_quality, blank.ops.mocap_assist.denoise):
+        press()
+        with monkeypatch.context() as patch:
+            patch.setattr(renewing, "bpy", SimpleNamespace(context=context, ops=ops))
+            renewing.renew()
+
+    assert pressed == [{"is_quiet": True}]  # after Clean
+
+
+class PressedCheck:
+    def __init__(self, pressed):
+        self.pressed = pressed
+
+    def poll(self):
+        return True
+
+    def __call__(self, mode, **settings):
+        self.pressed.append(settings)
+
+
 def test_only_a_check_that_was_asked_for_takes_the_window(actor, load, make_button, window):
     settings = load("solvers.denoising")
     kind = load("mocap_assist.check.button_settings").CheckBundle

@@ -247,8 +247,22 @@ def test_long_sentence_is_wrapped_to_the_sidebar(load):
     lines = load("mocap_assist.panel_parts.panel_layout").column_lines
     sentence = "Select an animated armature."
 
-    assert len(lines(sentence, 200)) > len(lines(sentence, 400)) == 1
-    assert " ".join(lines(sentence, 0)) == sentence
+    assert len(lines(sentence, 140, 11.0)) > len(lines(sentence, 160, 11.0)) == 1
+    assert " ".join(lines(sentence, 0, 11.0)) == sentence
+
+
+def test_lines_of_sentences_use_their_width(load):
+    """Seen in the import dialog: 250 of its 400 pixels were used."""
+    import blf
+
+    lines = load("mocap_assist.panel_parts.panel_layout").column_lines
+    words = "i" * 6
+
+    found = lines(" ".join([words] * 40), 300, 11.0)
+
+    blf.size(0, 11)
+    used = [blf.dimensions(0, line)[0] for line in found]
+    assert max(used) <= 300 and used[0] > 300 - blf.dimensions(0, f" {words}")[0]
 
 
 def test_reconstruct_panel_shows_settings_and_colors(blank, draw, actor):

@@ -36,7 +36,7 @@ def _is_within(panel, visible):
 def test_empty_scene_has_only_import_with_the_first_steps(shown, draw):
     assert shown() == ["import"]
     assert draw("MOCAP_PT_import") == [
-        "mocap_assist.import_recording", "Or drop files into the", "3D View.",
+        "mocap_assist.import_recording", "Or drop files into the 3D", "View.",
         "mocap_assist.load_sample", "wm.url_open", "mocap_assist.add_workspace",
     ]  # fmt: skip
 

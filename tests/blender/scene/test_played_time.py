@@ -1,0 +1,155 @@
+"""What is drawn and listed is in time with a result on a moved or scaled NLA strip."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+STRIPS = {
+    "moved": {"start": 101},
+    "slower": {"start": 31, "scale": 2.0},
+    "reversed": {"start": 101, "use_reverse": True},
+    "repeated": {"start": 11, "scale": 0.5, "repeat": 2.5},
+    "cut": {"start": 51, "action_frame_start": 20.0, "action_frame_end": 40.0},
+}
+
+
+@pytest.fixture
+def result(load, actor):
+    """The actor, who plays a result that was made from its action, with one foot in contact."""
+    history = load("mocap_assist.scene.history")
+    raw = actor.animation_data.action
+    made = raw.copy()
+    history.record(made, (raw, raw.slots[0]), {"operation": "clean", "slot": "OBactor"})
+    contacts = np.zeros((60, 7), bool)
+    contacts[9:20, 0] = True
+    load("mocap_assist.actions.contact_keys").write_contacts(
+        actor, made, made.slots[0], np.arange(1.0, 61.0), contacts
+    )
+    load("mocap_assist.blender.compat").assign(actor, made, made.slots[0])
+    load("mocap_assist.overlays.comparison.drawing").forget()
+    return actor
+
+
+def lay_strip(armature, start=1, **timing):
+    """Play the action of an armature on an NLA strip."""
+    animation = armature.animation_data
+    action = animation.action
+    strip = animation.nla_tracks.new().strips.new(action.name, start, action)
+    strip.action_slot = action.slots[0]
+    animation.action = None
+    for name, value in timing.items():
+        setattr(strip, name, value)
+    return strip
+
+
+@pytest.mark.parametrize("timing", STRIPS.values(), ids=STRIPS)
+def test_frames_of_the_action_are_those_that_blender_plays(blank, load, result, timing):
+    (curve, *_) = [
+        each
+        for each in load("mocap_assist.blender.compat")
+        .channelbag(result.animation_data.action, result.animation_data.action_slot)
+        .fcurves
+        if each.data_path.endswith(".location")
+    ]
+    bone = result.pose.bones[curve.data_path.split('"')[1]]
+    strip = lay_strip(result, **timing)
+    time = load("mocap_assist.scene.played_time").played_time(result)
+    begin, end = int(strip.frame_start), int(strip.frame_end)
+
+    for frame in (begin - 5, begin, begin + 3, (begin + end) // 2, end - 1, end, end + 9):
+        blank.context.scene.frame_set(frame)
+        shown = curve.evaluate(time.action_frame(frame))
+        assert_allclose(bone.location[curve.array_index], shown, atol=1e-5, err_msg=str(frame))
+
+
+@pytest.mark.parametrize("timing", [STRIPS["moved"], STRIPS["slower"]], ids=["moved", "slower"])
+def test_contacts_and_the_strip_follow(blank, load, result, timing):
+    strip = lay_strip(result, **timing)
+    begin, scale = strip.frame_start, strip.scale
+    first, last = begin + 9 * scale, begin + 19 * scale
+
+    (shown,) = load("mocap_assist.overlays.strip.reading").strip_of(blank.context).rows.values()
+    assert shown[0][:2] == (first, last)
+    rings_at = load("mocap_assist.overlays.contacts.rings").rings_at
+    there = [rings_at(result, frame) is not None for frame in (15.0, first, last, last + scale)]
+    assert there == [False, True, True, False]
+
+
+def test_strip_is_read_again_where_it_was_moved(blank, load, result):
+    strip_of = load("mocap_assist.overlays.strip.reading").strip_of
+    strip = lay_strip(result)
+    assert strip_of(blank.context).first == 1
+    strip.frame_start_ui = 31
+
+    assert strip_of(blank.context).first == 31
+
+
+def test_issues_are_shown_where_the_strip_plays_them(blank, draw, result):
+    lay_strip(result, start=101)
+    scene = blank.context.scene
+    issue = scene.mocap_assist.issues.add()
+    issue.name, issue.start, issue.stop, issue.kind = "LeftArm", 20.0, 22.0, "gap"
+    scene.mocap_assist.checked = "walk"
+
+    blank.ops.mocap_assist.jump_to_issue(index=0)
+    assert scene.frame_current == 120
+    blank.ops.mocap_assist.mark_issues()
+    assert [each.frame for each in scene.timeline_markers] == [120]
+
+
+@pytest.mark.usefixtures("actor")
+def test_clean_changes_the_frames_of_the_preview_range_as_played(blank, load, result):
+    """Frame 111 to 120 of the scene are frame 11 to 20 of the action."""
+    lay_strip(result, start=101)
+    read_take = load("mocap_assist.actions.armature_read").read_take
+    frames = load("mocap_assist.actions.frames")
+    scene = blank.context.scene
+    scene.use_preview_range, scene.frame_preview_start, scene.frame_preview_end = True, 111, 120
+    played = load("mocap_assist.runtime.selection").played_source(result)
+
+    take = read_take(result, scene, frames.FrameRange.PREVIEW, played)
+
+    assert_allclose(take.frames, np.arange(11.0, 21.0))
+
+
+def test_overlay_draws_the_pose_that_blender_shows(blank, load, result, monkeypatch):
+    lay_strip(result, start=101)
+    drawing = load("mocap_assist.overlays.comparison.drawing")
+    drawn = []
+    monkeypatch.setattr(drawing, "draw_lines", lambda lines, *_: drawn.append(lines))
+    look = drawing.Look(((0, 0, 0, 1),) * 2, 1.0, True, None, None)
+    blank.context.scene.frame_set(117)
+
+    drawing._draw_figures(result, 117.0, look)
+
+    bone = result.pose.bones[0]
+    assert_allclose(drawn[1][0], [bone.head, bone.tail], atol=1e-5)
+
+
+def test_held_key_shows_the_recorded_action_in_the_time_of_the_strip(blank, load, result):
+    raw_view, scene = load("mocap_assist.check.raw_view"), blank.context.scene
+    scene.frame_set(17)
+    bone = result.pose.bones[0]
+    recorded = bone.location.copy()
+    (curve, *_) = (
+        load("mocap_assist.blender.compat")
+        .channelbag(result.animation_data.action, result.animation_data.action_slot)
+        .fcurves
+    )
+    for each in curve.id_data.layers[0].strips[0].channelbags[0].fcurves:
+        if each.data_path == f'pose.bones["{bone.name}"].location':
+            for key in each.keyframe_points:
+                key.co.y += 1.0
+    lay_strip(result, start=101)
+    scene.frame_set(117)
+    played = bone.location.copy()
+
+    raw_view.show_raw(blank.context)
+    scene.frame_set(118)
+    scene.frame_set(117)
+    assert_allclose(bone.location, recorded, atol=1e-5)
+    raw_view.restore()
+    scene.frame_set(117)
+
+    assert_allclose(bone.location, played, atol=1e-5)
+    assert len(result.animation_data.nla_tracks) == 1
