@@ -30,7 +30,7 @@ from solvers.samples import walker_skeleton
 from solvers.signals import fill_channel_gaps
 
 RATE, GAP = 30.0, slice(60, 90)
-WALK = Path(__file__).parents[4] / "shared" / "data" / "mocap" / "cmu_walk" / "07_03.bvh"
+WALK = Path(__file__).parents[5] / "shared" / "data" / "mocap" / "cmu_walk" / "07_03.bvh"
 
 
 def test_adapted_relation_is_the_posterior_of_a_bayesian_regression(rng):
