@@ -51,7 +51,7 @@ GUARDS: dict[str, Guard] = {
         0.0, "denoising/test_channels.py::test_path_of_a_straight_walk_is_straight_across_a_gap"
     ),
     "denoising/limb_gaps/adapt_relation.MAX_TRIALS": Guard(
-        10**9, "denoising/test_limb_gaps.py::test_many_gaps_need_no_more_trials"
+        10**9, "denoising/limb_gaps/test_limb_gaps.py::test_many_gaps_need_no_more_trials"
     ),
     "denoising/outliers/outlier_runs.PRIOR_SPIKES": Guard(
         1e-20,
