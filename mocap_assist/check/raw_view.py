@@ -118,9 +118,10 @@ def _copied(value: Any) -> Any:
 
 def _ends(animation: bpy.types.AnimData, shown: _Shown) -> bool:
     """Remove the track of the recorded action; return whether that was still played."""
-    if track := animation.nla_tracks.get(shown.track):
-        animation.nla_tracks.remove(track)
-        return True
+    named = [each for each in animation.nla_tracks if each.name == shown.track]
+    if named:  # the uppermost: the animator may have one of this name below
+        animation.nla_tracks.remove(named[-1])
+        return animation.action is None
     return bool(animation.action == shown.raw.find()[0])
 
 

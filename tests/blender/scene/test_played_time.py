@@ -153,3 +153,23 @@ def test_held_key_shows_the_recorded_action_in_the_time_of_the_strip(blank, load
 
     assert_allclose(bone.location, played, atol=1e-5)
     assert len(result.animation_data.nla_tracks) == 1
+
+
+def test_held_key_removes_its_own_track_alone(blank, load, result):
+    """The recorded action may lie on a track of its name, as below a delta."""
+    raw_view = load("mocap_assist.check.raw_view")
+    (raw, _), animation = load("mocap_assist.scene.history").raw_of(
+        result.animation_data.action
+    ), result.animation_data
+    below = animation.nla_tracks.new()
+    below.name = raw.name
+    below.strips.new(raw.name, 101, raw)
+    strip = lay_strip(result, start=101)
+    before = [(track.name, len(track.strips)) for track in animation.nla_tracks]
+
+    raw_view.show_raw(blank.context)
+    assert len(animation.nla_tracks) == 3
+    raw_view.restore()
+
+    assert [(track.name, len(track.strips)) for track in animation.nla_tracks] == before
+    assert animation.nla_tracks[-1].strips[0] == strip
