@@ -39,12 +39,12 @@ hand: some programs count one frame more than they write. It decides a sentence 
 only."""
 MS_PER_S = 1000.0
 """Milliseconds per second, by definition."""
-MIN_FRAME_MS, MAX_FRAME_MS = 4.0, 100.0
-"""Frame times in milliseconds instead of seconds, if they are no common rate. By definition
-those of 250 to 10 Hz, which is what capture software records."""
-MAX_RATE_ROUNDING = 1e-3
-"""Rounding of rates that are stated in place of frame times, hertz. By definition that of the
-common ones, to three digits."""
+MIN_FRAME_MS = 4.0
+"""Frame times from which they are no seconds. By definition that of 250 Hz in milliseconds, the
+highest rate that capture software records."""
+RATE_DIGITS = 3
+"""Digits after the point of rates that are stated in place of frame times. By definition those
+of the common ones."""
 MAX_BLANK_LINES = 4096
 MAX_HIERARCHY_BYTES = 1 << 24
 """Maximum length of the hierarchy, bytes."""
@@ -242,18 +242,23 @@ def _frame_rate(reader: LineReader, progress: Progress) -> tuple[float | None, i
 
 
 def _stated_rate(word: str, progress: Progress) -> float | None:
-    """Return the rate of a frame time, in place of which may be the rate or milliseconds."""
+    """Return the rate of a frame time, in place of which may be the rate or milliseconds.
+
+    Milliseconds of a common rate may be cut or rounded; other whole numbers are rates.
+    """
     rate = _rate_from_time(word)
-    time = 0.0 if rate is None else 1.0 / rate
-    common = min(COMMON_RATES, key=lambda each: abs(each - time))
-    if abs(common - time) < MAX_RATE_ROUNDING:
-        rate = float(common)
-    elif MIN_FRAME_MS <= time <= MAX_FRAME_MS:
-        rate = common_rate(MS_PER_S / time)
-    else:
+    if rate is None or 1.0 / rate < MIN_FRAME_MS:
         return rate
-    progress(0.1, Remark(f"A frame time of {time:g} is interpreted as {rate:g} Hz"))
-    return rate
+    number = round(1.0 / rate, RATE_DIGITS)
+    common = min(COMMON_RATES, key=lambda each: abs(MS_PER_S / each - number))
+    if number in COMMON_RATES:
+        rate = number
+    elif -0.5 <= MS_PER_S / common - number < 1.0:
+        rate = common
+    else:
+        rate = number if number.is_integer() else common_rate(MS_PER_S / number)
+    progress(0.1, Remark(f"A frame time of {number:g} is interpreted as {rate:g} Hz"))
+    return float(rate)
 
 
 def _rate_from_time(word: str) -> float | None:

@@ -21,7 +21,8 @@ def with_rotation_vectors(
     ----------
     arrays : mapping from name to array
     names : names of arrays of rotations
-        Of shape (..., 3, 3) if they hold matrices; they get the shape (..., 3).
+        Of shape (..., 3, 3) if they hold matrices; they get the shape (..., 3). Rows of
+        matrices, shape (n * 9,), become rows of vectors.
     """
     return {
         name: _rotation_vectors(array) if name in names and _are_rotations(array) else array
@@ -31,7 +32,8 @@ def with_rotation_vectors(
 
 def _are_rotations(array: Array) -> bool:
     """Return whether an array holds rotation matrices, or NaN or zeros where there is none."""
-    if array.ndim < 3 or array.shape[-2:] != (3, 3):
+    is_row = array.ndim == 1 and array.size % 9 == 0
+    if not is_row and (array.ndim < 3 or array.shape[-2:] != (3, 3)):
         return False
     matrices = array.reshape(-1, 3, 3)
     matrices = matrices[_is_known(matrices)]
@@ -48,7 +50,7 @@ def _rotation_vectors(array: Array) -> Array:
     known = _is_known(matrices)
     vectors = np.full((len(matrices), 3), np.nan)
     vectors[known] = rotation_vector_from_quaternion(quaternion_from_matrix(matrices[known]))
-    return vectors.reshape(array.shape[:-1])
+    return vectors.reshape(array.shape[:-1] if array.ndim > 1 else -1)
 
 
 def _is_known(matrices: Array) -> Flags:

@@ -22,6 +22,7 @@ from .parameters import (
     ROTATIONS,
     SCALES,
 )
+from .rotations import with_rotation_vectors
 
 CONSTANT = frozenset((*RATES, *SCALES, *BODY_SCALES))
 """Names of what a take has once."""
@@ -39,8 +40,9 @@ def rows_of_frames(arrays: Mapping[str, Array]) -> dict[str, Array]:
     """Return arrays whose first axis are the frames, of which a row may hold one or all.
 
     All frames are as many as the positions, or as those that change least from one to the next:
-    bodies move little between frames.
+    bodies move little between frames. Rows of rotation matrices become rows of vectors.
     """
+    arrays = with_rotation_vectors(arrays, ROWS)
     n_frames = _n_frames(arrays)
     return {
         name: array.reshape(n_frames if array.size % n_frames == 0 else 1, -1)

@@ -73,6 +73,20 @@ def test_rows_without_positions_are_split_where_poses_change_least(rng):
     assert rows_of_frames({"poses": walk.ravel()})["poses"] == approx(walk)
 
 
+@pytest.mark.parametrize("n_frames", [1, F])
+@pytest.mark.parametrize("stated", [True, False])
+def test_a_row_may_hold_matrices(n_frames, stated):
+    """Before, the matrices of one frame were read as the vectors of three."""
+    vectors = poses(72)[:n_frames]
+    matrices = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
+    arrays = {"poses": matrices.reshape(-1)}
+    positions = {"transl": TRAVEL[:n_frames]} if stated else {}
+
+    rows = rows_of_frames(arrays | positions)
+
+    assert rows["poses"] == approx(vectors, abs=1e-9)
+
+
 def test_a_row_of_one_frame_stays_one():
     arrays = {"poses": np.zeros(72), "trans": np.zeros(3), "fps": np.array(30.0)}
 
