@@ -25,6 +25,7 @@ from ..conventions import (
     with_conventions,
     z_up_from_y_up,
 )
+from .depth_of_points import has_depth
 from .mediapipe_landmarks import N_POINTS, is_inside_picture, is_normalized
 from .relative_positions import refuse_parent_positions, report_still_hips
 from .unnamed_joints import NamedJoints, has_layout, name_joints
@@ -283,7 +284,9 @@ def refuse_pictures(path: Path | str, points: Array) -> None:
     third = observed[..., 2][np.isfinite(observed[..., 2])]
     extents = np.nanmax(observed[..., :2], axis=1) - np.nanmin(observed[..., :2], axis=1)
     is_score = third.min() >= 0.0 and third.max() <= 1.0
-    is_flat = np.median(extents.max(axis=1)) > MIN_PIXELS or is_inside_picture(observed)
+    is_flat = np.median(extents.max(axis=1)) > MIN_PIXELS or (
+        is_inside_picture(observed) and not has_depth(observed)
+    )
     if (is_score and is_flat) or np.ptp(third) == 0.0:
         raise _flat(path)
 

@@ -78,7 +78,8 @@ def key_of_root(names: Iterable[str]) -> str | None:
 def in_room(names: Sequence[str], points: Array, roots: Array | None) -> Array:
     """Return joints where the body is, if they are relative to its position.
 
-    They are if the hips stay at one place, and that is not the position of the body.
+    They are if the hips stay at one place while the body moves or turns. A joint that is at the
+    position of the body is in the room already.
 
     Parameters
     ----------
@@ -91,11 +92,20 @@ def in_room(names: Sequence[str], points: Array, roots: Array | None) -> Array:
     if roots is None or not {"leftUpperLeg", "rightUpperLeg"} <= roles.keys():
         return points
     hips, size, are_still = _hips(points, roles)
-    distance = np.linalg.norm(hips - roots[:, :3, 3], axis=1)
+    path, turns = roots[:, :3, 3], roots[:, :3, :3]
+    travel = max(_range(path), size * _range(turns.reshape(-1, 9)))
+    distance = np.linalg.norm(hips - path, axis=1)
     known = distance[np.isfinite(distance)]
-    if not are_still or not len(known) or np.median(known) <= MAX_CENTER_FRACTION * size:
+    if (
+        not are_still
+        or travel <= MIN_STEP_FRACTION * size
+        or np.median(known) <= MAX_CENTER_FRACTION * size
+    ):
         return points
-    return np.asarray(points @ roots[:, :3, :3].swapaxes(1, 2) + roots[:, None, :3, 3])
+    in_place = (points == path[:, None]).all(axis=(0, 2))
+    return np.where(
+        in_place[:, None], points, points @ turns.swapaxes(1, 2) + roots[:, None, :3, 3]
+    )
 
 
 def report_still_hips(points: Array, roles: Mapping[str, int], progress: Progress) -> None:

@@ -15,13 +15,16 @@ NUMBER_KEYS = either_case("frame", "frame_id", "frame_number", "frame_index", "f
 HEADER_KEYS = either_case("header", "meta", "metadata")
 """Members with the time of a frame, as in messages of ROS."""
 SAMPLING_KEYS = either_case("sample_rate", "sampleRate", "sampling_rate", "frequency", "rate")
-"""Members with the rate, or with another one, such as that of sound."""
+"""Members with the rate, or with another one, such as that of sound or of detected frames."""
 RATE_KEYS = (*either_case("fps", "frame_rate", "framerate", "frameRate", "frames_per_second",
                           "framesPerSecond", "video_fps", "videoFps"), "FPS",
              *SAMPLING_KEYS)  # fmt: skip
 MAX_SAMPLING_HZ = 2000.0
 """Maximum rate in hertz of members that are not called one of frames. It guards sound, whose
 rates start at 8 kHz; cameras of motion capture end at 2 kHz."""
+MIN_SAMPLING_HZ = 1.0
+"""Rate in hertz of the same members, up to which it is a ratio, such as a speed of playback or
+the fraction of frames with a person. By definition the largest fraction."""
 NUMBERS_KEYS = either_case("frame_ids", "frameIds", "frame_numbers", "frame_indices")
 """Members with the numbers of all frames of a person."""
 START_KEYS = either_case("start_frame", "startFrame")
@@ -81,7 +84,7 @@ def is_number(value: Any) -> bool:
     return is_real and abs(value) < MAX_NUMBER
 
 
-def rate_of(value: Any) -> float:
+def _rate_of(value: Any) -> float:
     """Return a rate in hertz, which may be a text; 0 for other values."""
     if isinstance(value, str) and NUMBER.fullmatch(value.strip().encode()):
         value = float(value.replace(",", "."))
@@ -105,9 +108,10 @@ def stated_rates(value: Any, depth: int = 0) -> Iterator[StatedRate]:
     if not isinstance(value, Mapping) or depth >= MAX_RATE_DEPTH:
         return
     for order, key in enumerate(RATE_KEYS):
-        rate = rate_of(value.get(key))
+        rate = _rate_of(value.get(key))
         is_sampling = key in SAMPLING_KEYS
-        if 0.0 < rate <= (MAX_SAMPLING_HZ if is_sampling else MAX_NUMBER):
+        least, most = (MIN_SAMPLING_HZ, MAX_SAMPLING_HZ) if is_sampling else (0.0, MAX_NUMBER)
+        if least < rate <= most:
             yield StatedRate(is_sampling, depth, order, rate)
     for inner in value.values():
         yield from stated_rates(inner, depth + 1)

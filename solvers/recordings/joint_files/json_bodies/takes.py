@@ -25,7 +25,7 @@ from .stamps import (
     is_number,
     listed_numbers,
     listed_times,
-    rate_of,
+    stated_rates,
 )
 
 MAX_DEPTH = 6
@@ -142,8 +142,9 @@ def _stamped(take: Take, value: Mapping[str, Any]) -> Take:
 
 def with_rate(takes: dict[str, Take], value: Mapping[str, Any]) -> dict[str, Take]:
     """Return takes with the rate that a value states next to them."""
-    stated = (rate_of(value.get(key)) for key in RATE_KEYS)
-    rate = next((rate for rate in stated if rate > 0.0), None)
+    own = {key: value[key] for key in RATE_KEYS if key in value}
+    stated = min(stated_rates(own), default=None)
+    rate = None if stated is None else stated.rate
     for take in takes.values():
         take.rate = rate if take.rate is None else take.rate
     return takes

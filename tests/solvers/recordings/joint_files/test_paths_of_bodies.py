@@ -169,3 +169,27 @@ def test_numbered_names_of_joints_are_recognized(read_any, walk):
 
     check(read_any(json.dumps([{"univTime": 33 * k, "bodies": [each]}
                                for k, each in enumerate(bodies)])), walk)  # fmt: skip
+
+
+def test_who_stands_still_in_the_room_stays_there(read_any, walk):
+    """Where the character stands is no second path: no joint follows it."""
+    points = np.repeat(walk[:1], F, axis=0) + np.array([5.0, 0.0, 3.0])
+    frames = [{"joints3d": p.tolist(), "position": [5.0, 0.0, 3.0]} for p in points]
+
+    check(read_any(json.dumps({"fps": 30, "frames": frames})), points)
+
+
+@pytest.mark.parametrize("stated", [{"rate": 1.0}, {"metadata": {"rate": 0.98}}])
+def test_a_ratio_is_no_rate(read_any, walk, stated):
+    content = {**stated, "frames": [{"joints3d": frame.tolist()} for frame in walk]}
+
+    assert read_any(json.dumps(content)).frame_rate == 20.0
+
+
+def test_bodies_in_a_unit_box_are_no_pictures(read_any, walk):
+    """Their third coordinate, from 0 to 1, is depth: bones keep their lengths with it."""
+    low = walk.min(axis=(0, 1))
+    file = io.BytesIO()
+    np.save(file, (walk - low) / np.ptp(walk, axis=(0, 1)).max())
+
+    assert read_any(file.getvalue()).tracks.n_frames == F
