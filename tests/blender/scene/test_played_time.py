@@ -158,9 +158,10 @@ def test_held_key_shows_the_recorded_action_in_the_time_of_the_strip(blank, load
 def test_held_key_removes_its_own_track_alone(blank, load, result):
     """The recorded action may lie on a track of its name, as below a delta."""
     raw_view = load("mocap_assist.check.raw_view")
-    (raw, _), animation = load("mocap_assist.scene.history").raw_of(
-        result.animation_data.action
-    ), result.animation_data
+    (raw, _), animation = (
+        load("mocap_assist.scene.history").raw_of(result.animation_data.action),
+        result.animation_data,
+    )
     below = animation.nla_tracks.new()
     below.name = raw.name
     below.strips.new(raw.name, 101, raw)
