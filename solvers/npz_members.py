@@ -249,7 +249,7 @@ def _check_values(name: str, array: NDArray[Any], values: Values) -> None:
         return
     if values.finite and not np.isfinite(array).all():
         raise DamagedMemberError(f"not all numbers are finite, first of {name}")
-    if values.finite and array.dtype.kind == "f" and (np.abs(array) > MAX_NUMBER).any():
+    if values.finite and float(np.abs(array).max(initial=0)) > MAX_NUMBER:
         raise DamagedMemberError(f"{name} has numbers out of range")
     too_small = values.minimum > -np.inf and (array < values.minimum).any()
     if too_small or (values.maximum < np.inf and (array > values.maximum).any()):
