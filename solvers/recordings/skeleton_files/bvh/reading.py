@@ -249,15 +249,15 @@ def _stated_rate(word: str, progress: Progress) -> float | None:
     rate = _rate_from_time(word)
     if rate is None or 1.0 / rate < MIN_FRAME_MS:
         return rate
-    number = round(1.0 / rate, RATE_DIGITS)
-    common = min(COMMON_RATES, key=lambda each: abs(MS_PER_S / each - number))
-    if number in COMMON_RATES:
-        rate = number
-    elif -0.5 <= MS_PER_S / common - number < 1.0:
+    time = round(1.0 / rate, RATE_DIGITS)
+    common = min(COMMON_RATES, key=lambda each: abs(MS_PER_S / each - time))
+    if time in COMMON_RATES:
+        rate = time
+    elif -0.5 <= MS_PER_S / common - time < 1.0:
         rate = common
     else:
-        rate = number if number.is_integer() else common_rate(MS_PER_S / number)
-    progress(0.1, Remark(f"A frame time of {number:g} is interpreted as {rate:g} Hz"))
+        rate = time if time.is_integer() else common_rate(MS_PER_S / time)
+    progress(0.1, Remark(f"A frame time of {time:g} is interpreted as {rate:g} Hz"))
     return float(rate)
 
 
