@@ -98,7 +98,8 @@ def key_types(
     types: dict[str, NDArray[np.uint8]] = {}
     for recording, result in zip(recordings, denoised, strict=True):
         observed = recording.visible if isinstance(recording, Tracks) else recording.observed
-        flagged = ~observed | result.outliers | (result.confidence < MIN_OBSERVED_CONFIDENCE)
+        filled = ~observed | result.held
+        flagged = filled | result.outliers | (result.confidence < MIN_OBSERVED_CONFIDENCE)
         for name, flags in zip(names_of(recording), flagged.T, strict=True):
             painted = np.where(flags, GENERATED, MEASURED).astype(np.uint8)
             types[name] = np.maximum(painted, types.get(name, MEASURED))

@@ -19,8 +19,9 @@ from ..import_on_demand import import_on_demand
 
 if TYPE_CHECKING:
     from ..feet import Planted, PlantSettings, plant_feet
-    from .denoise import Denoised, denoise
+    from .denoise import denoise
     from .denoise_settings import PART_STRENGTHS, DenoiseMethod, DenoiseSettings
+    from .denoised import Denoised
     from .limits import JointLimitsSettings, clamp_to_limits, learn_joint_limits, limit_excess
     from .quality import (
         Issue,

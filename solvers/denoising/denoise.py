@@ -1,15 +1,15 @@
 """Remove jitter, spikes and gaps from a recording, guided by how bodies move."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
-from ..motion.skeletons import describe_shots, find_shot_boundaries, is_short_shot, shot_ranges
+from ..motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
 from ..progress import Progress, unwatched, within
 from .channels import CENTIMETERS, Channels, Estimate, decode, encode
 from .default_method import OUTLIER_THRESHOLD, apply_default_method
@@ -19,11 +19,19 @@ from .denoise_settings import (
     DenoiseSettings,
     joint_factors,
 )
+from .denoised import Denoised, join_segments, unchanged
 from .edge_poses import (
     describe_edge_poses,
     find_edge_poses,
     hide_edge_poses,
     restore_edge_poses,
+)
+from .held_samples import (
+    describe_held_samples,
+    find_held_samples,
+    held_joints,
+    hide_held_samples,
+    restore_held_samples,
 )
 from .limb_gaps import keep_standing_feet
 from .limits import clamp_to_limits, find_impossible_rotations
@@ -38,26 +46,6 @@ hand; `make sensitivity` varies it."""
 HALF_CONFIDENCE_DEVIATION = 5.0
 """Standard deviation, degrees or centimeters, at which confidence is one half. By definition of
 the confidence."""
-
-
-@dataclass(frozen=True, eq=False)
-class Denoised:
-    """A clean recording with the confidence of each joint."""
-
-    recording: Motion | Tracks
-    """Same joints or points, same frames. NaN remains only for points that neither the take nor
-    the examples show."""
-    outliers: NDArray[np.bool_]
-    """True for samples of the input classified as spikes, shape (n_frames, n_joints)."""
-    confidence: Array
-    """0 (a guess) to 1 (certain) for each cleaned joint, shape (n_frames, n_joints). It is
-    one half where the standard deviation is 5 degrees or centimeters."""
-    iterations: int
-    converged: bool
-    prior_used: str
-    """Patterns that guided the estimate, and the reason; also the cuts that were found."""
-    cuts: tuple[int, ...] = ()
-    """First frame of each segment of a joined take, except the first segment."""
 
 
 def denoise(
@@ -80,6 +68,9 @@ def denoise(
     less than a quarter of a second keeps its samples; only its gaps are filled. Such a segment
     is the T-pose at the start of many recordings. A single limb that starts or ends in a
     separate pose keeps its samples too.
+
+    Samples that a tracker repeated while the body moved on are treated as missing, unless their
+    strength is below 1: then they are blended like others (`find_held_samples`).
 
     Parameters
     ----------
@@ -122,9 +113,11 @@ def denoise(
         raise InvalidMotionError(
             "Nothing was observed in this take; there is nothing to clean."
         )
-    cuts = find_shot_boundaries(recording)
-    edge_poses = find_edge_poses(recording, cuts)
-    take = hide_edge_poses(recording, edge_poses)
+    held = find_held_samples(recording) if settings.method is DenoiseMethod.DEFAULT else None
+    seen = recording if held is None else hide_held_samples(recording, held)
+    cuts = find_shot_boundaries(seen)
+    edge_poses = find_edge_poses(seen, cuts)
+    take = hide_edge_poses(seen, edge_poses)
     results = []
     for start, stop in shot_ranges(take, cuts):
         segment = take.slice(start, stop) if cuts else take
@@ -132,19 +125,20 @@ def denoise(
         if cuts and is_short_shot(stop - start, recording.frame_rate):
             unchanged_settings = replace(settings, strength=0.0)
             results.append(
-                _unchanged(segment)
+                unchanged(segment)
                 if observed_mask(segment).all()
                 else _denoise_segment(segment, bases, None, unchanged_settings, step)
             )
         else:
             results.append(_denoise_segment(segment, bases, limits, settings, step))
     progress(1.0, "Done")
-    result = _join_segments(take, results, cuts) if cuts else results[0]
+    result = join_segments(take, results, cuts) if cuts else results[0]
     complete, confidence = restore_edge_poses(
-        recording, result.recording, result.confidence, edge_poses
+        seen, result.recording, result.confidence, edge_poses
     )
     message = f"{result.prior_used} {describe_edge_poses(edge_poses)}".strip()
-    return replace(result, recording=complete, confidence=confidence, prior_used=message)
+    result = replace(result, recording=complete, confidence=confidence, prior_used=message)
+    return result if held is None else _blend_held(recording, result, held, settings)
 
 
 def _denoise_segment(
@@ -197,6 +191,7 @@ def _denoise_segment(
     return Denoised(
         cleaned,
         (max_per_joint(segment, channels, spikes) > 0.0) & observed_mask(segment),
+        np.zeros(confidence.shape, dtype=np.bool_),
         confidence,
         estimate.iterations,
         estimate.converged,
@@ -219,6 +214,17 @@ def _blend(
     values = np.where(np.isfinite(noisy), blended, estimate)
     cleaned = decode(complete, channels, values.reshape(channels.values.shape))
     return restore_observed(segment, cleaned, strengths == 0.0)
+
+
+def _blend_held(
+    recording: Motion | Tracks, result: Denoised, held: Flags, settings: DenoiseSettings
+) -> Denoised:
+    """Blend what a tracker held as well as what it observed, by the strength of each joint."""
+    strengths = _strengths(recording, settings)
+    cleaned = restore_held_samples(recording, result.recording, held, 1.0 - strengths)
+    message = f"{result.prior_used} {describe_held_samples(held)}".strip()
+    joints = held_joints(recording, held)
+    return replace(result, recording=cleaned, held=joints, prior_used=message)
 
 
 def _strengths(segment: Motion | Tracks, settings: DenoiseSettings) -> Array:
@@ -264,37 +270,3 @@ def _estimate(
     if settings.method is DenoiseMethod.PUBLISHED:
         return filter_as_published(channels, frame_rate, bases, progress)
     return apply_default_method(channels, frame_rate, bases, progress)
-
-
-def _unchanged(segment: Motion | Tracks) -> Denoised:
-    no_outliers = np.zeros(observed_mask(segment).shape, dtype=np.bool_)
-    return Denoised(segment, no_outliers, 1.0 - no_outliers, 0, True, "")
-
-
-def _join_segments(
-    recording: Motion | Tracks, results: Sequence[Denoised], cuts: tuple[int, ...]
-) -> Denoised:
-    """Join the cleaned segments; the longest one reports which patterns were used."""
-    cleaned = [part.recording for part in results]
-    complete: Motion | Tracks
-    if isinstance(recording, Motion):
-        motions = [item for item in cleaned if isinstance(item, Motion)]
-        complete = recording.with_poses(
-            np.concatenate([motion.rotations for motion in motions]),
-            np.concatenate([motion.root_positions for motion in motions]),
-        )
-    else:
-        tracks = [item for item in cleaned if isinstance(item, Tracks)]
-        complete = recording.with_positions(np.concatenate([item.positions for item in tracks]))
-    longest_segment = max(
-        results, key=lambda part: part.recording.n_frames * bool(part.prior_used)
-    )
-    return Denoised(
-        complete,
-        np.concatenate([part.outliers for part in results]),
-        np.concatenate([part.confidence for part in results]),
-        max(part.iterations for part in results),
-        all(part.converged for part in results),
-        f"{longest_segment.prior_used} {describe_shots(recording, cuts)}".strip(),
-        cuts,
-    )

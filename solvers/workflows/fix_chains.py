@@ -212,7 +212,8 @@ def take_before(take: Take, chain: ChainResult, progress: Progress) -> Motion | 
 
 def _describe_cleaning(start: Motion | Tracks, denoised: Denoised) -> list[str]:
     filled = observed_samples(denoised.recording) & ~observed_samples(start)
-    n_spikes, n_gaps = _n_runs(denoised.outliers), _n_runs(filled)
+    n_gaps = _n_runs(filled) + _n_runs(denoised.held)
+    n_spikes = _n_runs(denoised.outliers)
     corrected, gaps = _count_as_text(n_spikes, SPIKES), _count_as_text(n_gaps, GAPS)
     # The first sentence says that there are no examples, which is so for every take here.
     _, _, remarks = denoised.prior_used.partition(". ")

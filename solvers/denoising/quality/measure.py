@@ -14,6 +14,7 @@ from ...motion.humanoid import HumanoidMap, contacts_of_points, detect_contacts
 from ...motion.skeletons import find_shot_boundaries
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
+from ..held_samples import body_is_held, find_held_samples, held_joints, hide_held_samples
 from ..limits import limit_excess
 from .bone_drift import BoneDrift, measure_bone_drifts
 from .figures import quality_figures
@@ -76,6 +77,11 @@ class Quality:
     cuts : tuple of int
         First frame of each segment of a joined take, except the first segment. Cuts do not
         count as jitter, spikes or foot slide.
+    held : bool, shape (n_frames, n_joints), or None
+        True where a joint repeats the frame before although it moves on; None: nowhere. Gaps
+        contain them.
+    body_held : bool, shape (n_frames,), or None
+        True where most of the body is held.
     """
 
     names: tuple[str, ...]
@@ -87,6 +93,8 @@ class Quality:
     bones: tuple[BoneDrift, ...]
     limit_excess: Array | None = None
     cuts: tuple[int, ...] = ()
+    held: Flags | None = None
+    body_held: Flags | None = None
 
     @cached_property
     def spikes(self) -> Flags:
@@ -95,7 +103,7 @@ class Quality:
 
     @cached_property
     def gaps(self) -> Flags:
-        """True where a joint was not observed, shape (n_frames, n_joints)."""
+        """True where a joint was not observed or is held, shape (n_frames, n_joints)."""
         return self._by_joint([signal.gaps for signal in self.signals])
 
     @property
@@ -197,17 +205,21 @@ def measure_quality(
         names, positions = recording.names, recording.positions
         feet = foot_paths(recording, humanoid_map)
         bones = measure_bone_drifts(recording)
-    cuts = find_shot_boundaries(recording)
+    held = find_held_samples(recording)
+    seen = hide_held_samples(recording, held)
+    cuts = find_shot_boundaries(seen)
     quality = Quality(
         names=names,
         n_frames=recording.n_frames,
         frame_rate=recording.frame_rate,
         jitter=measure_jitter(positions, recording.frame_rate, cuts),
-        signals=extract_signals(recording, rule, within(progress, 0.0, 0.8), cuts),
+        signals=extract_signals(seen, rule, within(progress, 0.0, 0.8), cuts),
         feet=_foot_slides(recording, feet, contacts, humanoid_map, cuts),
         bones=bones,
         limit_excess=_excess(recording, limits, humanoid_map),
         cuts=cuts,
+        held=held_joints(recording, held) if held.any() else None,
+        body_held=body_is_held(recording, held) if held.any() else None,
     )
     progress(1.0, "Measured")
     return quality

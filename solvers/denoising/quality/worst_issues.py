@@ -132,7 +132,7 @@ def find_worst_issues(
     pause = round(settings.pause * quality.frame_rate)
     issues = [
         *_spikes(quality, pause),
-        *_gaps(quality),
+        *_gaps(quality, pause),
         *_jitter(quality, settings, pause),
         *_slides(quality, settings),
         *_beyond_limits(quality, pause),
@@ -166,17 +166,30 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
             )
 
 
-def _gaps(quality: Quality) -> Iterator[Issue]:
+def _gaps(quality: Quality, pause: int) -> Iterator[Issue]:
+    body_held = np.zeros(quality.n_frames, dtype=np.bool_)
+    if quality.body_held is not None:
+        body_held = quality.body_held
+    for start, stop in _merged(find_runs(body_held), pause):
+        seconds = float(body_held[start:stop].sum()) / quality.frame_rate
+        sentence = f"The entire body stands still for {seconds:.2f} s and then jumps."
+        yield Issue(quality.names[0], start, stop, "gap", seconds / LONG_GAP_S, sentence)
     for signal in quality.signals:
-        for start, stop in find_runs(signal.gaps):
+        for start, stop in find_runs(signal.gaps & ~body_held):
             seconds = (stop - start) / quality.frame_rate
-            all_missing = stop - start == quality.n_frames
-            sentence = (
-                f"{signal.joint} is never observed."
-                if all_missing
-                else f"{signal.joint} is missing for {seconds:.2f} s."
-            )
+            if stop - start == quality.n_frames:
+                sentence = f"{signal.joint} is never observed."
+            elif _is_held(quality, signal, start):
+                sentence = f"{signal.joint} stands still for {seconds:.2f} s and then jumps."
+            else:
+                sentence = f"{signal.joint} is missing for {seconds:.2f} s."
             yield Issue(signal.joint, start, stop, "gap", seconds / LONG_GAP_S, sentence)
+
+
+def _is_held(quality: Quality, signal: Signal, frame: int) -> bool:
+    """Return whether a joint repeats the frame before."""
+    joint = quality.names.index(signal.joint)
+    return quality.held is not None and bool(quality.held[frame, joint])
 
 
 def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[Issue]:

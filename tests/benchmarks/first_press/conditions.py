@@ -41,6 +41,10 @@ class Condition:
     """Standard deviation of 1/f noise, degrees."""
     limb: str = ""
     """Which limb is missing for a second."""
+    is_held: bool = False
+    """Whether the limb repeats its last pose instead of missing."""
+    dropped: float = 0.0
+    """Fraction of frames that were lost, 1 to 8 at a time: the body repeats its last pose."""
     t_pose_frames: int = 0
     """For so many frames at the start the left arm is in the rest pose; they are not scored."""
     spin: float = 0.0
@@ -49,8 +53,8 @@ class Condition:
     @property
     def is_clean(self) -> bool:
         """Whether the take is given as it is."""
-        damage = self.sigma, self.outliers, self.bursts, self.drift, self.t_pose_frames
-        return not any(damage) and not self.limb
+        noise = self.sigma, self.outliers, self.bursts, self.drift
+        return not any(noise) and not (self.limb or self.dropped or self.t_pose_frames)
 
     def __str__(self) -> str:
         return self.title
@@ -65,6 +69,8 @@ CONDITIONS = (
     Condition("1/f drift", drift=3.0),
     Condition("arm lost 1 s", limb="arm"),
     Condition("leg lost 1 s", limb="leg"),
+    Condition("arm held 1 s", sigma=0.3, limb="arm", is_held=True),
+    Condition("frames dropped", sigma=0.3, dropped=0.15),
     Condition("sigma 1, arm in T-pose", sigma=1.0, t_pose_frames=3),
     Condition("two turns, root bone", spin=720.0),
 )
@@ -106,7 +112,12 @@ class Case:
         result = corrupt(self.clean, condition.sigma, condition.outliers, rng)
         if condition.drift:
             result += condition.drift * _one_over_f(result.shape, rng)
-        if condition.limb:
+        for joints, frames in self._repeats:
+            columns = self.channels.of_joints(joints)
+            if 0 in joints:
+                columns = np.append(columns, np.arange(-3, 0) + result.shape[1])
+            result[:, columns] = result[np.ix_(frames, columns)]
+        if condition.limb and not condition.is_held:
             rows = np.arange(len(result))[self.missing_frames]
             result[np.ix_(rows, self.channels.of_joints(self.missing_joints))] = np.nan
         if condition.t_pose_frames:
@@ -133,7 +144,12 @@ class Case:
     @cached_property
     def recording(self) -> Motion:
         """The corrupted take."""
-        return self.motion(self.corrupted)
+        motion = self.motion(self.corrupted)
+        for joints, frames in self._repeats:  # to the last bit, also where it hardly moves
+            rotations = motion.rotations.copy()
+            rotations[:, joints] = rotations[np.ix_(frames, joints)]
+            motion = motion.with_poses(rotations)
+        return motion
 
     @property
     def given(self) -> Motion:
@@ -143,6 +159,23 @@ class Case:
     def body_of(self, cleaned: Motion) -> Motion:
         """Return the body of what was given."""
         return without_bone(cleaned, self.truth) if self.condition.spin else cleaned
+
+    @cached_property
+    def _repeats(self) -> list[tuple[list[int], NDArray[np.intp]]]:
+        """Joints that repeat a pose, and the frame that each frame shows."""
+        frames, condition = np.arange(self.truth.n_frames), self.condition
+        if condition.is_held:
+            lost = self.missing_frames
+            frames[lost] = lost.start - 1
+            return [(self.missing_joints, frames)]
+        if not condition.dropped:
+            return []
+        rng, lost = seeded(str(self.take), f"{condition} frames"), np.zeros(len(frames), bool)
+        while lost.mean() < condition.dropped:
+            start = rng.integers(2, len(frames) - 10)
+            lost[start : start + rng.integers(1, 9)] = True
+        frames[lost] = 0
+        return [(list(range(self.truth.n_joints)), np.maximum.accumulate(frames))]
 
     @cached_property
     def missing_joints(self) -> list[int]:

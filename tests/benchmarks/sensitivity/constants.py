@@ -21,6 +21,7 @@ FAMILIES: dict[str, tuple[str, ...]] = {
     "denoising": (
         "solvers/denoising/denoise.py",
         "solvers/denoising/edge_poses.py",
+        "solvers/denoising/held_samples",
         "solvers/denoising/default_method.py",
         "solvers/denoising/observed_samples.py",
         "solvers/denoising/channels",
