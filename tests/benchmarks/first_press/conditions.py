@@ -165,12 +165,12 @@ class Case:
         """Joints that repeat a pose, and the frame that each frame shows."""
         frames, condition = np.arange(self.truth.n_frames), self.condition
         if condition.is_held:
-            lost = self.missing_frames
-            frames[lost] = lost.start - 1
+            frames[self.missing_frames] = self.missing_frames.start - 1
             return [(self.missing_joints, frames)]
         if not condition.dropped:
             return []
-        rng, lost = seeded(str(self.take), f"{condition} frames"), np.zeros(len(frames), bool)
+        rng = seeded(str(self.take), f"{condition} frames")
+        lost = np.zeros(len(frames), dtype=np.bool_)
         while lost.mean() < condition.dropped:
             start = rng.integers(2, len(frames) - 10)
             lost[start : start + rng.integers(1, 9)] = True
