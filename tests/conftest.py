@@ -76,6 +76,7 @@ ON_ONE_PYTHON = {
     "retrieval": (3, 11),
     "signals/test_noise.py": (3, 11),
     "test_archives.py": (3, 13),
+    "test_imports.py": (3, 13),
     "test_solver_contracts.py": (3, 13),
     "variation": (3, 13),
     "workflows/test_capture_recording.py": (3, 11),
