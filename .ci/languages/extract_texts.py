@@ -56,7 +56,6 @@ LABELED = {
     "mocap_assist/retarget/role_labels.py": {"PARTS", "FINGERS"},
     "mocap_assist/runtime/watch.py": {"CANCELS", "time_left"},
     "solvers/denoising/default_method.py": {"_joints"},
-    "solvers/denoising/edge_poses.py": {"NAMES"},
     "solvers/denoising/quality/worst_issues.py": {"_spikes", "_gaps", "_jitter", "_slides",
                                                   "_beyond_limits", "_cuts"},
     "solvers/denoising/window_estimates/channel_groups.py": {"_describe_prior"},
@@ -72,7 +71,10 @@ LABELED = {
     "solvers/workflows/fix_report/take_figures.py": {"_texts"},
 }  # fmt: skip
 """By file: constants, enums and functions with texts that are no full sentences."""
-TERMS = {"solvers/motion/skeletons/file_conventions.py": {"UNIT_NAMES"}}
+TERMS = {
+    "solvers/denoising/edge_poses.py": {"NAMES"},
+    "solvers/motion/skeletons/file_conventions.py": {"UNIT_NAMES"},
+}
 """By file: constants whose every word is a text."""
 TAKES_TEXT = {
     "translated": 0, "pgettext_iface": 0, "poll_message_set": 0, "_in_slices": 0,

@@ -63,6 +63,29 @@ def test_arm_in_t_pose_at_an_end_changes_no_other_sample(walk, rng, frames, text
     assert text in result.prior_used
 
 
+@pytest.mark.parametrize(("joint", "name"), [("Hips", "hips"), ("Neck", "head")])
+def test_first_frame_that_faces_elsewhere_changes_no_other_sample(walk, rng, joint, name):
+    """Suits begin with a T-pose that faces north; streams with a head that looks ahead."""
+    moving = noisy(walk, 1.0, rng)
+    rotations, roots = moving.rotations.copy(), moving.root_positions.copy()
+    index = walk.skeleton.index(joint)
+    turn = quaternion_from_rotation_vector(np.radians(90.0) * np.array([0.0, 0.0, 1.0]))
+    rotations[0, index] = multiply(turn, rotations[0, index])
+    if index == 0:
+        roots[0, 0] += 0.5
+
+    result = denoise(moving.with_poses(rotations, roots))
+
+    cleaned = result.recording
+    assert f"Frame 1 of the {name} is a separate pose" in result.prior_used
+    assert angle_between(cleaned.rotations[0, index], rotations[0, index]) < 1e-6
+    if index == 0:
+        np.testing.assert_array_equal(cleaned.root_positions[0], roots[0])
+    errors = np.degrees(angle_between(cleaned.rotations[1:], walk.rotations[1:]))
+    assert errors[:10, index].max() < 3.0
+    assert np.abs(cleaned.root_positions[1:] - walk.root_positions[1:]).max() < 0.03
+
+
 def test_real_movement_is_not_classified_as_an_edge_pose(walk, rng):
     """A punch at the very start: the elbow extends by 100 degrees within four frames."""
     time = np.arange(-2, walk.n_frames - 2)
