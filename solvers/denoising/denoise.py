@@ -113,9 +113,8 @@ def denoise(
         raise InvalidMotionError(
             "Nothing was observed in this take; there is nothing to clean."
         )
-    held = find_held_samples(recording) if settings.method is DenoiseMethod.DEFAULT else None
-    seen = recording if held is None else hide_held_samples(recording, held)
-    cuts = find_shot_boundaries(seen)
+    held, cuts = _find_held_and_cuts(recording, settings)
+    seen = hide_held_samples(recording, held)
     edge_poses = find_edge_poses(seen, cuts)
     take = hide_edge_poses(seen, edge_poses)
     results = []
@@ -138,7 +137,21 @@ def denoise(
     )
     message = f"{result.prior_used} {describe_edge_poses(edge_poses)}".strip()
     result = replace(result, recording=complete, confidence=confidence, prior_used=message)
-    return result if held is None else _blend_held(recording, result, held, settings)
+    return _blend_held(recording, result, held, settings)
+
+
+def _find_held_and_cuts(
+    recording: Motion | Tracks, settings: DenoiseSettings
+) -> tuple[Flags, tuple[int, ...]]:
+    """Return what a tracker held, except in segments that are kept, and the cuts."""
+    held = find_held_samples(recording)
+    if settings.method is DenoiseMethod.PUBLISHED:
+        held[:] = False
+    cuts = find_shot_boundaries(hide_held_samples(recording, held))
+    for start, stop in shot_ranges(recording, cuts):
+        if cuts and is_short_shot(stop - start, recording.frame_rate):
+            held[start:stop] = False
+    return held, cuts
 
 
 def _denoise_segment(

@@ -1,61 +1,76 @@
 """Find samples that a tracker repeated because it had lost a joint or the whole body."""
 
-from collections import defaultdict
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array, Flags
 from ...motion import Motion, Tracks
-from ...rotations import angle_between, unroll
+from ...motion.skeletons import find_shot_boundaries
+from ...rotations import unroll
 
-MAX_REPEAT_RAD, MAX_REPEAT_M = 1e-5, 1e-6
-"""Largest step of a repeated rotation or position, radians and meters. It bounds the rounding
-of single precision: 1e-7 of a quaternion, and 5e-7 of 5 m."""
+MAX_REPEAT_RAD = 1e-5
+"""Largest step of a repeated sample, radians. It bounds the rounding of single precision: 1e-7
+of a quaternion, and 5e-7 of 5 m."""
 METERS_PER_RADIAN = 0.3
 """Displacement in meters that counts like a rotation by one radian. Chosen by hand: 0.3 m is
 the length of a limb's bone, so that both move its end as far."""
-MIN_RATIO = 1.5
-"""Jump after the repeats, as a ratio to the steps before and after: a body that moves on has 2
-after one repeat, and more after more. It guards poses from which a movement starts
-(`test_pose_between_linear_keys_is_not_held`)."""
+MIN_JITTER_RAD = 6e-5
+"""Lowest jitter of a recording, radians; most have 9e-5 to 4e-3. It guards animation that was
+keyed by hand, whose curves are smooth (`test_anticipation_between_keys_is_not_held`)."""
+MIN_PARTS = 3
+"""Number of parts above which it is no chance that they repeat in the same frames. Chosen by
+hand: an arm without fingers has 3 joints."""
+MIN_GROUP_RATIO, MIN_RATIO = 0.5, 1.5
+"""Jump after the repeats of several and of single parts, as a ratio to the step after it, and
+of single ones also to the step before. They guard poses that are left by steps that grow
+(`test_pose_that_is_eased_out_of_is_not_held`) or that a single joint keeps
+(`test_joint_that_stops_and_goes_on_is_not_held`)."""
 MIN_JUMP_RAD = np.radians(1.0)
 """Smallest jump after the repeats of all parts together, radians. It guards bodies that hardly
 move (`test_repeats_of_a_body_that_hardly_moves_do_not_matter`)."""
-MAX_SPEED_RATIO = 10.0
-"""Mean speed from the first repeat to the jump, as a ratio to the slower of both sides. It
-guards cuts (`test_still_pose_at_the_start_or_before_a_cut_is_not_held`)."""
 MIN_QUANTA = 5.0
 """Largest jump after the repeats in smallest steps of a joint, a ratio. It guards joints that
 are rounded (`test_fingers_of_a_glove_in_coarse_steps_are_not_held`)."""
 MAX_REPEATED_FRACTION = 0.75
-"""Fraction of repeated samples above which a joint counts as keyed on steps. It guards
-animation that was keyed by hand (`test_poses_keyed_on_steps_are_not_held`)."""
+"""Fraction of repeated samples above which a joint counts as still. It guards joints that move
+in steps (`test_poses_on_steps_are_not_held`)."""
+MIN_DIRECTION = 0.3
+"""Cosine of the jump and of the movement before and after it, at what looks like a cut. It
+guards joined takes (`test_pose_that_fills_up_a_joined_take_is_not_held`)."""
+N_JITTER_SAMPLES = 2000
+"""Samples of a joint from which its jitter is estimated. It bounds the run time."""
 
 
-class _Event(NamedTuple):
-    """A run of repeats of one rotation or position, and the jump after it."""
+class _Runs(NamedTuple):
+    """Runs of repeats of single parts, each an entry of these arrays."""
 
-    part: int
-    jump: float
-    speed: float
-    """The jump by its number of frames."""
-    before: float
-    after: float
-    """Speeds of the changes before and after."""
-    quanta: float
-    """The jump in smallest steps of this part."""
+    parts: NDArray[np.intp]
+    starts: NDArray[np.intp]
+    stops: NDArray[np.intp]
+    """First frame that repeats the one before, and first that does not."""
+    jumps: Array
+    before: Array
+    after: Array
+    """Speeds of the changes before and after, per frame."""
+    quanta: Array
+    """The jump in smallest steps of the part."""
+    at_limit: Flags
+    """Whether the part stops at this value most of the time, as at a limit of the joint."""
 
 
 def find_held_samples(recording: Motion | Tracks) -> Flags:
     """Return which samples repeat the one before although the body moves on.
 
     Formats of poses cannot leave a sample out, so a tracker that loses a limb, or a stream that
-    loses packets, repeats the last value and then jumps. A pose that an actor or an animator
-    holds is left by small steps that grow. Parts that repeat in the same frames are judged
-    together. A value at which a part stops most of the time is a limit of the joint. Repeats at
-    the start or the end of a take may be such a pose, and are kept.
+    loses packets, repeats the last value and then jumps. What was recorded has some jitter, so
+    several parts repeat in the same frames only if they were lost. A single part may stop: it
+    must jump farther than it moves from frame to frame, from a value at which it does not stop
+    most of the time. What looks like a cut after the repeats is one, unless the body moves on
+    in its direction. Curves without jitter were keyed by hand: there poses are held on purpose.
+    Repeats at the start or the end of a take may be such a pose, and are kept.
 
     Returns
     -------
@@ -63,55 +78,85 @@ def find_held_samples(recording: Motion | Tracks) -> Flags:
         Shape (n_frames, n_joints + 1) of a motion, the last for the position of the root, or
         (n_frames, n_points) of tracks.
     """
-    steps, limits = _steps(recording)
-    held = np.zeros((recording.n_frames, steps.shape[1]), dtype=np.bool_)
-    events: defaultdict[tuple[int, int], list[_Event]] = defaultdict(list)
-    for part in np.flatnonzero((steps <= limits).any(axis=0)):
-        found = list(_events(int(part), steps[:, part], float(limits[part])))
-        values = _values(recording, int(part))[[span[0] for span, _ in found]]
-        for (span, event), is_limit in zip(found, _are_limits(values), strict=True):
-            if not is_limit:
-                events[span].append(event)
-    for (start, stop), members in events.items():
-        if _moves_on(members):
-            held[start:stop, [event.part for event in members]] = True
+    trajectories = _trajectories(recording)
+    n_frames, n_parts = trajectories.shape[:2]
+    held = np.zeros((n_frames, n_parts), dtype=np.bool_)
+    repeats = _steps(trajectories) <= MAX_REPEAT_RAD
+    if not repeats.any() or not _jitter(trajectories, repeats) >= MIN_JITTER_RAD:
+        return held
+    found = [run for part in range(n_parts) for run in _runs(part, trajectories, repeats)]
+    if not found:
+        return held
+    runs = _Runs(*map(np.concatenate, zip(*found, strict=True)))
+    _, first, group = np.unique(
+        runs.starts * (n_frames + 1) + runs.stops, return_index=True, return_inverse=True
+    )
+    are_held = _move_on(runs, group) & ~_are_cuts(
+        recording, trajectories, runs.starts[first], runs.stops[first]
+    )
+    is_single = np.bincount(group)[group] < MIN_PARTS
+    for run in np.flatnonzero(are_held[group] & ~(is_single & runs.at_limit)):
+        held[runs.starts[run] : runs.stops[run], runs.parts[run]] = True
     return held
 
 
 def body_is_held(recording: Motion | Tracks, held: Flags) -> Flags:
     """Return the frames in which most of what moves in this take is held, shape (n_frames,)."""
-    steps, limits = _steps(recording)
-    moving = (steps > limits).any(axis=0)
+    moving = (_steps(_trajectories(recording)) > MAX_REPEAT_RAD).any(axis=0)
     return np.asarray(held.any(axis=1) & (held[:, moving].mean(axis=1) >= 0.5))
 
 
-def _steps(recording: Motion | Tracks) -> tuple[Array, Array]:
-    """Return the steps between frames and the largest of a repeat, radians.
+def _trajectories(recording: Motion | Tracks) -> Array:
+    """Return rotations and positions whose distances are radians, (n_frames, n_parts, 4)."""
+    if isinstance(recording, Tracks):
+        return recording.positions / METERS_PER_RADIAN
+    root = np.pad(recording.root_positions / METERS_PER_RADIAN, ((0, 0), (0, 1)))
+    # Twice the quaternion: the distance of neighbors is then their angle in radians.
+    return np.concatenate([2.0 * unroll(recording.rotations), root[:, None]], axis=1)
 
-    The shapes are (n_frames - 1, n_parts) and (n_parts,).
+
+def _steps(trajectories: Array) -> Array:
+    """Return the distance of each part between frames, shape (n_frames - 1, n_parts)."""
+    return np.asarray(np.linalg.norm(np.diff(trajectories, axis=0), axis=-1))
+
+
+def _jitter(trajectories: Array, repeats: Flags) -> float:
+    """Return the median over all parts that move of what the movement does not explain.
+
+    The fourth difference of white noise has 70 times its variance; that of curves between keys,
+    which are polynomials of third degree, is 0. Repeats are left out.
     """
-    if isinstance(recording, Tracks):
-        steps = np.linalg.norm(np.diff(recording.positions, axis=0), axis=-1)
-        return steps / METERS_PER_RADIAN, np.full(
-            recording.n_points, MAX_REPEAT_M / METERS_PER_RADIAN
-        )
-    turns = np.abs(angle_between(recording.rotations[1:], recording.rotations[:-1]))
-    moves = np.linalg.norm(np.diff(recording.root_positions, axis=0), axis=-1)
-    limits = np.full(turns.shape[1] + 1, MAX_REPEAT_RAD)
-    limits[-1] = MAX_REPEAT_M / METERS_PER_RADIAN
-    return np.column_stack([turns, moves / METERS_PER_RADIAN]), limits
+    jitter = []
+    for part in np.flatnonzero(repeats.mean(axis=0) <= MAX_REPEATED_FRACTION):
+        frames = np.flatnonzero(~repeats[:, part])[:N_JITTER_SAMPLES] + 1
+        changes = np.diff(trajectories[frames, part], n=4, axis=0)
+        sizes = np.linalg.norm(changes, axis=-1) / np.sqrt(70.0)
+        if np.isfinite(sizes).any():
+            jitter.append(float(np.nanmedian(sizes)))
+    return float(np.median(jitter)) if jitter else 0.0
 
 
-def _values(recording: Motion | Tracks, part: int) -> Array:
-    """Return the rotation or position of a part, shape (n_frames, 4 or 3)."""
-    if isinstance(recording, Tracks):
-        return recording.positions[:, part]
-    if part == recording.n_joints:
-        return recording.root_positions
-    return unroll(recording.rotations[:, part])
+def _runs(part: int, trajectories: Array, repeats: Flags) -> Iterator[tuple[NDArray[Any], ...]]:
+    """Yield the runs of repeats of a part, if there are any between two changes."""
+    frames = np.flatnonzero(~repeats[:, part]) + 1  # a missing sample ends a run
+    if len(frames) < 3 or repeats[:, part].mean() > MAX_REPEATED_FRACTION:
+        return
+    values = trajectories[:, part]
+    sizes = np.linalg.norm(values[frames] - values[frames - 1], axis=-1)
+    lengths = np.diff(frames, prepend=0)
+    speeds = sizes / lengths
+    which = np.flatnonzero(lengths[1:-1] > 1) + 1
+    which = which[np.isfinite(sizes[which] + sizes[which - 1] + sizes[which + 1])]
+    if len(which):
+        smallest = np.nanmin(sizes)
+        starts = frames[which - 1] + 1
+        yield (
+            np.full(len(which), part), starts, frames[which], sizes[which], speeds[which - 1],
+            speeds[which + 1], sizes[which] / smallest, _recur(values[starts]),
+        )  # fmt: skip
 
 
-def _are_limits(values: Array) -> Flags:
+def _recur(values: Array) -> Flags:
     """Return which of these values make up half of all, shape (n_values,)."""
     if len(values) < 2:
         return np.zeros(len(values), dtype=np.bool_)
@@ -120,28 +165,35 @@ def _are_limits(values: Array) -> Flags:
     return np.asarray(counts[which.reshape(-1)] > max(0.5 * len(values), 1.0))
 
 
-def _events(part: int, steps: Array, limit: float) -> Iterator[tuple[tuple[int, int], _Event]]:
-    """Yield the first and the last frame + 1 of each run of repeats, and its jump."""
-    frames = np.flatnonzero(~(steps <= limit)) + 1  # a missing sample ends a run
-    if len(frames) < 3 or len(frames) < (1.0 - MAX_REPEATED_FRACTION) * len(steps):
-        return
-    sizes = steps[frames - 1]
-    lengths = np.diff(frames, prepend=0)
-    speeds = sizes / lengths
-    smallest = float(np.nanmin(sizes, initial=np.inf))
-    for index in np.flatnonzero(lengths[1:-1] > 1) + 1:
-        around = sizes[index], speeds[index], speeds[index - 1], speeds[index + 1]
-        if np.isfinite(around).all():
-            jump, speed, before, after = map(float, around)
-            span = int(frames[index - 1]) + 1, int(frames[index])
-            yield span, _Event(part, jump, speed, before, after, jump / smallest)
+def _move_on(runs: _Runs, group: NDArray[np.intp]) -> Flags:
+    """Return in which groups of runs with the same frames the parts moved on."""
 
+    def together(values: Array) -> Array:
+        return np.asarray(np.sqrt(np.bincount(group, values**2)))
 
-def _moves_on(events: Sequence[_Event]) -> bool:
-    """Return whether the parts moved on at a speed like that before and after."""
-    jump, speed, before, after = np.linalg.norm([event[1:5] for event in events], axis=0)
-    return bool(
-        jump >= max(MIN_RATIO * max(before, after), MIN_JUMP_RAD)
-        and speed <= MAX_SPEED_RATIO * min(before, after)
-        and max(event.quanta for event in events) >= MIN_QUANTA
+    jumps, before, after = map(together, (runs.jumps, runs.before, runs.after))
+    quanta = np.zeros(len(jumps))
+    np.maximum.at(quanta, group, runs.quanta)
+    moved = np.where(
+        np.bincount(group) >= MIN_PARTS,
+        jumps >= MIN_GROUP_RATIO * after,
+        jumps >= MIN_RATIO * np.maximum(before, after),
     )
+    return moved & (jumps >= MIN_JUMP_RAD) & (quanta >= MIN_QUANTA)
+
+
+def _are_cuts(
+    recording: Motion | Tracks,
+    trajectories: Array,
+    starts: NDArray[np.intp],
+    stops: NDArray[np.intp],
+) -> Flags:
+    """Return which runs end at a cut from which the body does not move on as before."""
+    are_cuts: Flags = np.isin(stops, find_shot_boundaries(recording))
+    for index in np.flatnonzero(are_cuts):
+        last, stop = starts[index] - 1, stops[index]
+        around = trajectories[[last - 1, last, stop, min(stop + 1, len(trajectories) - 1)]]
+        before, jump, after = np.nan_to_num(np.diff(around, axis=0)).reshape(3, -1)
+        size = np.linalg.norm(jump) * np.linalg.norm(before + after)
+        are_cuts[index] = jump @ (before + after) < MIN_DIRECTION * size
+    return are_cuts

@@ -34,11 +34,10 @@ def describe_held_samples(held: Flags) -> str:
         case 0:
             return ""
         case 1:
-            return "In 1 frame the tracker repeated the frame before; it was filled as a gap."
+            return "In 1 frame the tracker repeated the frame before; this counts as a gap."
         case n_frames:
             return (
-                f"In {n_frames} frames the tracker repeated earlier ones; they were filled as"
-                " gaps."
+                f"In {n_frames} frames the tracker repeated earlier ones; these count as gaps."
             )
 
 

@@ -42,6 +42,8 @@ class Signal:
     spikes : bool, shape (n_frames,)
     local_noise : shape (n_frames,), rad or m
         Standard deviation of one component about each frame (`estimate_local_noise`).
+    held : bool, shape (n_frames,)
+        Frames in which it repeats the one before although the body moves on; also gaps.
     """
 
     joint: str
@@ -51,10 +53,11 @@ class Signal:
     spike_threshold: float
     spikes: NDArray[np.bool_]
     local_noise: Array
+    held: NDArray[np.bool_]
 
     @property
     def gaps(self) -> NDArray[np.bool_]:
-        """Frames in which the joint was not observed."""
+        """Frames in which the joint was not observed, or held."""
         return np.asarray(np.isnan(self.deviation))
 
 
@@ -71,19 +74,21 @@ class SpikeRule:
 
 def extract_signals(
     recording: Motion | Tracks,
+    held: NDArray[np.bool_],
     rule: SpikeRule,
     progress: Progress,
     cuts: tuple[int, ...] = (),
 ) -> tuple[Signal, ...]:
     """Return one signal for each joint's rotation or point's position, and one for the root.
 
-    End sites have no rotation and no signal. No trajectory spans a cut.
+    `held` is what `find_held_samples` returns; in the recording these samples are missing. End
+    sites have no rotation and no signal. No trajectory spans a cut.
     """
     half_window = max(MIN_HALF_WINDOW_FRAMES, round(HALF_WINDOW_S * recording.frame_rate))
-    trajectories = list(_trajectories(recording))
+    trajectories = list(_trajectories(recording, held))
     signals = []
     padded_frames = _spread_at_cuts(recording.n_frames, cuts, half_window)
-    for index, (joint, is_rotation, trajectory) in enumerate(trajectories):
+    for index, (joint, is_rotation, trajectory, is_held) in enumerate(trajectories):
         padded = np.full((padded_frames[-1] + 1, trajectory.shape[1]), np.nan)
         padded[padded_frames] = trajectory
         min_spike = rule.min_rotation if is_rotation else rule.min_displacement
@@ -100,7 +105,7 @@ def extract_signals(
         signals.append(
             Signal(
                 joint, is_rotation, disturbed.scale, deviation[padded_frames], threshold,
-                spikes[padded_frames], local_noise[padded_frames],
+                spikes[padded_frames], local_noise[padded_frames], is_held,
             )
         )  # fmt: skip
         progress((index + 1) / len(trajectories), "Finding spikes")
@@ -142,18 +147,20 @@ def estimate_local_noise(trajectory: Array, window: int) -> Array:
     return local_noise
 
 
-def _trajectories(recording: Motion | Tracks) -> Iterator[tuple[str, bool, Array]]:
+def _trajectories(
+    recording: Motion | Tracks, held: NDArray[np.bool_]
+) -> Iterator[tuple[str, bool, Array, NDArray[np.bool_]]]:
     if isinstance(recording, Tracks):
         for point, name in enumerate(recording.names):
-            yield name, False, recording.positions[:, point]
+            yield name, False, recording.positions[:, point], held[:, point]
         return
     skeleton = recording.skeleton
-    yield skeleton.names[0], False, recording.root_positions
+    yield skeleton.names[0], False, recording.root_positions, held[:, -1]
     # Twice the quaternion: the distance of neighbors is then their angle in radians.
     rotations = 2.0 * unroll(recording.rotations)
     for joint, name in enumerate(skeleton.names):
         if not skeleton.is_end_site(joint):
-            yield name, True, rotations[:, joint]
+            yield name, True, rotations[:, joint], held[:, joint]
 
 
 def _angle_from_chord(chord: Array) -> Array:

@@ -14,7 +14,7 @@ from ...motion.humanoid import HumanoidMap, contacts_of_points, detect_contacts
 from ...motion.skeletons import find_shot_boundaries
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
-from ..held_samples import body_is_held, find_held_samples, held_joints, hide_held_samples
+from ..held_samples import body_is_held, find_held_samples, hide_held_samples
 from ..limits import limit_excess
 from .bone_drift import BoneDrift, measure_bone_drifts
 from .figures import quality_figures
@@ -77,11 +77,9 @@ class Quality:
     cuts : tuple of int
         First frame of each segment of a joined take, except the first segment. Cuts do not
         count as jitter, spikes or foot slide.
-    held : bool, shape (n_frames, n_joints), or None
-        True where a joint repeats the frame before although it moves on; None: nowhere. Gaps
-        contain them.
     body_held : bool, shape (n_frames,), or None
-        True where most of the body is held.
+        True where most of the body repeats the frame before although it moves on; None:
+        nowhere.
     """
 
     names: tuple[str, ...]
@@ -93,7 +91,6 @@ class Quality:
     bones: tuple[BoneDrift, ...]
     limit_excess: Array | None = None
     cuts: tuple[int, ...] = ()
-    held: Flags | None = None
     body_held: Flags | None = None
 
     @cached_property
@@ -213,12 +210,11 @@ def measure_quality(
         n_frames=recording.n_frames,
         frame_rate=recording.frame_rate,
         jitter=measure_jitter(positions, recording.frame_rate, cuts),
-        signals=extract_signals(seen, rule, within(progress, 0.0, 0.8), cuts),
+        signals=extract_signals(seen, held, rule, within(progress, 0.0, 0.8), cuts),
         feet=_foot_slides(recording, feet, contacts, humanoid_map, cuts),
         bones=bones,
         limit_excess=_excess(recording, limits, humanoid_map),
         cuts=cuts,
-        held=held_joints(recording, held) if held.any() else None,
         body_held=body_is_held(recording, held) if held.any() else None,
     )
     progress(1.0, "Measured")

@@ -167,29 +167,27 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
 
 
 def _gaps(quality: Quality, pause: int) -> Iterator[Issue]:
-    body_held = np.zeros(quality.n_frames, dtype=np.bool_)
+    body = np.zeros(quality.n_frames, dtype=np.bool_)
     if quality.body_held is not None:
-        body_held = quality.body_held
-    for start, stop in _merged(find_runs(body_held), pause):
-        seconds = float(body_held[start:stop].sum()) / quality.frame_rate
-        sentence = f"The entire body stands still for {seconds:.2f} s and then jumps."
+        body = quality.body_held
+    for start, stop in _merged(find_runs(body), pause):
+        seconds = float(body[start:stop].sum()) / quality.frame_rate
+        sentence = f"The entire body repeats a pose for {seconds:.2f} s before it moves on."
         yield Issue(quality.names[0], start, stop, "gap", seconds / LONG_GAP_S, sentence)
     for signal in quality.signals:
-        for start, stop in find_runs(signal.gaps & ~body_held):
+        for start, stop in find_runs(signal.gaps & ~signal.held):
             seconds = (stop - start) / quality.frame_rate
-            if stop - start == quality.n_frames:
-                sentence = f"{signal.joint} is never observed."
-            elif _is_held(quality, signal, start):
-                sentence = f"{signal.joint} stands still for {seconds:.2f} s and then jumps."
-            else:
-                sentence = f"{signal.joint} is missing for {seconds:.2f} s."
+            all_missing = stop - start == quality.n_frames
+            sentence = (
+                f"{signal.joint} is never observed."
+                if all_missing
+                else f"{signal.joint} is missing for {seconds:.2f} s."
+            )
             yield Issue(signal.joint, start, stop, "gap", seconds / LONG_GAP_S, sentence)
-
-
-def _is_held(quality: Quality, signal: Signal, frame: int) -> bool:
-    """Return whether a joint repeats the frame before."""
-    joint = quality.names.index(signal.joint)
-    return quality.held is not None and bool(quality.held[frame, joint])
+        for start, stop in find_runs(signal.held & ~body):
+            seconds = (stop - start) / quality.frame_rate
+            sentence = f"{signal.joint} stands still for {seconds:.2f} s and then jumps."
+            yield Issue(signal.joint, start, stop, "gap", seconds / LONG_GAP_S, sentence)
 
 
 def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[Issue]:
