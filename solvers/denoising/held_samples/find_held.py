@@ -179,7 +179,7 @@ def _move_on(runs: _Runs, group: NDArray[np.intp]) -> Flags:
         jumps >= MIN_GROUP_RATIO * after,
         jumps >= MIN_RATIO * np.maximum(before, after),
     )
-    return moved & (jumps >= MIN_JUMP_RAD) & (quanta >= MIN_QUANTA)
+    return np.asarray(moved & (jumps >= MIN_JUMP_RAD) & (quanta >= MIN_QUANTA))
 
 
 def _are_cuts(
