@@ -55,6 +55,24 @@ def test_pose_outliers_are_found_at_both_ends(walk, n_frames):
     assert find_shot_boundaries(joined(walk, with_outlier)) == (walk.n_frames,)
 
 
+def test_t_pose_that_faces_elsewhere_is_cut(walk):
+    """The first frame of a suit: legs and spine stand as in the next one, arms do not."""
+    rotations, roots = walk.rotations.copy(), walk.root_positions.copy()
+    arms = [walk.skeleton.index(f"{side}{part}") for side in ("Left", "Right")
+            for part in ("Shoulder", "Arm", "ForeArm", "Hand")]  # fmt: skip
+    rotations[0], roots[0] = rotations[1], roots[1] + [0.1, 0.1, 0.0]
+    rotations[0, arms] = quaternion_from_rotation_vector(np.array([1.2, 0.0, 0.0]))
+    turn = quaternion_from_rotation_vector(np.array([0.0, 0.0, 1.5]))
+    rotations[0, 0] = multiply(turn, rotations[0, 0])
+    start = walk.with_poses(rotations, roots)
+
+    assert find_shot_boundaries(start) == (1,)
+    planted = plant_feet(denoise(start).recording).motion
+    assert_array_equal(planted.rotations[0], rotations[0])
+    turned = angle_between(planted.rotations[1:4], plant_feet(walk).motion.rotations[1:4])
+    assert np.degrees(turned).max() < 4.0
+
+
 def test_cut_is_found_in_tracks(walk):
     other = with_pose_outlier(walk, 30)
     positions = forward_kinematics(joined(walk, other)).positions
