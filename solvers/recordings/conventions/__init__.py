@@ -6,9 +6,7 @@ from .axes import (
     CENTIMETER,
     MILLIMETER,
     MIN_BODY_JOINTS,
-    PLAUSIBLE_REACH_M,
     check_scale,
-    guess_unit,
     longest_bone_path,
     rotations_y_up_from_z_up,
     rotations_z_up_from_y_up,
@@ -34,7 +32,7 @@ from .body_axes import (
     rotate_to_z_up,
     stand_upright,
 )
-from .body_unit import describe_guessed_unit, offsets_of_body, question_of_size, stature
+from .body_unit import offsets_of_body, question_of_size, stature
 from .camera_bodies import is_mirrored, stand_along, up_along
 from .file_axes import (
     conventions_of,
@@ -77,6 +75,7 @@ from .time_stamps import (
     constant_rate_from_times,
 )
 from .tracked_joints import joint_recording
+from .unit_estimate import describe_guessed_unit, estimate_unit, guess_unit
 
 __all__ = [
     "ACCLAIM_UNIT",
@@ -91,7 +90,6 @@ __all__ = [
     "MILLIMETER",
     "MILLISECOND",
     "MIN_BODY_JOINTS",
-    "PLAUSIBLE_REACH_M",
     "STATED_REACH_M",
     "Bodies",
     "Body",
@@ -113,6 +111,7 @@ __all__ = [
     "describe_guesses",
     "describe_lying",
     "estimate_axes_of_points",
+    "estimate_unit",
     "estimate_up_axis",
     "estimate_up_of_joints",
     "file_conventions",

@@ -78,7 +78,7 @@ def recording_of_points(
     if times is not None:
         resampler = ConstantRate(path, times)
         points, rate = resampler.positions(points), resampler.frame_rate
-    unit = guess_unit_of_points(points) if unit is None else unit
+    unit = guess_unit_of_points(points, names, progress) if unit is None else unit
     progress(1.0, READING)
     return stand_markers(names, points * unit, rate, unit, "")
 

@@ -83,6 +83,26 @@ def test_units_of_no_program_give_an_adult_and_are_reported(read, scale, collect
     assert any("units of 0." in message for message in messages)
 
 
+def test_feet_are_recognized_and_reported(read, collected_messages):
+    """Before, they were read as meters: a body of 5.6 m, without a word in scripts."""
+    messages, collect = collected_messages
+
+    motion = read(bvh_text(hierarchy(1 / 30.48)), progress=collect)
+
+    assert motion.conventions.unit == pytest.approx(0.3048)
+    assert any("interpreted as feet, by the size" in message for message in messages)
+
+
+def test_a_second_likely_unit_is_named(read, collected_messages):
+    """A child of 0.8 m in centimeters, or an adult of 2.1 m in inches."""
+    messages, collect = collected_messages
+
+    motion = read(bvh_text(hierarchy(0.5)), progress=collect)
+
+    assert motion.conventions.unit == pytest.approx(0.01)
+    assert any("centimeters, by the size of the body, but may be inches" in m for m in messages)
+
+
 def test_prop_far_away_is_not_size(read):
     motion = read(bvh_text(wrapped(hierarchy(1), Gun=("Root", (2000, 0, 0)))))
 
