@@ -25,7 +25,8 @@ CAPTURED_UNITS = {0.0254: 0.03, 0.3048: 0.02, 0.1: 0.002}
 x2 for inches makes adults of children of 0.84 m in centimeters
 (`test_children_and_giants_stay_what_they_are`)."""
 SKELETON_UNITS = {ACCLAIM_UNIT: 0.08}
-"""The same, a ratio, of what only skeletons are written in. By definition of Acclaim's format."""
+"""The same, a ratio, of what only skeletons are written in. By definition of the Acclaim
+format."""
 SCALED = 0.035
 """The same, a ratio, of a unit of its own, by which a body is scaled to an adult's size. Chosen
 by hand: x0.5 fails `test_units_of_no_program_give_an_adult_and_are_reported`, x2 makes adults

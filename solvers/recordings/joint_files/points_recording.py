@@ -83,6 +83,16 @@ def recording_of_points(
     return stand_markers(names, points * unit, rate, unit, "")
 
 
+def refuse_other_points(path: Path | str, points: Array) -> None:
+    """Raise InvalidFileError if points without names are not the joints of a body."""
+    if body_of_points(path, points) is None:
+        raise InvalidFileError(
+            f"{path} is a table without titles, and its numbers form no body in a known order"
+            " of joints. Write the names of joints and axes, such as LeftHand_x, in its first"
+            " line."
+        )
+
+
 def _remark_of_markers(names: Sequence[str], lacking: Sequence[str]) -> Remark:
     if not lacking and are_joints(names):
         return Remark("The points are a few joints of a body and are imported as markers")

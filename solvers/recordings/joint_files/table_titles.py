@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Callable, Sequence
+from itertools import chain, product
 from typing import NamedTuple
 
+from ..containers import NUMBER as CELL
 from ..containers import SPACE, decode_text, find_separator, is_missing, split_cells
 from ..conventions import meters_from_unit_name
-from ..point_bodies import is_quantity
+from ..point_bodies import has_layout, is_increasing, is_quantity
 
 MAX_TITLE_LINES = 10
 """Lines above the frames. It bounds the search; tables of Motive have seven."""
@@ -98,6 +100,33 @@ def table_titles(
         if fits(found.titles):
             return found._replace(n_lines=number + 1, rate=_rate(b"\n".join(lines[:number])))
     return None
+
+
+def numbered_titles(lines: Sequence[bytes]) -> TableTitles | None:
+    """Return titles for a table that has none: `0_x` and so on for the joints of a body.
+
+    Its lines are numbers, as many as a known order of joints has coordinates, perhaps after
+    the number or the time of the frame. The fourth value of a joint is its confidence.
+    """
+    rows = [line for line in lines[:N_SAMPLED_LINES] if line.strip()]
+    separator = find_separator(rows[0]) if rows else SPACE
+    cells = [_cells(line, separator) for line in rows]
+    width = len(cells[0]) if rows else 0
+    if any(len(row) != width for row in cells) or not all(map(_is_numeric, chain(*cells))):
+        return None
+    for n_values, above in product((3, 4), ((), ("time",), ("frame", "time"))):
+        n_joints, rest = divmod(width - len(above), n_values)
+        is_counted = all(is_increasing(column, cells) for column in range(len(above)))
+        if rest == 0 and n_joints >= MIN_POINTS and has_layout(n_joints) and is_counted:
+            axes = [
+                f"{joint}_{axis}" for joint in range(n_joints) for axis in "xyzc"[:n_values]
+            ]
+            return TableTitles([*above, *axes], 0, separator)
+    return None
+
+
+def _is_numeric(cell: str) -> bool:
+    return is_missing(cell.encode()) or CELL.fullmatch(cell.encode()) is not None
 
 
 def _fullest(lines: Sequence[bytes]) -> list[bytes]:

@@ -43,6 +43,17 @@ def test_one_time_is_no_rate(read_any):
     assert_has_all_frames(recording, 30.0)
 
 
+@pytest.mark.parametrize("cell", ["{k}/50", "{ms} ms", "{ms}ms", "{s} s", "{s} sec", "{us} µs"])
+def test_times_may_have_units_or_be_fractions(read_any, cell):
+    """Before, the first was `not a number`, whatever the title."""
+    for title in ("time", "Time (ms)"):
+        recording = read_any(
+            table({title: lambda k: cell.format(k=k, ms=20 * k, s=k / RATE_HZ, us=20000 * k)})
+        )
+
+        assert_has_all_frames(recording)
+
+
 @pytest.mark.parametrize("at", [0, 40, F - 1])
 def test_a_blank_time_is_between_its_neighbors(read_any, at):
     recording = read_any(table({"time": lambda k: "" if k == at else seconds(k)}))

@@ -153,6 +153,33 @@ def test_cut_files_and_unusual_rates_are_reported(read, collected_messages):
 @pytest.mark.parametrize(
     ("time", "rate"),
     [
+        ("1/25", 25.0), ("1001/30000", 29.97), ("40 ms", 25.0), ("33 ms", 30.0),
+        ("8.33ms", 120.0), ("0.04 s", 25.0), ("0.0333333 sec", 30.0), ("120 fps", 120.0),
+        ("29.97Hz", 29.97), ("8333 us", 120.0), ("0,04", 25.0), ("0/25", 30.0), ("1/0", 30.0),
+        ("5 parsecs", 30.0),
+    ],
+)  # fmt: skip
+def test_a_frame_time_may_have_a_unit_or_be_a_fraction(read, time, rate):
+    """Before, 30 Hz were assumed, as without one."""
+    head, row = bvh_text(hierarchy(1)).split("0.01\n")
+
+    assert read(f"{head}{time}\n{row * 3}").frame_rate == pytest.approx(rate, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "above", ["# made by a script\n\n", "; comment\n// other\n", "\n\n", "Take 3 of 5\r\n"]
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_lines_above_the_hierarchy_are_comments(read_any, above, encoding):
+    """Before, the format was unknown."""
+    motion = read_any((above + bvh_text(hierarchy(1))).encode(encoding))
+
+    assert motion.n_joints == 22
+
+
+@pytest.mark.parametrize(
+    ("time", "rate"),
+    [
         ("30", 30.0), ("120.0", 120.0), ("33.3333", 30.0), ("8.33", 120.0),
         ("16", 60.0), ("17", 60.0), ("40", 25.0), ("15", 15.0), ("72", 72.0),
         ("66.67", 15.0), ("16.67", 60.0), ("33", 30.0), ("4", 240.0),
