@@ -43,7 +43,14 @@ from .file_axes import (
     with_conventions,
 )
 from .flat_takes import question_of_depth
-from .floor import floor_level, lacks_floor, put_on_floor, question_of_floor
+from .floor import (
+    describe_placement,
+    floor_level,
+    keep_on_floor,
+    lacks_floor,
+    put_on_floor,
+    question_of_floor,
+)
 from .frame_numbers import FRAME_KEY, MAX_PEOPLE, rate_of_numbers, step_between
 from .points import (
     METERS,
@@ -110,6 +117,7 @@ __all__ = [
     "describe_guessed_unit",
     "describe_guesses",
     "describe_lying",
+    "describe_placement",
     "estimate_axes_of_points",
     "estimate_unit",
     "estimate_up_axis",
@@ -123,6 +131,7 @@ __all__ = [
     "is_mirrored",
     "is_upside_down",
     "joint_recording",
+    "keep_on_floor",
     "lacks_floor",
     "longest_bone_path",
     "meters_from_unit_name",

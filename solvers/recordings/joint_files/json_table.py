@@ -40,10 +40,11 @@ COLUMN = re.compile(
 )
 """Title of a column whose values are listed, or keyed by the number of their row."""
 NAMES = re.compile(
-    r"(?i)\"(?:joint|bone|key_?point|landmark|marker|point|body|part|segment)?s?[_ ]?"
+    r"(?i)\s*\{(?:[^\[\]{}]|\{[^\[\]{}]*\}|\[[^\[\]{}]*\])*"
+    r"\"(?:joint|bone|key_?point|landmark|marker|point|body|part|segment)?s?[_ ]?"
     r"(?:names?|labels|order|joints|bones|columns|parts|markers)\"\s*:\s*\[(?:\s*\"[^\"]*\"\s*,){7}"
 )
-"""Member with the names of joints."""
+"""Member of the outermost object with the names of joints."""
 PART_OF_TITLE = re.compile(r"'([^']*)'")
 
 
@@ -68,7 +69,7 @@ def is_json_table(head: bytes) -> bool:
     is_first = bool(titles) and text.lstrip().startswith(("{", '{"'))
     if is_first and any(map(_is_column, titles)):
         return True
-    return NAMES.search(text) is not None and not is_frames_json(head)
+    return NAMES.match(text) is not None and not is_frames_json(head)
 
 
 def open_json_table(
