@@ -1,5 +1,7 @@
 """From a recording of joints to a motion: any tracker, and one sentence for bad input."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from kinect_walks import tracked_walk, true_positions
@@ -19,6 +21,7 @@ from solvers.motion import (
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import ReconstructSettings
 from solvers.recordings import read_recording
+from solvers.recordings.conventions import floor_level, put_on_floor
 from solvers.workflows import reconstruct_motion, reconstruct_recording
 
 NITE = {  # fifteen joints, as OpenNI's tracker names them, and the first Kinect's name of each
@@ -47,6 +50,19 @@ def test_all_joints_are_filled_and_bone_lengths_are_constant(walk):
     assert result.motion.observed.all()
     assert result.motion.n_frames == walk.n_frames
     assert result.remarks == ()
+
+
+@pytest.mark.parametrize("sensor", [Sensor.KINECT_V1, Sensor.KINECT_V2])
+def test_a_take_that_was_put_on_the_floor_stays_there(walk, sensor):
+    """Before, corrected feet were up to 8 cm below: trackers place ankles too high."""
+    placed = put_on_floor(replace(walk, sensor=sensor))
+    moved = placed.tracks.with_positions(placed.tracks.positions - (0.0, 0.0, 1.0))
+
+    level = floor_level(reconstruct_recording(placed, planting=None).motion)
+    in_sensor_space = reconstruct_recording(placed.with_tracks(moved), planting=None).motion
+
+    assert level == pytest.approx(0.0, abs=0.001)
+    assert floor_level(in_sensor_space) < -0.9
 
 
 def test_standing_feet_do_not_slide(walk):
