@@ -34,6 +34,7 @@ from .body_axes import (
 )
 from .body_unit import offsets_of_body, question_of_size, stature
 from .camera_bodies import is_mirrored, stand_along, up_along
+from .camera_paths import path_from_camera
 from .file_axes import (
     conventions_of,
     file_conventions,
@@ -139,6 +140,7 @@ __all__ = [
     "observed_body",
     "offsets_of_body",
     "other_standing_axis",
+    "path_from_camera",
     "point_names",
     "points_z_up",
     "put_on_floor",
