@@ -17,7 +17,7 @@ POINT_MEMBERS = (
     "positions", "joints", "joint_positions", "joints3d", "joints_3d", "keypoints3d",
     "keypoints_3d", "kps3d", "pose3d", "pose_3d", "poses3d", "poses_3d", "points3d",
     "points_3d", "pose_world_landmarks", "world_landmarks", "landmarks", "pred_xyz_jts", "xyz",
-    "points", "keypoints", "reconstruction", "predictions", "arr_0",
+    "points", "keypoints", "kpts", "reconstruction", "predictions", "arr_0",
 )  # fmt: skip
 """Names of joints in archives, the clear ones first."""
 RATE_MEMBERS = ("fps", "frame_rate", "framerate", "mocap_frame_rate", "mocap_framerate")

@@ -47,9 +47,9 @@ from .table_titles import (
     MIN_POINTS,
     N_PEEKED_LINES,
     N_SAMPLED_LINES,
-    numbered_titles,
     table_titles,
 )
+from .untitled_tables import numbered_titles
 
 
 class _Columns(NamedTuple):

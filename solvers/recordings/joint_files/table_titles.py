@@ -2,13 +2,11 @@
 
 import re
 from collections.abc import Callable, Sequence
-from itertools import chain, product
 from typing import NamedTuple
 
-from ..containers import NUMBER as CELL
 from ..containers import SPACE, decode_text, find_separator, is_missing, split_cells
 from ..conventions import meters_from_unit_name
-from ..point_bodies import has_layout, is_increasing, is_quantity
+from ..point_bodies import is_quantity
 
 MAX_TITLE_LINES = 10
 """Lines above the frames. It bounds the search; tables of Motive have seven."""
@@ -29,6 +27,8 @@ VECTOR = re.compile(
 MAX_VECTOR_BYTES = 120
 """Bytes of such a cell. It bounds the search; three numbers of all digits have 75."""
 BRACKETS = re.compile(rb"[\[({][^\[\](){}]*[\])}]")
+MAX_UNIT_LETTERS = 12
+"""Letters of the name of a unit. It guards lines of words; `millimeters` has eleven."""
 INSIDE_BRACKETS = b"\x01"
 """Replaces separators inside brackets while a line is split."""
 RATE = re.compile(
@@ -58,7 +58,7 @@ class TableTitles(NamedTuple):
     def cells(self, lines: Sequence[bytes]) -> list[list[str]]:
         """Return the cells of the frames among the first lines of the file."""
         below = [line for line in lines[self.n_lines :] if line.strip()]
-        return [_cells(self.expand(line), self.separator) for line in below]
+        return [cells_of_line(self.expand(line), self.separator) for line in below]
 
     def expand(self, line: bytes) -> bytes:
         """Return a line whose cells have one number each; others remain, to be refused."""
@@ -98,35 +98,29 @@ def table_titles(
         following = [*lines[number + 1 : MAX_TITLE_LINES], *fullest]
         found = _titles_of_line(line, following)
         if fits(found.titles):
-            return found._replace(n_lines=number + 1, rate=_rate(b"\n".join(lines[:number])))
+            found = found._replace(n_lines=number + 1, rate=_rate(b"\n".join(lines[:number])))
+            return _with_units(found, lines[number + 1 : number + 2])
     return None
 
 
-def numbered_titles(lines: Sequence[bytes]) -> TableTitles | None:
-    """Return titles for a table that has none: `0_x` and so on for the joints of a body.
-
-    Its lines are numbers, as many as a known order of joints has coordinates, perhaps after
-    the number or the time of the frame. The fourth value of a joint is its confidence.
-    """
-    rows = [line for line in lines[:N_SAMPLED_LINES] if line.strip()]
-    separator = find_separator(rows[0]) if rows else SPACE
-    cells = [_cells(line, separator) for line in rows]
-    width = len(cells[0]) if rows else 0
-    if any(len(row) != width for row in cells) or not all(map(_is_numeric, chain(*cells))):
-        return None
-    for n_values, above in product((3, 4), ((), ("time",), ("frame", "time"))):
-        n_joints, rest = divmod(width - len(above), n_values)
-        is_counted = all(is_increasing(column, cells) for column in range(len(above)))
-        if rest == 0 and n_joints >= MIN_POINTS and has_layout(n_joints) and is_counted:
-            axes = [
-                f"{joint}_{axis}" for joint in range(n_joints) for axis in "xyzc"[:n_values]
-            ]
-            return TableTitles([*above, *axes], 0, separator)
-    return None
+def _with_units(found: TableTitles, below: Sequence[bytes]) -> TableTitles:
+    """Return titles with the units of a line below them, if it is one."""
+    units = [
+        cell.strip("()[] ") for line in below for cell in cells_of_line(line, found.separator)
+    ]
+    words = [unit for unit in units if unit]
+    is_line = any(meters_from_unit_name(word) for word in words)
+    if not is_line or len(units) != len(found.titles) or not all(map(_is_unit, words)):
+        return found
+    titles = [
+        f"{title} ({unit})" if unit else title
+        for title, unit in zip(found.titles, units, strict=True)
+    ]
+    return found._replace(titles=titles, n_lines=found.n_lines + 1)
 
 
-def _is_numeric(cell: str) -> bool:
-    return is_missing(cell.encode()) or CELL.fullmatch(cell.encode()) is not None
+def _is_unit(word: str) -> bool:
+    return len(word) <= MAX_UNIT_LETTERS and not any(letter.isdigit() for letter in word)
 
 
 def _fullest(lines: Sequence[bytes]) -> list[bytes]:
@@ -144,9 +138,9 @@ def _rate(comment: bytes) -> float | None:
 def _joined_lines(lines: Sequence[bytes]) -> TableTitles | None:
     for number, line in enumerate(lines[1:MAX_TITLE_LINES], start=1):
         separator = find_separator(line)
-        axes = [AXIS.fullmatch(cell) for cell in _cells(line, separator)]
+        axes = [AXIS.fullmatch(cell) for cell in cells_of_line(line, separator)]
         if sum(match is not None for match in axes) >= 3 * MIN_POINTS:
-            rows = [_cells(each, separator) for each in lines[: number + 2]]
+            rows = [cells_of_line(each, separator) for each in lines[: number + 2]]
             joined = _joined(rows[:number], axes, rows[number])
             if joined is None:
                 break
@@ -167,7 +161,7 @@ def _titles_of_line(line: bytes, following: Sequence[bytes]) -> TableTitles:
     Cells of vectors may be blank in some of the lines that follow.
     """
     separator = find_separator(line)
-    titles = _cells(line.lstrip(b"# "), separator)
+    titles = cells_of_line(line.lstrip(b"# "), separator)
     vectors: set[int] = set()
     for cells in (_cells_with_brackets(each, separator) for each in following):
         if len(cells) == len(titles):
@@ -200,7 +194,8 @@ def _cells_with_brackets(line: bytes, separator: bytes) -> list[bytes]:
     return [cell.replace(INSIDE_BRACKETS, separator) for cell in split_cells(hidden, separator)]
 
 
-def _cells(line: bytes, separator: bytes) -> list[str]:
+def cells_of_line(line: bytes, separator: bytes) -> list[str]:
+    """Return the cells of a line, decoded."""
     return [decode_text(cell) for cell in split_cells(line, separator)]
 
 

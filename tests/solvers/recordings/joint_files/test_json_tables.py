@@ -179,6 +179,20 @@ def test_numbers_of_a_known_order_need_no_titles(read_any, above, confidence):
     assert sizes[0] == pytest.approx(sizes[1], abs=1e-3)
 
 
+def test_numbers_of_frames_are_no_seconds(read_any):
+    """As in UTKinect: without titles, the first cell counts the frames from any number."""
+    motion = walking_gait()
+    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    body = forward_kinematics(motion).positions[:F, [roles[role] for role in SMPL]]
+    lines = [
+        f"{250 + k} " + " ".join(f"{x:.5f}" for x in frame.flat) for k, frame in enumerate(body)
+    ]
+
+    recording = read_any("\n".join(lines))
+
+    assert (recording.n_frames, recording.frame_rate) == (F, 20.0)
+
+
 def test_numbers_of_no_body_are_refused(read_any, rng):
     lines = [",".join(f"{x:.4f}" for x in row) for row in rng.normal(size=(20, 51))]
 
