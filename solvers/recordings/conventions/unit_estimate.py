@@ -25,8 +25,8 @@ CAPTURED_UNITS = {0.0254: 0.03, 0.3048: 0.02, 0.1: 0.002}
 x2 for inches makes adults of children of 0.84 m in centimeters
 (`test_children_and_giants_stay_what_they_are`)."""
 SKELETON_UNITS = {ACCLAIM_UNIT: 0.08}
-"""The same, a ratio, of what only skeletons are written in. By definition of the Acclaim
-format."""
+"""The same, a ratio, of what only skeletons of adults are written in. By definition of the
+Acclaim format, and of the actors of CMU's and other libraries in it."""
 SCALED = 0.035
 """The same, a ratio, of a unit of its own, by which a body is scaled to an adult's size. Chosen
 by hand: x0.5 fails `test_units_of_no_program_give_an_adult_and_are_reported`, x2 makes adults
@@ -95,7 +95,7 @@ def estimate_unit(
     if default is not None:
         priors[default] = DEFAULT
     evidence = {
-        unit: prior * _density(size * unit, unit in MODELED_UNITS or unit == default)
+        unit: prior * _density(size * unit, _groups_of(unit, default))
         for unit, prior in priors.items()
     }
     low, high = SCALED_UNITS_M
@@ -138,9 +138,15 @@ def describe_guessed_unit(unit: float, rival: float | None = None) -> str:
     )
 
 
-def _density(size: float, is_any: bool) -> float:
-    """Return the density of the logarithm of a size; of people only, or of any body."""
-    groups = (ADULTS, CHILDREN, OTHERS) if is_any else (ADULTS, CHILDREN)
+def _groups_of(unit: float, default: float | None) -> Sequence[tuple[float, float, float]]:
+    """Return whose bodies are written in a unit."""
+    if unit in MODELED_UNITS or unit == default:
+        return ADULTS, CHILDREN, OTHERS
+    return (ADULTS,) if unit in SKELETON_UNITS else (ADULTS, CHILDREN)
+
+
+def _density(size: float, groups: Sequence[tuple[float, float, float]]) -> float:
+    """Return the density of the logarithm of a size in groups of bodies."""
     return NO_BODY + sum(
         weight * exp(-0.5 * ((log(size) - mean) / spread) ** 2) / (spread * sqrt(2.0 * pi))
         for weight, mean, spread in groups

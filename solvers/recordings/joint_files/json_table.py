@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,14 +11,15 @@ import numpy as np
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
 from ...progress import Progress, unwatched
-from ..containers import json_content, printable
+from ..containers import json_content, printable, read_bytes
 from ..conventions import Bodies, check_scale
 from ..point_bodies import coordinate_of_title, time_name
-from .json_bodies import is_frames_json, stated_rates
+from .json_bodies import is_frames_json, open_frames_json, stated_rates
 from .long_columns import is_frame_title, long_columns
 from .long_table import open_long_table
 from .point_table import has_points, open_point_table
 
+HEAD_BYTES = 4096
 MIN_NAMES = 8
 """Number of names of joints. It guards lists of other words."""
 MAX_CELLS = 1 << 24
@@ -41,10 +43,13 @@ COLUMN = re.compile(
 """Title of a column whose values are listed, or keyed by the number of their row."""
 NAMES = re.compile(
     r"(?i)\s*\{(?:[^\[\]{}]|\{[^\[\]{}]*\}|\[[^\[\]{}]*\])*"
+    r"(?:\{(?:[^\[\]{}]|\[[^\[\]{}]*\])*)?"
     r"\"(?:joint|bone|key_?point|landmark|marker|point|body|part|segment)?s?[_ ]?"
     r"(?:names?|labels|order|joints|bones|columns|parts|markers)\"\s*:\s*\[(?:\s*\"[^\"]*\"\s*,){7}"
 )
-"""Member of the outermost object with the names of joints."""
+"""Member of the outermost object, or of one in it, with the names of joints."""
+FRAMES = re.compile(r"\[\s*\[\s*\[\s*-?\d")
+"""Positions of joints in several frames."""
 PART_OF_TITLE = re.compile(r"'([^']*)'")
 
 
@@ -69,7 +74,8 @@ def is_json_table(head: bytes) -> bool:
     is_first = bool(titles) and text.lstrip().startswith(("{", '{"'))
     if is_first and any(map(_is_column, titles)):
         return True
-    return NAMES.match(text) is not None and not is_frames_json(head)
+    is_array = FRAMES.search(text) is not None or not is_frames_json(head)
+    return NAMES.match(text) is not None and is_array
 
 
 def open_json_table(
@@ -94,6 +100,10 @@ def open_json_table(
     check_scale(scale)
     content = json_content(path).value
     table = next((each for each in _tables(content) if _fits(each.titles)), None)
+    if table is None and FRAMES.search(
+        read_bytes(path)[:HEAD_BYTES].decode("utf-8", "replace")
+    ):
+        return open_frames_json(path, scale=scale, progress=progress)
     if table is None:
         raise InvalidFileError(
             f"{path} has no table of points. Export columns such as LeftHand_x, or the names of"
@@ -135,12 +145,13 @@ def _tables(value: Any) -> Iterator[_Table]:
         yield from _of_records(value)
     if not isinstance(value, Mapping):
         return
-    lists = {key: each for key, each in value.items() if isinstance(each, list) and each}
+    lists = dict(_lists(value))
     if "columns" in lists and "data" in lists:
         yield _Table([*map(_title, lists["columns"])], lists["data"])
     for listed in lists.values():
         yield from _of_records(listed)
-    yield from _of_names(lists)
+    inner = (each for each in value.values() if isinstance(each, Mapping))
+    yield from _of_names([*_lists(value), *chain.from_iterable(map(_lists, inner))])
     nested = {key: each for key, each in value.items() if isinstance(each, Mapping)}
     yield from _of_columns({key: dict(enumerate(each)) for key, each in lists.items()})
     yield from _of_columns(nested)
@@ -185,16 +196,20 @@ def _with_index(table: _Table, index: Sequence[str]) -> _Table:
     return _Table([title, *table.titles], rows)
 
 
-def _of_names(lists: Mapping[str, list[Any]]) -> Iterator[_Table]:
+def _lists(value: Mapping[str, Any]) -> Iterator[tuple[str, list[Any]]]:
+    return ((key, each) for key, each in value.items() if isinstance(each, list) and each)
+
+
+def _of_names(lists: Sequence[tuple[str, list[Any]]]) -> Iterator[_Table]:
     """Yield arrays of positions with the names of their joints."""
-    for names in lists.values():
+    for _, names in lists:
         is_listed = len({*map(str, names)}) == len(names) >= MIN_NAMES
         if not is_listed or not all(isinstance(each, str) for each in names):
             continue
         titles = [f"{_title(name)}_{axis}" for name in names for axis in "xyz"]
-        for values in lists.values():
+        for _, values in lists:
             rows = _rows_of(values, len(names))
-            times = next((each for key, each in lists.items() if time_name(key)), None)
+            times = next((each for key, each in lists if time_name(key)), None)
             if rows is None:
                 continue
             if times is not None and len(times) == len(rows):

@@ -161,7 +161,7 @@ def _titles_of_line(line: bytes, following: Sequence[bytes]) -> TableTitles:
     Cells of vectors may be blank in some of the lines that follow.
     """
     separator = find_separator(line)
-    titles = cells_of_line(line.lstrip(b"# "), separator)
+    titles = cells_of_line(line.lstrip(b"#% "), separator)
     vectors: set[int] = set()
     for cells in (_cells_with_brackets(each, separator) for each in following):
         if len(cells) == len(titles):

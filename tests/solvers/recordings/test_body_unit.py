@@ -72,6 +72,12 @@ def test_children_and_giants_stay_what_they_are(height):
     assert estimate_unit(height / 1.75 / 0.01).unit == 0.01
 
 
+@pytest.mark.parametrize("unit", [0.08, 0.04, 0.15])
+def test_rigs_of_another_scale_get_the_size_of_an_adult(unit):
+    """One unit of MikuMikuDance has 8 cm; before, such a body was a child in Acclaim's unit."""
+    assert estimate_unit(1.0 / unit).unit == pytest.approx(unit)
+
+
 @pytest.mark.parametrize("unit", ALL_WORDS)
 @pytest.mark.parametrize("height", [1.5, 1.6, 1.75, 1.9, 2.0])
 def test_the_unit_of_an_adult_is_recognized(height, unit):

@@ -139,6 +139,23 @@ def test_an_array_next_to_names_has_these(read_any, walk, key, shape):
     assert_is(read_any(json.dumps(value)), walk)
 
 
+@pytest.mark.parametrize("inner", ["skeleton", "meta"])
+@pytest.mark.parametrize("key", ["positions", "frames", "motion"])
+def test_names_may_be_next_to_the_rate_in_another_member(read_any, walk, inner, key):
+    """Before, 20 named joints were those of a Kinect by their number, or the format unknown."""
+    value = {inner: {"fps": RATE_HZ, "joints": NAMES, "parents": [-1]}, key: walk.tolist()}
+
+    assert_is(read_any(json.dumps(value)), walk)
+
+
+def test_names_of_something_else_change_nothing(read_any, walk):
+    frames = [{"joints": dict(zip(NAMES, each, strict=True))} for each in walk.tolist()]
+    value = {"labels": [f"a{k}" for k in range(9)], "fps": RATE_HZ, "frames": frames}
+    value["corners"] = [[[0.0, 1.0, 2.0]]]
+
+    assert_is(read_any(json.dumps(value)), walk)
+
+
 def test_a_table_of_other_values_is_refused_with_what_to_export(read_any):
     value = {"Hip_x": [1.0] * 5, "Hip_y": [1.0] * 5, "speed": [2.0] * 5}
 
