@@ -69,7 +69,7 @@ def guess_unit_of_points(
     height = stature_of_markers(labels, points)
     if height is not None and 0.0 < height < np.inf:
         estimated = estimate_unit(height / ADULT_STATURE_M, is_body=False, is_skeleton=False)
-        if estimated.is_doubtful:
+        if estimated.has_low_confidence:
             progress(0.8, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
         return estimated.unit
     extent = float(np.median(_extents(points).max(axis=1)))

@@ -61,7 +61,7 @@ class UnitEstimate(NamedTuple):
     """The next unit, where it is nearly as likely and gives a body of another size."""
 
     @property
-    def is_doubtful(self) -> bool:
+    def has_low_confidence(self) -> bool:
         """Whether a report says how lengths are interpreted."""
         return self.is_rare or self.rival is not None
 
@@ -90,8 +90,8 @@ def estimate_unit(
         Whether the file holds bones rather than points.
     """
     others = 1.0 if default is None else 1.0 - DEFAULT
-    usual = MODELED_UNITS | CAPTURED_UNITS | (SKELETON_UNITS if is_skeleton else {})
-    priors = {unit: others * prior for unit, prior in usual.items()}
+    known = MODELED_UNITS | CAPTURED_UNITS | (SKELETON_UNITS if is_skeleton else {})
+    priors = {unit: others * prior for unit, prior in known.items()}
     if default is not None:
         priors[default] = DEFAULT
     evidence = {

@@ -20,6 +20,7 @@ from .long_table import open_long_table
 from .point_table import has_points, open_point_table
 
 HEAD_BYTES = 4096
+"""Bytes by which formats are detected, by definition those of `formats`."""
 MIN_NAMES = 8
 """Number of names of joints. It guards lists of other words."""
 MAX_CELLS = 1 << 24

@@ -216,7 +216,7 @@ def _estimated_unit(skeleton: Skeleton, progress: Progress) -> float:
         return CENTIMETER
     is_body = offsets is not skeleton.offsets
     estimated = estimate_unit(reach / ADULT_REACH_M, is_body=is_body)
-    if estimated.is_doubtful:
+    if estimated.has_low_confidence:
         progress(1.0, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
     return estimated.unit
 
