@@ -149,7 +149,7 @@ def reconstruct_motion(
         result = rebuilt.motion_of(skeleton, within(progress, 0.7, 0.95))
     else:
         result = fit_motion_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
-    result = keep_on_floor(motion, result)
+    result = keep_on_floor(motion, result, source)
     reliability_terms, confidence, changed = _for_skeleton_joints(
         motion.n_joints, recording, rebuilt, columns
     )

@@ -88,7 +88,7 @@ def reconstruct_recording(
         if skeleton is None
         else rebuilt.motion_of(skeleton, within(progress, 0.6, 0.8))
     )
-    motion = keep_on_floor(standardized, motion)
+    motion = keep_on_floor(recording, motion)
     planting_result = plant_feet_if_possible(
         motion,
         planting,

@@ -12,6 +12,7 @@ from solvers.denoising import PlantSettings
 from solvers.errors import InvalidMotionError
 from solvers.motion import (
     SENSOR_JOINTS,
+    FileConventions,
     JointRecording,
     Sensor,
     Tracks,
@@ -55,14 +56,20 @@ def test_all_joints_are_filled_and_bone_lengths_are_constant(walk):
 @pytest.mark.parametrize("sensor", [Sensor.KINECT_V1, Sensor.KINECT_V2])
 def test_a_take_that_was_put_on_the_floor_stays_there(walk, sensor):
     """Before, corrected feet were up to 8 cm below: trackers place ankles too high."""
-    placed = put_on_floor(replace(walk, sensor=sensor))
+    no_floor = replace(walk.tracks, conventions=FileConventions(has_floor=False))
+    placed = put_on_floor(replace(walk, sensor=sensor, tracks=no_floor))
     moved = placed.tracks.with_positions(placed.tracks.positions - (0.0, 0.0, 1.0))
+    armature = motion_from_points(placed.tracks, placed.parents)
 
-    level = floor_level(reconstruct_recording(placed, planting=None).motion)
+    result = reconstruct_recording(placed, planting=None).motion
+    rebuilt = reconstruct_motion(armature, source=placed, sensor=sensor, resize=True).motion
     in_sensor_space = reconstruct_recording(placed.with_tracks(moved), planting=None).motion
+    measured = reconstruct_motion(armature, sensor=sensor, resize=True).motion
 
-    assert level == pytest.approx(0.0, abs=0.001)
+    assert floor_level(result) == pytest.approx(0.0, abs=0.001)
+    assert floor_level(rebuilt) == pytest.approx(0.0, abs=0.001)
     assert floor_level(in_sensor_space) < -0.9
+    assert sensor is Sensor.KINECT_V1 or abs(floor_level(measured)) > 0.005
 
 
 def test_standing_feet_do_not_slide(walk):
