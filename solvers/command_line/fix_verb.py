@@ -6,7 +6,7 @@ from ..depth_scene import DepthRecording
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, within
-from ..recordings import is_depth_recording, read_depth, takes_in
+from ..recordings import FloorPlacementSettings, is_depth_recording, read_depth, takes_in
 from ..workflows import (
     FixedTake,
     FixSettings,
@@ -23,7 +23,7 @@ from .arguments import (
     VerbWork,
     add_reading_options,
     arguments_from,
-    read_recorded,
+    read_on_floor,
     settings_from_arguments,
     write,
 )
@@ -32,12 +32,13 @@ from .arguments import (
 def add_fix_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `fix`."""
     add_reading_options(parser)
+    arguments_from(parser, FloorPlacementSettings)
     arguments_from(parser, FixSettings)
 
 
 def perform_fix(task: Task, prepared: None, progress: Progress) -> Outcome:
     """Fix one take, write its motion and report what was done."""
-    recording = _read(task, within(progress, 0.0, 0.1))
+    recording, placed = _read(task, within(progress, 0.0, 0.1))
     if find_origin(recording) is TakeOrigin.POINTS:
         _, never_observed = drop_missing_points(recording)
         missing = describe_missing_points(never_observed)
@@ -48,13 +49,16 @@ def perform_fix(task: Task, prepared: None, progress: Progress) -> Outcome:
     settings = settings_from_arguments(task.arguments, FixSettings)
     fixed = fix_take(recording, settings=settings, progress=within(progress, 0.1, 0.95))
     write(fixed.recording, task.target, within(progress, 0.95, 1.0))
-    return Outcome(_summary(fixed), _figures(fixed))
+    return Outcome("\n".join((*placed, _summary(fixed))), _figures(fixed))
 
 
-def _read(task: Task, progress: Progress) -> Motion | Tracks | JointRecording | DepthRecording:
+def _read(
+    task: Task, progress: Progress
+) -> tuple[Motion | Tracks | JointRecording | DepthRecording, tuple[str, ...]]:
+    """Read a take, on the floor, and report if it was put there."""
     if is_depth_recording(task.source):
-        return read_depth(task.source, progress=progress)
-    return read_recorded(task.source, task.arguments, progress)
+        return read_depth(task.source, progress=progress), ()
+    return read_on_floor(task.source, task.arguments, progress)
 
 
 def _summary(fixed: FixedTake) -> str:

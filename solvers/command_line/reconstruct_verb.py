@@ -17,7 +17,7 @@ from ..reconstruction import (
     load_posture_library,
     load_residual_prior,
 )
-from ..recordings import write_joint_csv
+from ..recordings import FloorPlacementSettings, write_joint_csv
 from ..workflows import (
     plant_feet_if_possible,
     posture_library_from_clips,
@@ -33,7 +33,7 @@ from .arguments import (
     add_reading_options,
     arguments_from,
     read_all,
-    read_recorded,
+    read_on_floor,
     settings_from_arguments,
     with_body,
     write,
@@ -57,6 +57,7 @@ class RebuiltTake(NamedTuple):
 def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `reconstruct`."""
     add_reading_options(parser)
+    arguments_from(parser, FloorPlacementSettings)
     add_preset_option(parser, "reconstruct")
     postures = parser.add_mutually_exclusive_group()
     add_library_option(postures)
@@ -110,10 +111,10 @@ def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
 
 def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Outcome:
     """Reconstruct one recording, write it and report rebuilt joints and quality."""
-    given = read_recorded(task.source, task.arguments, within(progress, 0.0, 0.1))
+    given, placed = read_on_floor(task.source, task.arguments, within(progress, 0.0, 0.1))
     guides, messages = _select_guides(given, task, prepared, within(progress, 0.1, 0.3))
     rebuilt = _rebuild(given, task, guides, within(progress, 0.3, 0.8))
-    rebuilt = rebuilt._replace(remarks=(*messages, *rebuilt.remarks))
+    rebuilt = rebuilt._replace(remarks=(*placed, *messages, *rebuilt.remarks))
     assert task.target is not None
     if task.target.suffix.lower() != JOINTS:
         write(rebuilt.motion, task.target, within(progress, 0.9, 1.0))

@@ -28,6 +28,7 @@ from .joint_files import (
     is_irds,
     is_joint_csv,
     is_joint_json,
+    is_json_table,
     is_kinect_csv,
     is_long_table,
     is_mediapipe_csv,
@@ -45,6 +46,7 @@ from .joint_files import (
     open_irds,
     open_joint_csv,
     open_joint_json,
+    open_json_table,
     open_long_table,
     open_ntu_skeleton,
     open_nuitrack_csv,
@@ -96,7 +98,9 @@ MAX_JSON_BYTES = 1 << 22
 
 
 def _is_bvh(head: bytes) -> bool:
-    return head.lstrip()[:9].upper() == b"HIERARCHY"
+    """Detect the first words, above which comments may be."""
+    first = re.search(rb"(?im)^\s*HIERARCHY\s+ROOT\s", head)
+    return first is not None or head.lstrip()[:9].upper() == b"HIERARCHY"
 
 
 def _is_acclaim(head: bytes) -> bool:
@@ -166,6 +170,7 @@ FORMATS = (
     Format("MediaPipe CSV", is_mediapipe_csv, one_body(read_mediapipe_csv)),
     Format("joint CSV", is_joint_csv, open_joint_csv),
     Format("joint JSON", is_joint_json, open_joint_json),
+    Format("table in JSON", is_json_table, open_json_table),
     Format("JSON of joints", is_frames_json, open_frames_json, is_one_frame=is_frame_json),
     Format("table with a line per joint", is_long_table, open_long_table),
     Format("table of points", is_point_table, open_point_table),

@@ -9,7 +9,7 @@ OLD_PICKLE = re.compile(
 """First bytes of pickles of protocol 0 and 1."""
 HDF5 = b"\x89HDF\r\n\x1a\n"
 SAFETENSORS = re.compile(rb"[\x00-\xff]{8}\s*\{\s*\"[^\"]+\"\s*:\s*\{\s*\"(dtype|format)\"")
-HTR = re.compile(rb"\s*\[Header\]\s*(#[^\n]*\n\s*)*FileType\s+[hg]tr")
+HTR = re.compile(rb"(?:\s*#[^\n]*\n)*\s*\[Header\]\s*(#[^\n]*\n\s*)*FileType\s+[hg]tr")
 
 THREE_TRACK = re.compile(
     rb"\"(?:tracks|hierarchy)\"\s*:\s*\[\s*\{[^\[\]]{0,300}\"(?:times|keys)\"\s*:\s*\["
@@ -65,6 +65,11 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
         "HTR",
         lambda head: HTR.match(head) is not None,
         "{path} is an HTR or GTR file. Export it as BVH, FBX or C3D.",
+    ),
+    (
+        "OpenSim model",
+        lambda head: b"<OpenSimDocument" in head[:400],
+        "{path} is a file of OpenSim without positions of joints. Import the TRC of the take.",
     ),
     (
         "DAZ file",

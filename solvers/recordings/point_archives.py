@@ -9,7 +9,7 @@ from ..errors import InvalidFileError
 from ..motion import JointRecording, Tracks
 from ..progress import Progress, unwatched
 from .containers import archive_names, read_archive_members, read_archive_words
-from .conventions import Bodies, check_scale, common_rate
+from .conventions import Bodies, check_scale, common_rate, path_from_camera
 from .numpy_files import Stated, open_points
 from .point_bodies import NAMES_OF_ROOT, name_of_root, transforms_at
 
@@ -17,7 +17,7 @@ POINT_MEMBERS = (
     "positions", "joints", "joint_positions", "joints3d", "joints_3d", "keypoints3d",
     "keypoints_3d", "kps3d", "pose3d", "pose_3d", "poses3d", "poses_3d", "points3d",
     "points_3d", "pose_world_landmarks", "world_landmarks", "landmarks", "pred_xyz_jts", "xyz",
-    "points", "keypoints", "reconstruction", "predictions", "arr_0",
+    "points", "keypoints", "kpts", "reconstruction", "predictions", "arr_0",
 )  # fmt: skip
 """Names of joints in archives, the clear ones first."""
 RATE_MEMBERS = ("fps", "frame_rate", "framerate", "mocap_frame_rate", "mocap_framerate")
@@ -54,7 +54,7 @@ def open_point_archive(
     found = next((members[name] for name in POINT_MEMBERS if name in members), None)
     if found is None:
         raise InvalidFileError(f"{path} has no array of joints. Export it again.")
-    stated = Stated(_stated_rate(path), _root_path(path), _stated_names(path))
+    stated = Stated(_stated_rate(path), _root_path(path, progress), _stated_names(path))
     return open_points(path, found, scale, stated)
 
 
@@ -66,12 +66,17 @@ def _stated_names(path: Path | str) -> tuple[str, ...]:
         return ()
 
 
-def _root_path(path: Path | str) -> Array | None:
+def _root_path(path: Path | str, progress: Progress) -> Array | None:
     """Return the transforms of one body that an archive states, (n_frames, 4, 4)."""
     members = read_archive_members(path, NAMES_OF_ROOT, name_of_root)
-    found = next((members[name] for name in NAMES_OF_ROOT if name in members), np.empty(0))
-    is_path = found.size > 0 and found.shape[-1] == 3 and found.size == 3 * max(found.shape[:2])
-    return transforms_at(found.reshape(-1, 3)) if is_path else None
+    name = next((each for each in NAMES_OF_ROOT if each in members), "")
+    found = members.get(name, np.empty(0))
+    if not found.size or found.shape[-1] != 3 or found.size != 3 * max(found.shape[:2]):
+        return None
+    positions, limited = path_from_camera(name, found.reshape(-1, 3))
+    if limited:
+        progress(0.1, limited)
+    return transforms_at(positions)
 
 
 def _stated_rate(path: Path | str) -> float | None:

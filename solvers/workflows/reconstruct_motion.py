@@ -35,6 +35,7 @@ from ..reconstruction.joint_rotations import (
     fit_motion_to_postures,
     resize_skeleton,
 )
+from ..recordings.conventions import keep_on_floor
 from .changed_joints import find_changed_joints, shift_remarks
 from .joints_from_source import joints_from_source
 from .standard_joints import KINECT_V1, check_size, check_tracked, gap_remarks
@@ -148,6 +149,7 @@ def reconstruct_motion(
         result = rebuilt.motion_of(skeleton, within(progress, 0.7, 0.95))
     else:
         result = fit_motion_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
+    result = keep_on_floor(motion, result, source)
     reliability_terms, confidence, changed = _for_skeleton_joints(
         motion.n_joints, recording, rebuilt, columns
     )

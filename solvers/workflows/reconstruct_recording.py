@@ -10,6 +10,7 @@ from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
 from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
 from ..reconstruction.joint_rotations import Reconstruction
+from ..recordings.conventions import keep_on_floor
 from .changed_joints import find_changed_joints, shift_remarks
 from .plant_feet_if_possible import plant_feet_if_possible
 from .standard_joints import check_size, gap_remarks, standardize_joint_names
@@ -54,6 +55,8 @@ def reconstruct_recording(
 ) -> ReconstructedMotion:
     """Rebuild the poses of a recording, fit a skeleton to them and plant its feet.
 
+    A recording that stands on height 0 does so afterwards (`keep_on_floor`).
+
     Parameters
     ----------
     recording : JointRecording
@@ -85,6 +88,7 @@ def reconstruct_recording(
         if skeleton is None
         else rebuilt.motion_of(skeleton, within(progress, 0.6, 0.8))
     )
+    motion = keep_on_floor(recording, motion)
     planting_result = plant_feet_if_possible(
         motion,
         planting,

@@ -14,6 +14,7 @@ from ...motion import JointRecording, Motion, Tracks
 from ...progress import Progress, within
 from ...recordings import (
     FloorPlacement,
+    FloorPlacementSettings,
     ReadingSettings,
     describe_no_recording,
     detect_format,
@@ -27,7 +28,7 @@ from ...recordings import (
     write_trc,
 )
 from ...recordings.containers import files_below, is_folder, shown
-from ...recordings.conventions import conventions_of
+from ...recordings.conventions import conventions_of, describe_placement
 from .options import arguments_from, settings_from_arguments
 from .verb_description import Outcome
 
@@ -112,6 +113,16 @@ def read_recorded(
         floor=floor,
         progress=progress,
     )
+
+
+def read_on_floor(
+    path: Path, arguments: argparse.Namespace, progress: Progress
+) -> tuple[Motion | Tracks | JointRecording, tuple[str, ...]]:
+    """Read a recording, placed as `FloorPlacementSettings` say, and report if it was placed."""
+    floor = settings_from_arguments(arguments, FloorPlacementSettings).place_on_floor
+    recording = read_recorded(path, arguments, progress, floor)
+    placed = floor is not FloorPlacement.NEVER
+    return recording, describe_placement(recording) if placed else ()
 
 
 def find_recordings(

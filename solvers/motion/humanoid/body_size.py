@@ -16,7 +16,7 @@ ADULT_STATURE_M = 1.75
 """Stature of that adult. By definition."""
 MAX_BODY_SCALE, MIN_BODY_SCALE = 3.0, 0.2
 """Scales of a body relative to that adult beyond which the unit must be wrong. They guard
-against wrong units (`test_body_has_human_size_for_any_default_unit`)."""
+against wrong units (`test_invalid_recordings_are_reported_in_one_sentence`)."""
 MIN_RELIABILITY = 0.6
 """Joints above this reliability determine the lengths, if there are enough of them. It guards
 actors who are hidden most of the time, with limbs of wrong lengths

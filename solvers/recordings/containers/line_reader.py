@@ -42,6 +42,8 @@ class LineReader:
     Parameters
     ----------
     path : Path or str
+    lines : list of bytes, optional
+        Text that a file of another format was converted to; the file is not opened.
 
     Raises
     ------
@@ -49,8 +51,8 @@ class LineReader:
         The file is missing or unreadable, or a line is too long.
     """
 
-    def __init__(self, path: Path | str) -> None:
-        self._blocks = _blocks(Path(path))
+    def __init__(self, path: Path | str, lines: list[bytes] | None = None) -> None:
+        self._blocks = _blocks(Path(path)) if lines is None else iter([(lines, 1.0)])
         self._lines: list[bytes] = []
         self._at = 0
         self._before = 0  # lines of the file before those in memory

@@ -6,9 +6,7 @@ from .axes import (
     CENTIMETER,
     MILLIMETER,
     MIN_BODY_JOINTS,
-    PLAUSIBLE_REACH_M,
     check_scale,
-    guess_unit,
     longest_bone_path,
     rotations_y_up_from_z_up,
     rotations_z_up_from_y_up,
@@ -34,8 +32,9 @@ from .body_axes import (
     rotate_to_z_up,
     stand_upright,
 )
-from .body_unit import describe_guessed_unit, offsets_of_body, question_of_size, stature
+from .body_unit import offsets_of_body, question_of_size, stature
 from .camera_bodies import is_mirrored, stand_along, up_along
+from .camera_paths import path_from_camera
 from .file_axes import (
     conventions_of,
     file_conventions,
@@ -45,7 +44,14 @@ from .file_axes import (
     with_conventions,
 )
 from .flat_takes import question_of_depth
-from .floor import floor_level, lacks_floor, put_on_floor, question_of_floor
+from .floor import (
+    describe_placement,
+    floor_level,
+    keep_on_floor,
+    lacks_floor,
+    put_on_floor,
+    question_of_floor,
+)
 from .frame_numbers import FRAME_KEY, MAX_PEOPLE, rate_of_numbers, step_between
 from .points import (
     METERS,
@@ -77,6 +83,7 @@ from .time_stamps import (
     constant_rate_from_times,
 )
 from .tracked_joints import joint_recording
+from .unit_estimate import describe_guessed_unit, estimate_unit, guess_unit
 
 __all__ = [
     "ACCLAIM_UNIT",
@@ -91,7 +98,6 @@ __all__ = [
     "MILLIMETER",
     "MILLISECOND",
     "MIN_BODY_JOINTS",
-    "PLAUSIBLE_REACH_M",
     "STATED_REACH_M",
     "Bodies",
     "Body",
@@ -112,7 +118,9 @@ __all__ = [
     "describe_guessed_unit",
     "describe_guesses",
     "describe_lying",
+    "describe_placement",
     "estimate_axes_of_points",
+    "estimate_unit",
     "estimate_up_axis",
     "estimate_up_of_joints",
     "file_conventions",
@@ -124,6 +132,7 @@ __all__ = [
     "is_mirrored",
     "is_upside_down",
     "joint_recording",
+    "keep_on_floor",
     "lacks_floor",
     "longest_bone_path",
     "meters_from_unit_name",
@@ -131,6 +140,7 @@ __all__ = [
     "observed_body",
     "offsets_of_body",
     "other_standing_axis",
+    "path_from_camera",
     "point_names",
     "points_z_up",
     "put_on_floor",

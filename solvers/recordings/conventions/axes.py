@@ -11,18 +11,10 @@ ACCLAIM_UNIT = 0.0254 / 0.45
 """Meters per unit of an Acclaim file, and of the BVH files made from them."""
 CENTIMETER = 0.01
 MILLIMETER = 0.001
-UNITS = (CENTIMETER, 1.0, MILLIMETER, 0.0254, ACCLAIM_UNIT)
-
-# The longest path along the bones of an adult, from a hand or the head to a foot: 2.0 to 2.6 m
-# in skeletons of nine makers. Unlike the height it does not depend on the rest pose.
 ADULT_REACH_M = 2.3
 """The longest path along the bones of an adult, from a hand or the head to a foot, meters.
 Chosen by hand: 2.0 to 2.6 m in skeletons of nine makers. Unlike the height it does not depend
 on the rest pose."""
-PLAUSIBLE_REACH_M = (1.1, 4.6)
-"""Range of that path, meters, in which a file is in centimeters: about half and twice that of
-an adult. Chosen by hand: x0.5 and x2 fail
-`test_the_unit_is_guessed_from_the_length_of_the_bones`."""
 MIN_BODY_JOINTS = 8
 """Number of joints of a body, from which its size decides on the unit. Chosen by hand: x0.5
 fails `test_any_rotation_order_survives_writing_and_reading`, x2
@@ -53,22 +45,6 @@ def rotations_z_up_from_y_up(rotations: NDArray[np.float64]) -> NDArray[np.float
 def rotations_y_up_from_z_up(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
     """Undo `rotations_z_up_from_y_up`."""
     return np.concatenate([rotations[..., :1], y_up_from_z_up(rotations[..., 1:])], axis=-1)
-
-
-def guess_unit(parents: Sequence[int], offsets: NDArray[np.float64]) -> float:
-    """Estimate the meters per unit of a file from its skeleton.
-
-    Centimeters if they give a body of plausible size, otherwise the unit of meters,
-    millimeters, inches and Acclaim units that is closest to an adult. With too few joints:
-    centimeters.
-    """
-    reach = longest_bone_path(parents, offsets)
-    low, high = PLAUSIBLE_REACH_M
-    if len(parents) < MIN_BODY_JOINTS or not reach > 0.0:
-        return CENTIMETER
-    if low <= reach * CENTIMETER <= high:
-        return CENTIMETER
-    return min(UNITS, key=lambda unit: abs(np.log(reach * unit / ADULT_REACH_M)))
 
 
 def longest_bone_path(parents: Sequence[int], offsets: NDArray[np.float64]) -> float:

@@ -13,19 +13,16 @@ from ...motion import (
     Skeleton,
     Tracks,
     find_humanoid_map,
-    unit_name,
 )
 from ...motion.humanoid import (
     ADULT_STATURE_M,
-    MAX_BODY_SCALE,
-    MIN_BODY_SCALE,
     estimate_body_scale,
     posture_positions,
 )
 from ...progress import Progress, Remark
 from .marker_bodies import stature_of_markers
+from .unit_estimate import describe_guessed_unit, estimate_unit
 
-UNITS = (1.0, 0.01, 0.001)
 ODD_STATURE_M = (0.8, 2.6)
 """Range of statures, meters, outside which the report asks. Chosen by hand: from a small child,
 0.8 m, to more than the tallest people. It decides a sentence of the report only."""
@@ -43,14 +40,15 @@ ENDS_OF_REACH = ("head", "leftHand", "rightHand"), ("leftFoot", "rightFoot")
 def convert_to_body_unit(
     recording: JointRecording, unit: float, progress: Progress
 ) -> JointRecording:
-    """Convert a recording to the unit of `UNITS` that gives a human body.
+    """Convert a recording to the most probable unit of its body (`estimate_unit`).
 
-    It is unchanged if its unit already does, if no unit does, or if no body is recognized.
+    It is unchanged if that is its own, or if no body is recognized.
 
     Parameters
     ----------
     recording : JointRecording
     unit : float, meters
+        Default unit of the format, by which the recording was read.
     progress : Progress
         Receives a message if the unit changes.
     """
@@ -58,16 +56,16 @@ def convert_to_body_unit(
         size = estimate_body_scale(posture_positions(recording))
     except InvalidMotionError:  # no hips
         return recording
-    if MIN_BODY_SCALE <= size <= MAX_BODY_SCALE or not size > 0.0:
+    if not size > 0.0:
         return recording
-    nearest_unit = min(UNITS, key=lambda other: abs(np.log(size * other / unit)))
-    factor = nearest_unit / unit
-    if not MIN_BODY_SCALE <= size * factor <= MAX_BODY_SCALE:
+    estimated = estimate_unit(size / unit, default=unit, is_skeleton=False)
+    if estimated.unit == unit:
         return recording
-    progress(1.0, Remark(describe_guessed_unit(nearest_unit)))
+    progress(1.0, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
     tracks = recording.tracks
-    noted = replace(tracks.conventions or FileConventions(), unit=nearest_unit)
-    larger = replace(tracks, positions=factor * tracks.positions, conventions=noted)
+    noted = replace(tracks.conventions or FileConventions(), unit=estimated.unit)
+    positions = estimated.unit / unit * tracks.positions
+    larger = replace(tracks, positions=positions, conventions=noted)
     return recording.with_tracks(larger)
 
 
@@ -90,14 +88,6 @@ def offsets_of_body(skeleton: Skeleton) -> Array:
     offsets = np.zeros_like(skeleton.offsets)
     offsets[body] = skeleton.offsets[body]
     return offsets
-
-
-def describe_guessed_unit(unit: float) -> str:
-    """Return a message that states the estimated unit of length, and why."""
-    return (
-        f"Lengths are interpreted as {unit_name(unit)}, by the size of the body; give the unit"
-        " if that is wrong"
-    )
 
 
 def stature(recording: Motion | Tracks | JointRecording) -> float | None:

@@ -8,11 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion import AxisName, FileConventions, Tracks
+from ...motion.humanoid import ADULT_STATURE_M
+from ...progress import Progress, Remark
 from ..containers import UniqueNames, printable
 from .axes import MIN_BODY_JOINTS, z_up_from_y_up
 from .file_axes import FORWARD
 from .marker_axes import estimate_up_of_markers
-from .marker_bodies import axis_of_named_markers
+from .marker_bodies import axis_of_named_markers, stature_of_markers
+from .unit_estimate import describe_guessed_unit, estimate_unit
 
 METERS = {
     "mm": 0.001, "millimeter": 0.001, "millimetre": 0.001, "cm": 0.01, "centimeter": 0.01,
@@ -54,8 +57,21 @@ def meters_from_unit_name(word: str) -> float | None:
 
 
 @np.errstate(over="ignore", invalid="ignore")  # numbers that are refused later
-def guess_unit_of_points(points: NDArray[np.float64]) -> float:
-    """Return the unit of meters, centimeters and millimeters that gives a person's size."""
+def guess_unit_of_points(
+    points: NDArray[np.float64], labels: Sequence[str], progress: Progress
+) -> float:
+    """Return the probable unit of points, in meters; report an unusual one.
+
+    Labels of head and feet show the height of the actor (`estimate_unit`). Without them, as
+    with points of a limb, it is that of meters, centimeters and millimeters whose extent is
+    nearest to a person's.
+    """
+    height = stature_of_markers(labels, points)
+    if height is not None and 0.0 < height < np.inf:
+        estimated = estimate_unit(height / ADULT_STATURE_M, is_body=False, is_skeleton=False)
+        if estimated.has_low_confidence:
+            progress(0.8, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
+        return estimated.unit
     extent = float(np.median(_extents(points).max(axis=1)))
     if not 0.0 < extent < np.inf:
         return METERS["mm"]

@@ -8,8 +8,8 @@ import numpy as np
 from ...motion import FileConventions, Motion, find_humanoid_map
 from .axes import ADULT_REACH_M, MIN_BODY_JOINTS, longest_bone_path, rotation_to_z_up
 from .body_axes import describe_guessed_axis, estimate_up_axis
-from .body_unit import describe_guessed_unit
 from .file_axes import conventions_of, rotated_conventions
+from .unit_estimate import describe_guessed_unit
 
 STATED_REACH_M = (0.25, 15.0)
 """Range of the longest path along the bones, meters, for which the unit of a file is believed.

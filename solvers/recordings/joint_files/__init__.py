@@ -13,6 +13,7 @@ from .json_bodies import (
     people_of_frame,
     time_of_frame,
 )
+from .json_table import is_json_table, open_json_table
 from .kinect_csv import is_kinect_csv, read_kinect_csv
 from .long_table import is_long_table, open_long_table
 from .mediapipe_csv import is_mediapipe_csv, read_mediapipe_csv
@@ -39,6 +40,7 @@ __all__ = [
     "is_irds",
     "is_joint_csv",
     "is_joint_json",
+    "is_json_table",
     "is_kinect_csv",
     "is_long_table",
     "is_mediapipe_csv",
@@ -56,6 +58,7 @@ __all__ = [
     "open_irds",
     "open_joint_csv",
     "open_joint_json",
+    "open_json_table",
     "open_long_table",
     "open_ntu_skeleton",
     "open_nuitrack_csv",

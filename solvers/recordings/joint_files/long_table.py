@@ -76,7 +76,11 @@ def is_long_table(head: bytes) -> bool:
 
 
 def open_long_table(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    progress: Progress = unwatched,
+    lines: list[bytes] | None = None,
 ) -> Bodies[JointRecording | Tracks]:
     """Open a table whose lines are `frame, joint, x, y, z`, in any order of columns.
 
@@ -92,6 +96,8 @@ def open_long_table(
     path : Path or str
     scale : float, meters per unit of the file, or None
     progress : Progress
+    lines : list of bytes, optional
+        The table as text, if the file holds it otherwise.
 
     Raises
     ------
@@ -103,7 +109,7 @@ def open_long_table(
         Raised by `progress`.
     """
     check_scale(scale)
-    table = _read_table(path, progress)
+    table = _read_table(LineReader(path, lines), path, progress)
     rows, columns = table.rows, table.columns
     frames, times = _frames(rows, columns)
     is_row = np.isfinite(rows[:, columns.joint]) & (frames >= 0)
@@ -169,8 +175,7 @@ def _landmarks(names: Sequence[str], has_landmarks: bool) -> list[int] | None:
     return columns if sum(at >= 0 for at in columns) >= MIN_JOINTS else None
 
 
-def _read_table(path: Path | str, progress: Progress) -> _LongTable:
-    reader = LineReader(path)
+def _read_table(reader: LineReader, path: Path | str, progress: Progress) -> _LongTable:
     reader.skip_blank_lines()
     first = reader.peek(MAX_TITLE_LINES + N_SAMPLED_LINES)
     header = table_titles(first[:MAX_TITLE_LINES], long_columns)

@@ -41,7 +41,7 @@ from ..point_bodies import (
     without_letter,
 )
 from .long_columns import is_frame_title, number_of_frame
-from .points_recording import recording_of_points
+from .points_recording import recording_of_points, refuse_other_points
 from .table_titles import (
     MAX_TITLE_LINES,
     MIN_POINTS,
@@ -49,6 +49,7 @@ from .table_titles import (
     N_SAMPLED_LINES,
     table_titles,
 )
+from .untitled_tables import numbered_titles
 
 
 class _Columns(NamedTuple):
@@ -71,26 +72,33 @@ def is_point_table(head: bytes) -> bool:
     lines = head.lstrip(b"\r\n").splitlines()
     if len(lines) < 2:
         return False
-    return table_titles(lines, _has_points) is not None
+    complete = lines if head.endswith((b"\n", b"\r")) else lines[:-1]
+    return (table_titles(lines, has_points) or numbered_titles(complete)) is not None
 
 
 def open_point_table(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    progress: Progress = unwatched,
+    lines: list[bytes] | None = None,
 ) -> Bodies[JointRecording | Tracks]:
     """Open a table with a column for x, y and z of each point, a line for each frame.
 
     Columns are called `LeftHand_x`, `Hip_position_x`, `nose.X`, `Head X (mm)` or `x0`; others
     are left out. Names may also stand above the axes, in a line of their own (`table_titles`).
     Points that form a body, by their names or, if these are numbers, by their bones
-    (`name_joints`), are its joints. Their axes, and their unit if it is not stated, are
-    estimated from the body. Without a column of times, 30 Hz are assumed. Points of several
-    people are called `Anna:Head_x`.
+    (`name_joints`), are its joints; a table of numbers without titles may be one of these.
+    Their axes, and their unit if it is not stated, are estimated from the body. Without a
+    column of times, 30 Hz are assumed. Points of several people are called `Anna:Head_x`.
 
     Parameters
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
     progress : Progress
+    lines : list of bytes, optional
+        The table as text, if the file holds it otherwise.
 
     Raises
     ------
@@ -102,10 +110,10 @@ def open_point_table(
         Raised by `progress`.
     """
     check_scale(scale)
-    reader = LineReader(path)
+    reader = LineReader(path, lines)
     reader.skip_blank_lines()
     first = reader.peek(MAX_TITLE_LINES + N_PEEKED_LINES)
-    header = table_titles(first, _has_points)
+    header = table_titles(first, has_points) or numbered_titles(first)
     columns = (
         _columns(header.titles, header.cells(first[: MAX_TITLE_LINES + N_SAMPLED_LINES]))
         if header
@@ -147,6 +155,8 @@ def open_point_table(
     )
 
     def read(index: int, progress: Progress) -> JointRecording | Tracks:
+        if not header.n_lines:
+            refuse_other_points(path, points)
         if not people:
             return recording_of_points(path, columns.names, points, times, unit, progress)
         person = people[index]
@@ -201,7 +211,8 @@ def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[M
     return people
 
 
-def _has_points(titles: Sequence[str]) -> bool:
+def has_points(titles: Sequence[str]) -> bool:
+    """Return whether titles of columns are those of points."""
     columns = _columns(titles)
     return columns is not None and (
         len(columns.names) >= MIN_POINTS or are_joints(columns.names)

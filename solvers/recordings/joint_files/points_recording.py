@@ -78,9 +78,19 @@ def recording_of_points(
     if times is not None:
         resampler = ConstantRate(path, times)
         points, rate = resampler.positions(points), resampler.frame_rate
-    unit = guess_unit_of_points(points) if unit is None else unit
+    unit = guess_unit_of_points(points, names, progress) if unit is None else unit
     progress(1.0, READING)
     return stand_markers(names, points * unit, rate, unit, "")
+
+
+def refuse_other_points(path: Path | str, points: Array) -> None:
+    """Raise InvalidFileError if points without names are not the joints of a body."""
+    if body_of_points(path, points) is None:
+        raise InvalidFileError(
+            f"{path} is a table without titles, and its numbers form no body in a known order"
+            " of joints. Write the names of joints and axes, such as LeftHand_x, in its first"
+            " line."
+        )
 
 
 def _remark_of_markers(names: Sequence[str], lacking: Sequence[str]) -> Remark:

@@ -27,6 +27,8 @@ VECTOR = re.compile(
 MAX_VECTOR_BYTES = 120
 """Bytes of such a cell. It bounds the search; three numbers of all digits have 75."""
 BRACKETS = re.compile(rb"[\[({][^\[\](){}]*[\])}]")
+MAX_UNIT_LETTERS = 12
+"""Letters of the name of a unit. It guards lines of words; `millimeters` has eleven."""
 INSIDE_BRACKETS = b"\x01"
 """Replaces separators inside brackets while a line is split."""
 RATE = re.compile(
@@ -56,7 +58,7 @@ class TableTitles(NamedTuple):
     def cells(self, lines: Sequence[bytes]) -> list[list[str]]:
         """Return the cells of the frames among the first lines of the file."""
         below = [line for line in lines[self.n_lines :] if line.strip()]
-        return [_cells(self.expand(line), self.separator) for line in below]
+        return [cells_of_line(self.expand(line), self.separator) for line in below]
 
     def expand(self, line: bytes) -> bytes:
         """Return a line whose cells have one number each; others remain, to be refused."""
@@ -96,8 +98,29 @@ def table_titles(
         following = [*lines[number + 1 : MAX_TITLE_LINES], *fullest]
         found = _titles_of_line(line, following)
         if fits(found.titles):
-            return found._replace(n_lines=number + 1, rate=_rate(b"\n".join(lines[:number])))
+            found = found._replace(n_lines=number + 1, rate=_rate(b"\n".join(lines[:number])))
+            return _with_units(found, lines[number + 1 : number + 2])
     return None
+
+
+def _with_units(found: TableTitles, below: Sequence[bytes]) -> TableTitles:
+    """Return titles with the units of a line below them, if it is one."""
+    units = [
+        cell.strip("()[] ") for line in below for cell in cells_of_line(line, found.separator)
+    ]
+    words = [unit for unit in units if unit]
+    is_line = any(meters_from_unit_name(word) for word in words)
+    if not is_line or len(units) != len(found.titles) or not all(map(_is_unit, words)):
+        return found
+    titles = [
+        f"{title} ({unit})" if unit else title
+        for title, unit in zip(found.titles, units, strict=True)
+    ]
+    return found._replace(titles=titles, n_lines=found.n_lines + 1)
+
+
+def _is_unit(word: str) -> bool:
+    return len(word) <= MAX_UNIT_LETTERS and not any(letter.isdigit() for letter in word)
 
 
 def _fullest(lines: Sequence[bytes]) -> list[bytes]:
@@ -115,9 +138,9 @@ def _rate(comment: bytes) -> float | None:
 def _joined_lines(lines: Sequence[bytes]) -> TableTitles | None:
     for number, line in enumerate(lines[1:MAX_TITLE_LINES], start=1):
         separator = find_separator(line)
-        axes = [AXIS.fullmatch(cell) for cell in _cells(line, separator)]
+        axes = [AXIS.fullmatch(cell) for cell in cells_of_line(line, separator)]
         if sum(match is not None for match in axes) >= 3 * MIN_POINTS:
-            rows = [_cells(each, separator) for each in lines[: number + 2]]
+            rows = [cells_of_line(each, separator) for each in lines[: number + 2]]
             joined = _joined(rows[:number], axes, rows[number])
             if joined is None:
                 break
@@ -138,7 +161,7 @@ def _titles_of_line(line: bytes, following: Sequence[bytes]) -> TableTitles:
     Cells of vectors may be blank in some of the lines that follow.
     """
     separator = find_separator(line)
-    titles = _cells(line.lstrip(b"# "), separator)
+    titles = cells_of_line(line.lstrip(b"#% "), separator)
     vectors: set[int] = set()
     for cells in (_cells_with_brackets(each, separator) for each in following):
         if len(cells) == len(titles):
@@ -171,7 +194,8 @@ def _cells_with_brackets(line: bytes, separator: bytes) -> list[bytes]:
     return [cell.replace(INSIDE_BRACKETS, separator) for cell in split_cells(hidden, separator)]
 
 
-def _cells(line: bytes, separator: bytes) -> list[str]:
+def cells_of_line(line: bytes, separator: bytes) -> list[str]:
+    """Return the cells of a line, decoded."""
     return [decode_text(cell) for cell in split_cells(line, separator)]
 
 

@@ -9,7 +9,7 @@ from ...motion import FileConventions, JointRecording, Sensor, Tracks
 from ...motion.skeletons import UI_PRMD
 from ...progress import Progress, unwatched, within
 from ..containers import read_archive
-from ..conventions import check_scale, joint_recording
+from ..conventions import check_scale, joint_recording, with_conventions
 
 NAMES = tuple(UI_PRMD)
 MARKERS = (
@@ -39,9 +39,9 @@ def read_ui_prmd_pair(
     """Read a UI-PRMD take [1]_ stored as `.npz`: Kinect joints and optical markers, in meters.
 
     Both are in the same world space, Z up, and have the same times, as they were aligned for
-    the archive (keys kinect, markers, unit_m, frame_rate). The heading of the actor is
-    unchanged. Positions exactly at the origin are missing and become NaN. The data set has no
-    tracking state.
+    the archive (keys kinect, markers, unit_m, frame_rate); height 0 is the floor. The heading
+    of the actor is unchanged. Positions exactly at the origin are missing and become NaN. The
+    data set has no tracking state.
 
     Parameters
     ----------
@@ -91,6 +91,7 @@ def read_ui_prmd_pair(
         conventions=FileConventions(),
         progress=within(progress, 0.0, 0.9),
     )
+    recording = with_conventions(recording, FileConventions(unit=meters))
     missing = (markers == 0.0).all(axis=-1) | ~np.isfinite(markers).all(axis=-1)
     positions = np.where(missing[..., None], np.nan, markers * meters)
     tracks = Tracks(MARKERS, positions, float(frame_rate))

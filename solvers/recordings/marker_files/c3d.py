@@ -100,7 +100,7 @@ def open_c3d(
     if not points.size or np.isnan(points).all():
         raise InvalidFileError(f"{path} has no points that are observed in any frame.")
     used = [labels[index] for index in columns]
-    unit = _unit(file, points) if scale is None else scale
+    unit = _unit(file, points, used, progress) if scale is None else scale
     points *= unit
     up = _up(file, points, used, progress)
     axes = estimate_axes_of_points(points, up, unit, labels=used)
@@ -144,7 +144,11 @@ def _labels(file: C3dFile, n_points: int) -> list[str]:
     return (labels + [""] * n_points)[:n_points]
 
 
-def _unit(file: C3dFile, points: NDArray[np.float64]) -> float:
+def _unit(
+    file: C3dFile, points: NDArray[np.float64], labels: list[str], progress: Progress
+) -> float:
     """Return meters per unit of the file."""
     stated_unit = meters_from_unit_name("".join(file.texts("POINT:UNITS")[:1]))
-    return guess_unit_of_points(points) if stated_unit is None else stated_unit
+    if stated_unit is not None:
+        return stated_unit
+    return guess_unit_of_points(points, labels, progress)

@@ -105,7 +105,7 @@ def open_trc(
     rows = _read_rows(reader, header.separator, path, within(progress, 0.0, 0.8))
     frames, times, points = _columns_from_rows(rows, len(header.labels), path)
     mark_missing(points, path)
-    unit = _unit(header, points, path) if scale is None else scale
+    unit = _unit(header, points, path, progress) if scale is None else scale
     points *= unit
     points, rate = at_constant_rate(points, frames, times, header.rate, path)
     labels = header.labels + [""] * (points.shape[1] - len(header.labels))
@@ -264,11 +264,13 @@ def _columns_from_rows(
     return table[:, 0].copy(), table[:, 1].copy(), points
 
 
-def _unit(header: _TrcHeader, points: NDArray[np.float64], path: Path | str) -> float:
+def _unit(
+    header: _TrcHeader, points: NDArray[np.float64], path: Path | str, progress: Progress
+) -> float:
     """Return meters per unit of the file."""
     unit = meters_from_unit_name(header.unit)
     if unit is None:
-        return guess_unit_of_points(points)
+        return guess_unit_of_points(points, header.labels, progress)
     if unit < 1.0 and points.shape[1] > 1 and np.nanmax(np.abs(points)) <= FULL_TURN_RAD:
         raise InvalidFileError(
             f"{path} holds angles, or its unit is not {header.unit} as stated: no number in it"

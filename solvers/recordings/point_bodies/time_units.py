@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...progress import Progress, Remark
-from ..containers import is_missing
+from ..containers import decode_text, is_missing
 
 MAX_STEP_S = 1.0
 """Median step between frames, seconds, above which times without a unit are milliseconds. It
@@ -32,6 +32,11 @@ WORD_OF_TIME = re.compile(
     r"|offset(?=.)|pts(?=.)|ts?)"
     r"(?:[\s_\-]*(?:in\s)?[\s_\-]*[(\[]?\s*(?P<unit>[a-z\u00b5\u03bc]+)\s*[)\]]?)?"
 )
+TIME_WITH_UNIT = re.compile(
+    r"(?P<number>-?\d{1,20}(?:\.\d{0,20})?)"
+    r"(?:/(?P<divisor>\d{1,9}(?:\.\d{0,9})?)|\s*(?P<unit>[a-z\u00b5\u03bc]{1,12}))"
+)
+"""A time with its unit, or a fraction of a second."""
 TIMECODE = re.compile(r"\d:\d+:\d+[:;]\d")
 """Hours, minutes, seconds and the number of a frame, whose rate is not stated."""
 DAY_S = 86400.0
@@ -83,7 +88,7 @@ def read_time(value: Any, second: float | None) -> tuple[float, float | None]:
         try:
             value = float(value)
         except ValueError:
-            return _seconds_of_date(value.strip(), second)
+            return _seconds_of_text(value.strip(), second)
     if isinstance(value, bool) or not isinstance(value, int | float):
         return np.nan, second
     try:
@@ -91,6 +96,18 @@ def read_time(value: Any, second: float | None) -> tuple[float, float | None]:
     except OverflowError:
         return np.nan, second
     return (time if isfinite(time) else np.nan), second
+
+
+def _seconds_of_text(text: str, second: float | None) -> tuple[float, float | None]:
+    """Return the seconds of a time such as `40 ms`, `1/25` or a date, as `read_time` does."""
+    match = TIME_WITH_UNIT.fullmatch(text)
+    if match is None:
+        return _seconds_of_date(text, second)
+    unit = SECONDS.get(_singular(match["unit"] or "s"))
+    divisor = float(match["divisor"] or 1.0)
+    if unit is None or not divisor:
+        return np.nan, second
+    return float(match["number"]) * unit / divisor, 1.0
 
 
 def _seconds_of_date(text: str, second: float | None) -> tuple[float, float | None]:
@@ -127,7 +144,7 @@ def column_of_times(titles: Sequence[str], cells: Sequence[Sequence[str]] = ()) 
     return min(
         names,
         key=lambda column: (
-            not _increases(column, cells),
+            not is_increasing(column, cells),
             column in units,
             names[column].second is None,
         ),
@@ -135,7 +152,7 @@ def column_of_times(titles: Sequence[str], cells: Sequence[Sequence[str]] = ()) 
     )
 
 
-def _increases(column: int, cells: Sequence[Sequence[str]]) -> bool:
+def is_increasing(column: int, cells: Sequence[Sequence[str]]) -> bool:
     """Return whether times never decrease, and increase in most frames."""
     times = np.array([read_time(row[column], None)[0] for row in cells if column < len(row)])
     steps = np.diff(times[np.isfinite(times)])
@@ -208,7 +225,7 @@ class TimeCells:
         What is no time is returned as it is, to be refused. So is a word where another time
         follows it, for the line of that time.
         """
-        text = cell.decode("latin-1").strip()
+        text = decode_text(cell).strip()
         if is_missing(cell):
             self._n_blank += not self._words
             return b""
@@ -216,7 +233,7 @@ class TimeCells:
         if isfinite(time) and not self._words:
             self._has_times, self._n_blank = True, 0
             return repr(time).encode()
-        unreadable = text.encode("latin-1").replace(b" ", b"__")
+        unreadable = cell.strip().replace(b" ", b"__")
         if isfinite(time):
             return self._words[0]
         self._words.append(unreadable)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...rotations import quaternion_from_euler
 from ..containers import read_bytes, shown
-from ..conventions import PLAUSIBLE_REACH_M, guess_unit, longest_bone_path
+from ..conventions import ADULT_REACH_M, estimate_unit, guess_unit, longest_bone_path
 
 INCH = 0.0254
 ROOT = "root"
@@ -158,10 +158,9 @@ class _SkeletonFile:
         """Return meters per unit: inches divided by the file's factor, if that is plausible."""
         vectors = np.array([bone.vector for bone in bones])
         factor = self._numbers(units.get("length", ["1"]), 1)[0]
-        unit = INCH / factor if factor > 0.0 else 0.0
-        low, high = PLAUSIBLE_REACH_M
-        if low <= longest_bone_path(parents, vectors) * unit <= high:
-            return unit
+        reach = longest_bone_path(parents, vectors)
+        if factor > 0.0 and reach > 0.0:
+            return estimate_unit(reach / ADULT_REACH_M, default=INCH / factor).unit
         return guess_unit(parents, vectors)
 
     def _lines(self, section: str) -> Iterator[list[str]]:

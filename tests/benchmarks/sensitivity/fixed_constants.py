@@ -55,7 +55,6 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "*.NANOSECOND",
         "*.TICK",
         "recordings/conventions/axes.ACCLAIM_UNIT",
-        "recordings/conventions/body_unit.UNITS",
         "recordings/depth_files/layouts.TUM_UNIT",
     ),
     "index, state, flag or error code": (

@@ -42,12 +42,10 @@ REASONS: dict[str, tuple[str, ...]] = {
     "layout of a file, or of a property": ("*.LAYOUT", "mocap_assist/actions/curves.KEY"),
     "definition or conversion of units": (
         "motion/skeletons/file_conventions.UNIT_NAMES",
-        "recordings/conventions/axes.*",
         "recordings/conventions/points.METERS",
         "recordings/point_bodies/landmark_recording.PERCENT",
         "recordings/point_bodies/time_units.SECONDS",
         "recordings/reading_settings.METRES",
-        "recordings/skeleton_files/bvh/channels.IMPERIAL",
         "recordings/streams/protocols/rokoko.HALF",
         "rotations/representations.FULL_TURN_RAD",
         "workflows/standard_joints.UNITS",

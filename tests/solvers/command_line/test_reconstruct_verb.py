@@ -13,6 +13,7 @@ from solvers.motion import SENSOR_JOINTS, Sensor, Tracks
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import load_posture_library
 from solvers.recordings import read_bvh, read_recording, write_bvh, write_joint_csv, write_trc
+from solvers.recordings.conventions import floor_level
 
 
 @pytest.fixture(scope="module")
@@ -101,6 +102,21 @@ def test_millimeters_read_as_meters_are_refused_with_a_scale(call, walk, tmp_pat
     assert scaled == 0
     height = read_bvh(tmp_path / "out.bvh").skeleton.height
     assert 1.3 < height < 2.2
+
+
+@pytest.mark.parametrize("verb", ["reconstruct", "fix"])
+def test_joints_of_a_camera_come_out_on_the_floor(call, walk, tmp_path, verb):
+    """Before, the result was in the space of the sensor, as much as 1.6 m below the floor."""
+    lower = walk.tracks.with_positions(walk.tracks.positions - (0.0, 0.0, 1.1))
+    write_joint_csv(walk.with_tracks(lower), tmp_path / "walk.csv")
+
+    placed, kept = tmp_path / "placed.bvh", tmp_path / "kept.bvh"
+    _, out, _ = call(verb, tmp_path / "walk.csv", placed)
+    _, without, _ = call(verb, tmp_path / "walk.csv", kept, "--place-on-floor", "never")
+
+    assert abs(floor_level(read_bvh(placed))) < 0.05
+    assert abs(floor_level(read_bvh(kept))) > 0.1
+    assert "No floor was measured" in out and "No floor was measured" not in without
 
 
 def test_estimated_unit_is_reported(call, walk, tmp_path):

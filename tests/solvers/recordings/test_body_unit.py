@@ -14,8 +14,10 @@ from solvers.motion.humanoid import posture_joints
 from solvers.recordings import read_recording, write_joint_csv
 from solvers.recordings.conventions.body_unit import convert_to_body_unit
 from solvers.recordings.conventions.tracked_joints import joint_recording
+from solvers.recordings.conventions.unit_estimate import estimate_unit
 
 WORDS = {1.0: "meters", 0.01: "centimeters", 0.001: "millimeters"}
+ALL_WORDS = WORDS | {0.0254: "inches", 0.3048: "feet"}
 
 
 class KeptMessages:
@@ -38,7 +40,7 @@ def walk():
 
 
 @pytest.mark.parametrize("default", WORDS)
-@pytest.mark.parametrize("true", WORDS)
+@pytest.mark.parametrize("true", ALL_WORDS)
 def test_body_has_human_size_for_any_default_unit(walk, default, true):
     messages = KeptMessages()
 
@@ -52,7 +54,7 @@ def test_body_has_human_size_for_any_default_unit(walk, default, true):
         assert not messages.units
     else:
         (output,) = messages.units
-        assert f"interpreted as {WORDS[true]}," in output and "give the unit" in output
+        assert f"interpreted as {ALL_WORDS[true]}," in output and "give the unit" in output
 
 
 @pytest.mark.parametrize("size", [0.4, 2.5])
@@ -62,6 +64,27 @@ def test_a_child_or_a_giant_stays_what_it_is(walk, size):
 
     assert convert_to_body_unit(other, 1.0, messages) is other
     assert not messages.units
+
+
+@pytest.mark.parametrize("height", [0.84, 1.0, 1.75, 3.5, 4.0])
+def test_children_and_giants_stay_what_they_are(height):
+    """Inches would make adults of children, a unit of its own of giants."""
+    assert estimate_unit(height / 1.75 / 0.01).unit == 0.01
+
+
+@pytest.mark.parametrize("unit", [0.08, 0.04, 0.15])
+def test_rigs_of_another_scale_get_the_size_of_an_adult(unit):
+    """One unit of MikuMikuDance has 8 cm; before, such a body was a child in Acclaim's unit."""
+    assert estimate_unit(1.0 / unit).unit == pytest.approx(unit)
+
+
+@pytest.mark.parametrize("unit", ALL_WORDS)
+@pytest.mark.parametrize("height", [1.5, 1.6, 1.75, 1.9, 2.0])
+def test_the_unit_of_an_adult_is_recognized(height, unit):
+    size = height / 1.75 / unit
+
+    assert estimate_unit(size).unit * size == pytest.approx(height / 1.75, rel=0.15)
+    assert estimate_unit(size, is_body=False).unit == unit
 
 
 def test_who_gives_the_unit_is_obeyed(walk):

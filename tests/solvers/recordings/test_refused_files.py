@@ -106,7 +106,7 @@ def object_array() -> bytes:
             "12:00:00:01,61,0.1,0.2,0.3,0.4\n",
             "holds values of a face",
         ),
-        ("\n".join([",".join(["0.25"] * 75)] * 4), "is a table without titles"),
+        ("\n".join([",".join(["0.25"] * 50)] * 4), "is a table without titles"),
         (
             npz(pred_joint_coords=np.ones((3, 127, 3)), pred_cam_t=np.ones((3, 3))),
             "NumPy archive without joints of a known name .*pred_cam_t",

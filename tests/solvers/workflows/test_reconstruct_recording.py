@@ -1,5 +1,7 @@
 """From a recording of joints to a motion: any tracker, and one sentence for bad input."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from kinect_walks import tracked_walk, true_positions
@@ -10,6 +12,7 @@ from solvers.denoising import PlantSettings
 from solvers.errors import InvalidMotionError
 from solvers.motion import (
     SENSOR_JOINTS,
+    FileConventions,
     JointRecording,
     Sensor,
     Tracks,
@@ -19,6 +22,7 @@ from solvers.motion import (
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import ReconstructSettings
 from solvers.recordings import read_recording
+from solvers.recordings.conventions import floor_level, put_on_floor
 from solvers.workflows import reconstruct_motion, reconstruct_recording
 
 NITE = {  # fifteen joints, as OpenNI's tracker names them, and the first Kinect's name of each
@@ -47,6 +51,25 @@ def test_all_joints_are_filled_and_bone_lengths_are_constant(walk):
     assert result.motion.observed.all()
     assert result.motion.n_frames == walk.n_frames
     assert result.remarks == ()
+
+
+@pytest.mark.parametrize("sensor", [Sensor.KINECT_V1, Sensor.KINECT_V2])
+def test_a_take_that_was_put_on_the_floor_stays_there(walk, sensor):
+    """Before, corrected feet were up to 8 cm below: trackers place ankles too high."""
+    no_floor = replace(walk.tracks, conventions=FileConventions(has_floor=False))
+    placed = put_on_floor(replace(walk, sensor=sensor, tracks=no_floor))
+    moved = placed.tracks.with_positions(placed.tracks.positions - (0.0, 0.0, 1.0))
+    armature = motion_from_points(placed.tracks, placed.parents)
+
+    result = reconstruct_recording(placed, planting=None).motion
+    rebuilt = reconstruct_motion(armature, source=placed, sensor=sensor, resize=True).motion
+    in_sensor_space = reconstruct_recording(placed.with_tracks(moved), planting=None).motion
+    measured = reconstruct_motion(armature, sensor=sensor, resize=True).motion
+
+    assert floor_level(result) == pytest.approx(0.0, abs=0.001)
+    assert floor_level(rebuilt) == pytest.approx(0.0, abs=0.001)
+    assert floor_level(in_sensor_space) < -0.9
+    assert sensor is Sensor.KINECT_V1 or abs(floor_level(measured)) > 0.005
 
 
 def test_standing_feet_do_not_slide(walk):

@@ -22,6 +22,7 @@ const JOB_TYPE = {
     {"key": "height", "type": "string", "default": "", "required": false, "description": "Stature of the actor for SMPL files, which have no bone lengths [m, 0.1 to 9, default 1.75]"},
     {"key": "unit", "type": "string", "default": "", "required": false, "description": "Length unit of the files; the import message reports what Auto found [guess, metres, centimetres, millimetres, inches, default guess]"},
     {"key": "up", "type": "string", "default": "", "required": false, "description": "Axis of the file that points up; set it if the actor lies on the floor [default auto]"},
+    {"key": "place_on_floor", "type": "string", "default": "", "required": false, "description": "Move the take so that the lowest level the actor stands on is height 0 [default auto]"},
     {"key": "physics", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Finish with a simulated body with weight and muscles; takes longer [default no]"},
     {"key": "plant_feet", "type": "string", "choices": ["", "yes", "no"], "default": "", "required": false, "description": "Keep planted feet from sliding by moving legs and hips slightly [default yes]"},
   ],
@@ -34,6 +35,7 @@ const OPTIONS = {
   height: ["one", "--height"],
   unit: ["one", "--unit"],
   up: ["one", "--up"],
+  place_on_floor: ["one", "--place-on-floor"],
   physics: ["switch", "--physics", "--no-physics"],
   plant_feet: ["switch", "--plant-feet", "--no-plant-feet"],
 };

@@ -14,7 +14,7 @@ from .bodies import (
 from .people import is_frames_json, people_of_frame
 from .points import position_of
 from .pose_estimators import is_frame_json, open_frames_json
-from .stamps import time_of_frame
+from .stamps import stated_rates, time_of_frame
 
 __all__ = [
     "BodiesFrame",
@@ -31,5 +31,6 @@ __all__ = [
     "point",
     "position_of",
     "stacked",
+    "stated_rates",
     "time_of_frame",
 ]

@@ -58,13 +58,26 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
         if second is not None:
             yield second
         yield from rest
-    groups.append(("", _people_of(numbered, path) or {"": numbered_take(numbered)}))
+    for camera, frames in _by_camera(numbered).items():
+        groups.append(("", _people_of(frames, path) or {camera: numbered_take(frames)}))
     yield from _of_positions(positions, path)
     takes = _with_own_names(groups, yielded)
     yield from _rate_of(takes.values(), path)
     start = min((number for take in takes.values() for number in take), default=0.0)
     for name, take in takes.items():
         yield from _by_number(name, take, start, path)
+
+
+def _by_camera(numbered: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return frames by what is before their numbers, if these repeat: several cameras."""
+    keys = {key: match for key in numbered if (match := FRAME_KEY.fullmatch(key))}
+    if len({float(match[1]) for match in keys.values()}) == len(keys):
+        return {"": dict(numbered)}
+    found: dict[str, dict[str, Any]] = {}
+    for key, match in keys.items():
+        camera = key[: match.start(1)].strip(" /\\_-.")
+        found.setdefault(camera, {})[key] = numbered[key]
+    return found
 
 
 def _of_positions(positions: Mapping[str, list[Any]], path: Path | str) -> Iterator[JsonMember]:

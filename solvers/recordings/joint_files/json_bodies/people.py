@@ -6,6 +6,7 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from ....arrays import Array
+from ...conventions import path_from_camera
 from ...point_bodies import is_quantity, key_of_root
 from .bodies import name_of_body
 from .points import (
@@ -152,7 +153,10 @@ def _people_of_scene(frame: Mapping[str, Any]) -> Iterator[JsonPerson]:
 def _root_of(body: Mapping[str, Any]) -> Array | None:
     """Return the transform of a person next to the joints; None if it is not stated."""
     key = key_of_root(map(str, body))
-    return None if key is None else transform_of(body.get(key))
+    transform = None if key is None else transform_of(body.get(key))
+    if key is not None and transform is not None:
+        transform[:3, 3] = path_from_camera(key, transform[:3, 3])[0]
+    return transform
 
 
 def _listed_people(values: list[Any], key: str, identity: str) -> Iterator[JsonPerson]:

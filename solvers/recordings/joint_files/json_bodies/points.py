@@ -26,7 +26,8 @@ LANDMARK_KEYS = (
 NAME_KEYS = either_case("name", "joint", "joint_name", "jointName", "bone", "bone_name", "type",
                         "jointType", "id")  # fmt: skip
 """Members with the name of a joint, where joints are objects in a list."""
-POSITION_KEYS = either_case("worldPosition", "world_position", "globalPosition",
+POSITION_KEYS = either_case("position3D", "position3d", "position_3d",
+                            "worldPosition", "world_position", "globalPosition",
                             "global_position", "worldTransform", "modelTransform",
                             "model_transform", "position", "pos", "translation", "location",
                             "coordinates", "coords", "p", "transform", "matrix")  # fmt: skip

@@ -12,13 +12,12 @@ from ....motion import Motion, Skeleton
 from ....progress import Progress, Remark
 from ....rotations import inverse, multiply, quaternion_from_euler, rotate, rotation_between
 from ...conventions import (
-    ACCLAIM_UNIT,
     ADULT_REACH_M,
     CENTIMETER,
-    PLAUSIBLE_REACH_M,
+    MIN_BODY_JOINTS,
     describe_guessed_unit,
+    estimate_unit,
     file_conventions,
-    guess_unit,
     longest_bone_path,
     offsets_of_body,
     rotations_z_up_from_y_up,
@@ -27,15 +26,6 @@ from ...conventions import (
 from .hierarchy import BvhJoint
 
 FRAMES_AT_ONCE = 2000
-MIN_REACH_M = 0.5
-"""Meters from hand to foot of a small child. Chosen by hand: a file of 0.5 to 1.1 m in
-centimeters may as well be in another unit. It decides a sentence of the report only."""
-
-
-IMPERIAL = (0.0254, ACCLAIM_UNIT)
-LIKELY_REACH_M = (1.6, 3.0)
-"""Range of `ADULT_REACH_M` outside which inches and Acclaim's unit are unlikely. Chosen by
-hand: 1.8 to 2.4 m in such files of six makers; children are recorded in centimeters."""
 
 
 class BvhPoses(NamedTuple):
@@ -212,23 +202,23 @@ def motion_from_poses(
     names = tuple(joint.name for joint in joints)
     skeleton = Skeleton(names, parents, z_up_from_y_up(poses.offsets))
     if scale is None:
-        offsets = offsets_of_body(skeleton)
-        scale = guess_unit(parents, offsets)
-        path = longest_bone_path(parents, offsets)
-        reach = CENTIMETER * path
-        is_body = offsets is not skeleton.offsets
-        is_odd = (
-            is_body
-            and scale in IMPERIAL
-            and not LIKELY_REACH_M[0] < scale * path < LIKELY_REACH_M[1]
-        )
-        if is_odd:  # a unit of some program: the actor gets an adult's size
-            scale = float(f"{ADULT_REACH_M / path:.3g}")
-        if is_odd or (scale != CENTIMETER and MIN_REACH_M < reach < PLAUSIBLE_REACH_M[0]):
-            progress(1.0, Remark(describe_guessed_unit(scale)))
+        scale = _estimated_unit(skeleton, progress)
     skeleton = replace(skeleton, offsets=scale * skeleton.offsets)
     noted = replace(file_conventions("Y", unit=scale), offset_added=poses.offset_added)
     return Motion(skeleton, poses.rotations, scale * poses.root, frame_rate, noted)
+
+
+def _estimated_unit(skeleton: Skeleton, progress: Progress) -> float:
+    """Return the unit that fits the body, or otherwise all joints; report an unusual one."""
+    offsets = offsets_of_body(skeleton)
+    reach = longest_bone_path(skeleton.parents, offsets)
+    if skeleton.n_joints < MIN_BODY_JOINTS or not reach > 0.0:
+        return CENTIMETER
+    is_body = offsets is not skeleton.offsets
+    estimated = estimate_unit(reach / ADULT_REACH_M, is_body=is_body)
+    if estimated.has_low_confidence:
+        progress(1.0, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
+    return estimated.unit
 
 
 def _median_position(positions: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,7 +1,6 @@
 """Read BVH files, the common format of capture software and clip libraries."""
 
 from dataclasses import replace
-from decimal import Decimal, InvalidOperation
 from itertools import pairwise
 from pathlib import Path
 
@@ -16,7 +15,6 @@ from ...conventions import (
     Bodies,
     UpAxisName,
     check_scale,
-    common_rate,
     conventions_of,
     observed_body,
     reinterpreted,
@@ -24,9 +22,9 @@ from ...conventions import (
     stand_upright,
 )
 from .channels import BvhChannels, motion_from_poses
+from .frame_time import rate_of_frame_time
 from .hierarchy import read_hierarchies
 
-COMMON_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 23.976, 29.97, 59.94, 119.88)
 DEFAULT_RATE_HZ = 30.0
 MIN_TYPICAL_RATE_HZ, MAX_POSES = 10.0, 20
 """Frames per second below which the rate of a file is unusual, and the most frames of a list of
@@ -37,15 +35,8 @@ MIN_FRAMES_FRACTION = 0.9
 """Rows relative to the number in the header below which the file may be cut short. Chosen by
 hand: some programs count one frame more than they write. It decides a sentence of the report
 only."""
-MS_PER_S = 1000.0
-"""Milliseconds per second, by definition."""
-MIN_FRAME_MS = 4.0
-"""Frame times from which they are no seconds. By definition that of 250 Hz in milliseconds, the
-highest rate that capture software records."""
-RATE_DIGITS = 3
-"""Digits after the point of rates that are stated in place of frame times. By definition those
-of the common ones."""
-MAX_BLANK_LINES = 4096
+MAX_LINES_ABOVE = 4096
+"""Lines above the hierarchy, such as comments. It bounds the search."""
 MAX_HIERARCHY_BYTES = 1 << 24
 """Maximum length of the hierarchy, bytes."""
 
@@ -207,9 +198,10 @@ def _rotated_like(first: Motion, motion: Motion) -> Motion:
 def _hierarchy(reader: LineReader, path: Path | str) -> bytes:
     """Take the lines up to the word MOTION; return those before it."""
     lines: list[bytes] = []
-    while (line := reader.peek()) and not line[0].strip() and len(lines) < MAX_BLANK_LINES:
-        lines += reader.take()
-    if not b"".join(line).lstrip().upper().startswith(b"HIERARCHY"):
+    while (line := reader.peek()) and not _begins(line[0]) and len(lines) < MAX_LINES_ABOVE:
+        reader.take()
+        lines.append(b"")
+    if not line or not _begins(line[0]):
         raise InvalidFileError(f"{path} is not a BVH file: it does not begin with HIERARCHY.")
     length = 0
     while (line := reader.take()) and length < MAX_HIERARCHY_BYTES:
@@ -218,6 +210,10 @@ def _hierarchy(reader: LineReader, path: Path | str) -> bytes:
         lines += line
         length += len(line[0])
     raise InvalidFileError(f"{path} has no MOTION section: it is cut short. Export it again.")
+
+
+def _begins(line: bytes) -> bool:
+    return line.lstrip().upper().startswith(b"HIERARCHY")
 
 
 def _frame_rate(reader: LineReader, progress: Progress) -> tuple[float | None, int]:
@@ -229,8 +225,9 @@ def _frame_rate(reader: LineReader, progress: Progress) -> tuple[float | None, i
     n_frames = 0
     while line := reader.peek():
         words = line[0].lower().replace(b":", b" ").split()
-        if words[:2] == [b"frame", b"time"] and len(words) == 3:
-            rate = _stated_rate(words[2].decode("ascii", "replace"), progress)
+        if words[:2] == [b"frame", b"time"] and len(words) > 2:
+            stated = b" ".join(words[2:]).decode("ascii", "replace")
+            rate = rate_of_frame_time(stated, progress)
         elif (
             words[:1] == [b"frames"] and words[1:] and words[1].isdigit() and len(words[1]) < 10
         ):
@@ -239,44 +236,3 @@ def _frame_rate(reader: LineReader, progress: Progress) -> tuple[float | None, i
             break
         reader.take()
     return rate, n_frames
-
-
-def _stated_rate(word: str, progress: Progress) -> float | None:
-    """Return the rate of a frame time, in place of which may be the rate or milliseconds.
-
-    Milliseconds of a common rate may be cut or rounded; other whole numbers are rates.
-    """
-    rate = _rate_from_time(word)
-    if rate is None or 1.0 / rate < MIN_FRAME_MS:
-        return rate
-    time = round(1.0 / rate, RATE_DIGITS)
-    common = min(COMMON_RATES, key=lambda each: abs(MS_PER_S / each - time))
-    if time in COMMON_RATES:
-        rate = time
-    elif -0.5 <= MS_PER_S / common - time < 1.0:
-        rate = common
-    else:
-        rate = time if time.is_integer() else common_rate(MS_PER_S / time)
-    progress(0.1, Remark(f"A frame time of {time:g} is interpreted as {rate:g} Hz"))
-    return float(rate)
-
-
-def _rate_from_time(word: str) -> float | None:
-    """Return the common rate whose frame time rounds to `word`: 0.00833333 means 120 Hz."""
-    try:
-        exact = Decimal(word.replace(",", "."))
-        time = float(exact)
-    except (InvalidOperation, ValueError):  # sNaN is a decimal, but no float
-        return None
-    if not 1e-5 < time < 1e3:
-        return None
-    nearest_integer = round(1.0 / time)
-    half_digit = 0.51 * 10.0 ** int(exact.as_tuple().exponent)
-    for rate, tolerance in [
-        (nearest_integer, 1e-12),
-        *((rate, half_digit) for rate in COMMON_RATES),
-        (nearest_integer, min(half_digit, 1e-8)),
-    ]:
-        if rate and abs(1.0 / rate - time) <= tolerance:
-            return float(rate)
-    return 1.0 / time

@@ -19,6 +19,7 @@ from ...conventions import (
     common_rate,
     file_conventions,
     observed_body,
+    path_from_camera,
     put_on_floor,
     rotations_z_up_from_y_up,
     stand_upright,
@@ -116,6 +117,10 @@ def _motion(
         raise InvalidFileError(
             f"{path} has {n_frames} poses but positions of shape {positions.shape}."
         )
+    name = next((each for each in POSITIONS if each in arrays), "")
+    positions, limited = path_from_camera(name, positions)
+    if limited:
+        progress(0.5, limited)
     used = (next((name for name in names if name in arrays), "") for names in
             ((*ROTATIONS, *ROOT), POSITIONS))  # fmt: skip
     if not OF_CAMERA.isdisjoint(used):

@@ -32,7 +32,7 @@ def test_ntu_joints_and_states(write):
     values = moving(4, 25)
     values[1, 3, 3], values[2, 5, 3], values[3, 7, :3] = 1, 0, 0
 
-    recording = read_recording(write(ntu([{ONE: frame} for frame in values])))
+    recording = read_recording(write(ntu([{ONE: frame} for frame in values])), scale=1.0)
 
     expected = upright(values)
     expected[2, 5] = expected[3, 7] = np.nan
@@ -55,7 +55,7 @@ def test_ntu_selects_the_longest_observed_body_in_any_order(write):
     ]
     frames += [{ONE: mine[0]}]
 
-    recording = read_recording(write(ntu(frames)))
+    recording = read_recording(write(ntu(frames)), scale=1.0)
 
     observed = [0, 1, 4]
     assert_allclose(recording.tracks.positions[observed], upright(mine[observed]))
@@ -107,7 +107,7 @@ def test_kinect_csv_with_blank_lines_and_without_times(write):
     values = moving(5, 25)
     values[2, 4, 3] = 0
 
-    recording = read_recording(write("\n\n\n" + kinect_csv(values)))
+    recording = read_recording(write("\n\n\n" + kinect_csv(values)), scale=1.0)
 
     expected = upright(values)
     expected[2, 4] = np.nan

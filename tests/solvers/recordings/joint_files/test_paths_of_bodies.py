@@ -55,6 +55,20 @@ def test_json_states_the_path_of_the_body(read_any, walk, relative, key, nest):
     check(read_any(json.dumps(content[nest])), walk)
 
 
+@pytest.mark.parametrize("nest", ["json", "npz"])
+def test_the_camera_of_a_cropped_picture_is_no_path(read_any, relative, walk, nest):
+    path = walk[:, 0] + (0.0, 0.0, 43.0)
+    buffer = io.BytesIO()
+    np.savez(buffer, joints3d=relative, pred_cam_t=path, fps=np.array(30.0))
+    frames = [
+        {"joints3d": points, "pred_cam_t": position}
+        for points, position in zip(relative.tolist(), path.tolist(), strict=True)
+    ]
+    content = json.dumps({"fps": 30, "frames": frames}) if nest == "json" else buffer.getvalue()
+
+    check(read_any(content), relative)
+
+
 def test_a_person_with_arrays_states_the_path(read_any, walk, relative):
     person = {"joints3d": relative.tolist(), "trans": walk[:, 0].tolist()}
 

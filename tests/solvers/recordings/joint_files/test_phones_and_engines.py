@@ -47,6 +47,22 @@ def check(recording, walk):
         assert np.allclose(joints[role] - joints["rightUpperLeg"], expected, atol=1e-3), role
 
 
+def test_positions_in_the_picture_are_left_out(tmp_path, walk):
+    """As LightBuzz has them; before, there was no body in any frame."""
+    frames = [
+        {"Timestamp": k / RATE_HZ, "Bodies": [{"ID": 1, "Joints": [
+            {"Type": name, "Position2D": {"X": 10.0, "Y": 2.0}, "Confidence": 0.9,
+             "Position3D": dict(zip("XYZ", walk[role][k].tolist(), strict=True))}
+            for name, role in VISION.items()
+        ]}]} for k in range(F)
+    ]  # fmt: skip
+
+    recording = read(tmp_path, frames)
+
+    assert recording.frame_rate == RATE_HZ
+    check(recording, walk)
+
+
 def test_points_of_apple_vision(tmp_path, walk):
     frames = [
         {"time": k / RATE_HZ, "points": [

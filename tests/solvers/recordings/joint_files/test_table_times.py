@@ -43,6 +43,32 @@ def test_one_time_is_no_rate(read_any):
     assert_has_all_frames(recording, 30.0)
 
 
+@pytest.mark.parametrize("cell", ["{k}/50", "{ms} ms", "{ms}ms", "{s} s", "{s} sec", "{us} µs"])
+def test_times_may_have_units_or_be_fractions(read_any, cell):
+    """Before, the first was `not a number`, whatever the title."""
+    for title in ("time", "Time (ms)"):
+        recording = read_any(
+            table({title: lambda k: cell.format(k=k, ms=20 * k, s=k / RATE_HZ, us=20000 * k)})
+        )
+
+        assert_has_all_frames(recording)
+
+
+@pytest.mark.parametrize(("unit", "time"), [("ft", "s"), ("mm", ""), ("(cm)", "(ms)")])
+def test_a_line_of_units_below_the_titles_is_read(read_any, unit, time):
+    """Before, its words were no numbers, and the file `damaged`."""
+    second = 1000.0 if "m" in time else 1.0
+    stamps = {"time": lambda k: f"{second * k / RATE_HZ:.4f}"}
+    titles, _, rows = table(stamps).partition("\n")
+    units = ";".join([time, *[unit] * (3 * len(NAMES))])
+
+    recording = read_any(f"{titles}\n{units}\n{rows}")
+
+    assert_has_all_frames(recording)
+    meters = {"ft": 0.3048, "mm": 0.001, "(cm)": 0.01}[unit]
+    assert recording.conventions.unit == meters
+
+
 @pytest.mark.parametrize("at", [0, 40, F - 1])
 def test_a_blank_time_is_between_its_neighbors(read_any, at):
     recording = read_any(table({"time": lambda k: "" if k == at else seconds(k)}))

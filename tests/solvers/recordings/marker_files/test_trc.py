@@ -199,6 +199,28 @@ def test_the_unit_is_the_header_s_or_gives_a_person_s_size(read, unit, meters):
     assert_allclose(read(FILE, scale=2.0).positions, 2000 * POSITIONS)
 
 
+@pytest.mark.parametrize("meters", [0.3048, 0.0254, 0.01, 0.001])
+def test_the_height_of_named_markers_shows_a_unit_that_is_not_stated(tmp_path, rng, meters):
+    """Before, feet were read as meters and inches as centimeters."""
+    names = ("LFHD", "RFHD", "C7", "LANK", "RANK", "LHEE", "RHEE", "LASI")
+    heights = np.array([1.66, 1.66, 1.5, 0.08, 0.08, 0.04, 0.04, 1.0])
+    points = rng.uniform(-0.2, 0.2, size=(5, 8, 3))
+    points[..., 2] = heights
+    write_trc(Tracks(names, 0.001 / meters * points, 60.0), tmp_path / "take.trc")
+    text = (tmp_path / "take.trc").read_text().replace("\tmm\t", "\t\t")
+    (tmp_path / "take.trc").write_text(text)
+    messages = []
+
+    tracks = read_trc(
+        tmp_path / "take.trc", progress=lambda _, message="": messages.append(message)
+    )
+
+    assert tracks.conventions.unit == meters
+    assert_allclose(tracks.positions[:, 0, 2], 1.66, atol=0.01)
+    is_rare = meters in {0.3048, 0.0254}
+    assert any("by the size of the body" in str(each) for each in messages) == is_rare
+
+
 @pytest.mark.parametrize(("names", "up"), [("Y up", 2), ("Z up", 1), ("-z up", -1), ("", 2)])
 def test_up_axis_is_read_from_the_first_line(read, names, up):
     tracks = read(FILE.replace("take.trc\n", f"take.trc\t{names}\t\t\n"))

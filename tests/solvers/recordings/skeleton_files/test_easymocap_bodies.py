@@ -105,6 +105,31 @@ def test_the_position_in_the_camera_of_romp_is_read(tmp_path, collected_messages
     assert any("relative to the camera" in message for message in messages)
 
 
+@pytest.mark.parametrize(
+    ("name", "depth", "moved"),
+    [
+        ("pred_cam_t", 5.0, (1.0, 4.0, 0.3)), ("pred_cam_t", 43.0, (0.0, 0.0, 0.0)),
+        ("pred_cam_t_full", 90.0, (1.0, 0.0, 0.3)), ("cam_t", 43.0, (0.0, 0.0, 0.0)),
+    ],
+)  # fmt: skip
+def test_the_camera_of_a_cropped_picture_is_no_path(
+    tmp_path, collected_messages, name, depth, moved
+):
+    """Before, an actor whose size in the picture changed by a tenth ran 4 m."""
+    messages, progress = collected_messages
+    path = save(
+        tmp_path / "hmr.npz", global_orient=np.tile([np.pi, 0.0, 0.0], (F, 1)),
+        body_pose=np.zeros((F, 69)),
+        **{name: np.linspace([0, 0, depth], [1.0, 0.3, depth + 4.0], F)},
+    )  # fmt: skip
+
+    motion = read_recording(path, progress=progress)
+
+    assert np.ptp(motion.root_positions, axis=0) == pytest.approx(moved, abs=1e-6)
+    is_left_out = any("Save the path in the world" in message for message in messages)
+    assert is_left_out == (depth > 25.0)
+
+
 def test_the_names_and_the_pose_of_meshcapade_are_read(tmp_path):
     """Before, its .smpl was a NumPy archive without joints of a known name."""
     path = save(

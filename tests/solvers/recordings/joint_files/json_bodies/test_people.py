@@ -177,6 +177,23 @@ def test_pictures_by_name_are_frames(tmp_path, two):
     assert read_recording(path).tracks.n_frames == F
 
 
+@pytest.mark.parametrize(
+    "key", ["cam{c}/{k:06}.jpg", "{c}_frame_{k:04}.png", "view {c} {k}.jpg"]
+)
+def test_pictures_of_several_cameras_are_takes_to_choose_from(tmp_path, two, key):
+    """Before, the frames of the last camera replaced those of the others."""
+    path = write(
+        tmp_path, {key.format(c=c, k=k): two(c == "B", k) for c in "AB" for k in range(F)}
+    )
+
+    bodies = list_bodies(path)
+
+    assert len(bodies) == 2 and all(each.n_frames == F for each in bodies)
+    assert [("A" in each.name, "B" in each.name) for each in bodies] == [
+        (True, False), (False, True),
+    ]  # fmt: skip
+
+
 def write(folder, content):
     path = folder / "take.json"
     path.write_text(json.dumps(content))

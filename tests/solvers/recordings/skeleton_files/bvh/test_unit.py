@@ -83,6 +83,26 @@ def test_units_of_no_program_give_an_adult_and_are_reported(read, scale, collect
     assert any("units of 0." in message for message in messages)
 
 
+def test_feet_are_recognized_and_reported(read, collected_messages):
+    """Before, they were read as meters: a body of 5.6 m, without a word in scripts."""
+    messages, collect = collected_messages
+
+    motion = read(bvh_text(hierarchy(1 / 30.48)), progress=collect)
+
+    assert motion.conventions.unit == pytest.approx(0.3048)
+    assert any("interpreted as feet, by the size" in message for message in messages)
+
+
+def test_a_second_likely_unit_is_named(read, collected_messages):
+    """A child of 0.8 m in centimeters, or an adult of 2.1 m in inches."""
+    messages, collect = collected_messages
+
+    motion = read(bvh_text(hierarchy(0.5)), progress=collect)
+
+    assert motion.conventions.unit == pytest.approx(0.01)
+    assert any("centimeters, by the size of the body, but may be inches" in m for m in messages)
+
+
 def test_prop_far_away_is_not_size(read):
     motion = read(bvh_text(wrapped(hierarchy(1), Gun=("Root", (2000, 0, 0)))))
 
@@ -128,6 +148,33 @@ def test_cut_files_and_unusual_rates_are_reported(read, collected_messages):
     said = " ".join(map(str, messages))
     assert "announces 900 frames but has 30" in said
     assert "states 1 frames per second" in said
+
+
+@pytest.mark.parametrize(
+    ("time", "rate"),
+    [
+        ("1/25", 25.0), ("1001/30000", 29.97), ("40 ms", 25.0), ("33 ms", 30.0),
+        ("8.33ms", 120.0), ("0.04 s", 25.0), ("0.0333333 sec", 30.0), ("120 fps", 120.0),
+        ("29.97Hz", 29.97), ("8333 us", 120.0), ("0,04", 25.0), ("0/25", 30.0), ("1/0", 30.0),
+        ("5 parsecs", 30.0),
+    ],
+)  # fmt: skip
+def test_a_frame_time_may_have_a_unit_or_be_a_fraction(read, time, rate):
+    """Before, 30 Hz were assumed, as without one."""
+    head, row = bvh_text(hierarchy(1)).split("0.01\n")
+
+    assert read(f"{head}{time}\n{row * 3}").frame_rate == pytest.approx(rate, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "above", ["# made by a script\n\n", "; comment\n// other\n", "\n\n", "Take 3 of 5\r\n"]
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_lines_above_the_hierarchy_are_comments(read_any, above, encoding):
+    """Before, the format was unknown."""
+    motion = read_any((above + bvh_text(hierarchy(1))).encode(encoding))
+
+    assert motion.n_joints == 22
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,249 @@
+"""Read tables in JSON: those of pandas, and arrays next to a list of the names of joints."""
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...errors import InvalidFileError
+from ...motion import JointRecording, Tracks
+from ...progress import Progress, unwatched
+from ..containers import json_content, printable, read_bytes
+from ..conventions import Bodies, check_scale
+from ..point_bodies import coordinate_of_title, time_name
+from .json_bodies import is_frames_json, open_frames_json, stated_rates
+from .long_columns import is_frame_title, long_columns
+from .long_table import open_long_table
+from .point_table import has_points, open_point_table
+
+HEAD_BYTES = 4096
+"""Bytes by which formats are detected, by definition those of `formats`."""
+MIN_NAMES = 8
+"""Number of names of joints. It guards lists of other words."""
+MAX_CELLS = 1 << 24
+"""Cells of a table, above which half must be in the file. It bounds the memory of files whose
+rows have other titles each."""
+STRING = re.compile(r'"((?:[^"\\]|\\.){0,200})"')
+KEY = re.compile(STRING.pattern + r"\s*:")
+RECORD = re.compile(
+    r"\s*(?:\[\s*|\{[^{}]*\"\w+\"\s*:\s*\[\s*|\{\s*\"schema\".*?\"data\"\s*:\s*\[\s*"
+    r"|\{\s*\"\d+\"\s*:\s*)?\{([^{}\[\]]+)",
+    re.DOTALL,
+)
+"""Titles and values of the first row, where each row has them."""
+SPLIT = re.compile(r'\s*\{\s*"columns"\s*:\s*\[((?:[^{}\]]|\]\s*,\s*\[)*)')
+"""Titles in a list of their own."""
+COLUMN = re.compile(
+    STRING.pattern
+    + r"\s*:\s*(?:\{\s*\"\d[^\"]*\"\s*:\s*(?![{\[])"
+    + r"|\[(?:\s*(?:-?\d[^,\[\]{}]*|null)\s*,){4})"
+)
+"""Title of a column whose values are listed, or keyed by the number of their row."""
+NAMES = re.compile(
+    r"(?i)\s*\{(?:[^\[\]{}]|\{[^\[\]{}]*\}|\[[^\[\]{}]*\])*"
+    r"(?:\{(?:[^\[\]{}]|\[[^\[\]{}]*\])*)?"
+    r"\"(?:joint|bone|key_?point|landmark|marker|point|body|part|segment)?s?[_ ]?"
+    r"(?:names?|labels|order|joints|bones|columns|parts|markers)\"\s*:\s*\[(?:\s*\"[^\"]*\"\s*,){7}"
+)
+"""Member of the outermost object, or of one in it, with the names of joints."""
+FRAMES = re.compile(r"\[\s*\[\s*\[\s*-?\d")
+"""Positions of joints in several frames."""
+PART_OF_TITLE = re.compile(r"'([^']*)'")
+
+
+class _Table(NamedTuple):
+    """Titles, and cells of each row."""
+
+    titles: list[str]
+    rows: Sequence[Sequence[Any]]
+
+
+def is_json_table(head: bytes) -> bool:
+    """Return whether a file is a table in JSON that names points, from its first bytes."""
+    if head.lstrip()[:1] not in {b"{", b"["}:
+        return False
+    text = head.decode("utf-8", "replace")
+    for pattern in (SPLIT, RECORD):
+        match = pattern.match(text)
+        found = (STRING if pattern is SPLIT else KEY).findall(match[1]) if match else []
+        if _fits([_title(each) for each in found]) or _fits(_joined(found)):
+            return True
+    titles = [_title(each) for each in COLUMN.findall(text)]
+    is_first = bool(titles) and text.lstrip().startswith(("{", '{"'))
+    if is_first and any(map(_is_column, titles)):
+        return True
+    is_array = FRAMES.search(text) is not None or not is_frames_json(head)
+    return NAMES.match(text) is not None and is_array
+
+
+def open_json_table(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording | Tracks]:
+    """Open a table in JSON as `open_point_table` and `open_long_table` open one of text.
+
+    Rows may be objects with a value for each title, in a list or keyed by number; columns may
+    be lists, or keyed by the number of their row; titles may be in a list of their own next to
+    the rows. Names of joints may be next to an array of their positions, which has a row for
+    each frame or is flat.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is damaged, or has no columns of points.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    content = json_content(path).value
+    table = next((each for each in _tables(content) if _fits(each.titles)), None)
+    if table is None and FRAMES.search(
+        read_bytes(path)[:HEAD_BYTES].decode("utf-8", "replace")
+    ):
+        return open_frames_json(path, scale=scale, progress=progress)
+    if table is None:
+        raise InvalidFileError(
+            f"{path} has no table of points. Export columns such as LeftHand_x, or the names of"
+            " joints next to an array of the shape (frames, joints, 3)."
+        )
+    rate = min(stated_rates(content), default=None)
+    comment = [] if rate is None else [f"# fps: {rate.rate:.10g}"]
+    lines = [*comment, *map(_line, (table.titles, *table.rows))]
+    open_table = open_long_table if long_columns(table.titles) else open_point_table
+    return open_table(
+        path, scale=scale, progress=progress, lines=[line.encode() for line in lines]
+    )
+
+
+def _fits(titles: Sequence[str]) -> bool:
+    return has_points(titles) or long_columns(titles) is not None
+
+
+def _is_column(title: str) -> bool:
+    return coordinate_of_title(title) is not None
+
+
+def _title(value: Any) -> str:
+    """Return a title, which may have several levels, as a list or as Python writes a tuple."""
+    parts = value if isinstance(value, list) else None
+    if parts is None and str(value).startswith("('"):
+        parts = PART_OF_TITLE.findall(str(value))
+    return printable("_".join(map(str, filter(None, parts))) if parts else str(value))
+
+
+def _joined(words: Sequence[str]) -> list[str]:
+    """Return the words of titles with two levels, which a list has next to each other."""
+    return [f"{name}_{axis}" for name, axis in zip(words[::2], words[1::2], strict=False)]
+
+
+def _tables(value: Any) -> Iterator[_Table]:
+    """Yield what a value may be as a table."""
+    if isinstance(value, list):
+        yield from _of_records(value)
+    if not isinstance(value, Mapping):
+        return
+    lists = dict(_lists(value))
+    if "columns" in lists and "data" in lists:
+        yield _Table([*map(_title, lists["columns"])], lists["data"])
+    for listed in lists.values():
+        yield from _of_records(listed)
+    inner = (each for each in value.values() if isinstance(each, Mapping))
+    yield from _of_names([*_lists(value), *chain.from_iterable(map(_lists, inner))])
+    nested = {key: each for key, each in value.items() if isinstance(each, Mapping)}
+    yield from _of_columns({key: dict(enumerate(each)) for key, each in lists.items()})
+    yield from _of_columns(nested)
+    yield from _of_records([*nested.values()], [*nested])
+    for each in nested.values():
+        yield from _tables({key: inner for key, inner in each.items() if key not in nested})
+
+
+def _of_records(values: list[Any], index: Sequence[str] = ()) -> Iterator[_Table]:
+    if not values or not all(isinstance(each, Mapping) for each in values):
+        return
+    titles = [*dict.fromkeys(key for each in values for key in each)]
+    if _is_sparse(values, titles):
+        return
+    rows = [[each.get(title) for title in titles] for each in values]
+    yield _with_index(_Table([*map(_title, titles)], rows), index)
+
+
+def _of_columns(columns: Mapping[str, Mapping[Any, Any]]) -> Iterator[_Table]:
+    """Yield columns of which each has its values by the keys of the rows."""
+    index = [*dict.fromkeys(key for each in columns.values() for key in each)]
+    if not columns or _is_sparse(columns.values(), index):
+        return
+    rows = [[each.get(key) for each in columns.values()] for key in index]
+    yield _with_index(_Table([*map(_title, columns)], rows), [*map(str, index)])
+
+
+def _is_sparse(values: Collection[Mapping[Any, Any]], keys: Sequence[Any]) -> bool:
+    """Return whether a large table would be mostly blank, as a damaged one is."""
+    n_cells = len(values) * len(keys)
+    return n_cells > MAX_CELLS and n_cells > 2 * sum(map(len, values))
+
+
+def _with_index(table: _Table, index: Sequence[str]) -> _Table:
+    """Return a table with a column of the times in the keys of its rows, if it has no other."""
+    has_time = any(time_name(each) or is_frame_title(each) for each in table.titles)
+    is_counted = all(key == str(count) for count, key in enumerate(index))
+    if has_time or is_counted or long_columns(table.titles):
+        return table
+    title = "frame" if all(map(str.isdigit, index)) else "time"
+    rows = [[key, *row] for key, row in zip(index, table.rows, strict=True)]
+    return _Table([title, *table.titles], rows)
+
+
+def _lists(value: Mapping[str, Any]) -> Iterator[tuple[str, list[Any]]]:
+    return ((key, each) for key, each in value.items() if isinstance(each, list) and each)
+
+
+def _of_names(lists: Sequence[tuple[str, list[Any]]]) -> Iterator[_Table]:
+    """Yield arrays of positions with the names of their joints."""
+    for _, names in lists:
+        is_listed = len({*map(str, names)}) == len(names) >= MIN_NAMES
+        if not is_listed or not all(isinstance(each, str) for each in names):
+            continue
+        titles = [f"{_title(name)}_{axis}" for name in names for axis in "xyz"]
+        for _, values in lists:
+            rows = _rows_of(values, len(names))
+            times = next((each for key, each in lists if time_name(key)), None)
+            if rows is None:
+                continue
+            if times is not None and len(times) == len(rows):
+                timed = [[time, *row] for time, row in zip(times, rows, strict=True)]
+                yield _Table(["time", *titles], timed)
+            yield _Table(titles, rows)
+
+
+def _rows_of(values: list[Any], n_joints: int) -> list[Any] | None:
+    """Return the coordinates of each frame; None for other values."""
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (ValueError, TypeError, OverflowError):
+        return None
+    if array.shape[1:] not in {(n_joints, 3), (3 * n_joints,), ()}:
+        return None
+    if array.size == 0 or array.size % (3 * n_joints):
+        return None
+    rows: list[Any] = array.reshape(-1, 3 * n_joints).tolist()
+    return rows
+
+
+def _line(cells: Iterable[Any]) -> str:
+    return ",".join(map(_cell, cells))
+
+
+def _cell(value: Any) -> str:
+    """Return the text of a cell; a position is one, too."""
+    if value is None or value != value:
+        return ""
+    if isinstance(value, bool | Mapping):
+        return ""
+    if isinstance(value, list):
+        return "[" + " ".join(map(_cell, value)) + "]"
+    text = printable(str(value)).replace('"', "'")
+    return f'"{text}"' if isinstance(value, str) else text
