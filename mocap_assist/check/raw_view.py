@@ -13,8 +13,8 @@ import bpy
 from bpy.app import handlers
 
 from ...solvers.errors import InvalidMotionError
-from ..actions.armature_write import new_strip
 from ..actions.delta_layer import TIMING
+from ..actions.nla_strips import new_strip
 from ..blender import compat
 from ..blender.block_references import BlockReference, SourceReference
 from ..runtime.selection import animated_objects, selected_subject
