@@ -15,7 +15,7 @@ from ..mocap_assist.importing.changing_axes import (
     why_fixed,
 )
 from ..mocap_assist.importing.dialog.operators import DIALOG_WIDTH_PX
-from ..mocap_assist.importing.show_actor import follow_actor, places_of_views
+from ..mocap_assist.importing.show_actor import follow_actor, positions_of_views
 from ..solvers.errors import InvalidMotionError
 
 
@@ -29,7 +29,7 @@ class MOCAP_OT_change_axes(SettingsMixin, ActOperator, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.set_properties(noted_change(imported_object(context)))
-        self._places = places_of_views(context)  # again for each change in the redo panel
+        self._positions = positions_of_views(context)  # again for each change in the redo panel
         status: set[str] = context.window_manager.invoke_props_dialog(
             self, width=DIALOG_WIDTH_PX, confirm_text="Change"
         )
@@ -41,9 +41,9 @@ class MOCAP_OT_change_axes(SettingsMixin, ActOperator, bpy.types.Operator):
             raise InvalidMotionError(why_fixed(context))
         before = owner.matrix_world.copy()
         message = change_axes(context, owner, self.settings().change)
-        if hasattr(self, "_places"):
+        if hasattr(self, "_positions"):
             change = owner.matrix_world @ before.inverted_safe()
-            follow_actor(context, self._places, change)
+            follow_actor(context, self._positions, change)
         return message
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -30,25 +30,27 @@ def show_actor(context: bpy.types.Context) -> None:
         select_root(armature)
 
 
-class ViewPlace(NamedTuple):
-    """Place of a 3D view."""
+class ViewPosition(NamedTuple):
+    """Position of a 3D view."""
 
     location: Vector
     distance: float
 
 
-def places_of_views(context: bpy.types.Context) -> list[ViewPlace]:
-    """Return the places of the 3D views of a window."""
+def positions_of_views(context: bpy.types.Context) -> list[ViewPosition]:
+    """Return the positions of the 3D views of a window."""
     views = (area.spaces.active.region_3d for area in _views(context))
-    return [ViewPlace(view.view_location.copy(), view.view_distance) for view in views]
+    return [ViewPosition(view.view_location.copy(), view.view_distance) for view in views]
 
 
-def follow_actor(context: bpy.types.Context, places: list[ViewPlace], change: Matrix) -> None:
-    """Move 3D views from these places like an actor that was moved and scaled in the world."""
-    for area, place in zip(_views(context), places, strict=False):
+def follow_actor(
+    context: bpy.types.Context, positions: list[ViewPosition], change: Matrix
+) -> None:
+    """Move 3D views from these positions as an actor was moved and scaled in the world."""
+    for area, position in zip(_views(context), positions, strict=False):
         view = area.spaces.active.region_3d
-        view.view_location = change @ place.location
-        view.view_distance = place.distance * change.median_scale
+        view.view_location = change @ position.location
+        view.view_distance = position.distance * change.median_scale
 
 
 def _views(context: bpy.types.Context) -> Iterator[bpy.types.Area]:

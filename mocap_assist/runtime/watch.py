@@ -41,8 +41,8 @@ class Watch:
     interval_s : float, seconds
         Between two looks at the solve. The progress is displayed less often.
     is_quiet : bool
-        Nobody asked for this solve: nothing displays it, no button waits for it, and the next
-        solve takes its place.
+        The animator did not request this solve: nothing displays it, no button waits for it,
+        and the next solve ends it.
     """
 
     def __init__(
@@ -54,13 +54,13 @@ class Watch:
         *,
         is_quiet: bool = False,
     ) -> None:
+        self.is_cancelled, self.is_quiet = False, is_quiet
         for quiet in [each for each in _on if each.is_quiet]:
             quiet.abandon(context)
         self._stop = stop
         self._began = monotonic()
         self._shown_at = float("-inf")
         self._display_s = TIMER_INTERVAL_S if interval_s < TIMER_INTERVAL_S else 0.0
-        self.is_cancelled, self.is_quiet = False, is_quiet
         self.ending = CANCELS
         manager = context.window_manager
         if not is_quiet:

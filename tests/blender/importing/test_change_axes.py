@@ -76,11 +76,11 @@ def test_view_follows_the_actor(load, blank):
     spaces = SimpleNamespace(active=SimpleNamespace(region_3d=region))
     screen = SimpleNamespace(areas=[SimpleNamespace(type="VIEW_3D", spaces=spaces)])
     context = SimpleNamespace(window=SimpleNamespace(screen=screen))
-    places = shows.places_of_views(context)
+    positions = shows.positions_of_views(context)
     change = Matrix.Rotation(-pi / 2, 4, "X") @ Matrix.Scale(2.0, 4)
 
     for _ in range(2):  # the redo panel changes it again
-        shows.follow_actor(context, places, change)
+        shows.follow_actor(context, positions, change)
 
     assert_allclose(region.view_location, (0.0, 2.0, 0.0), atol=1e-6)
     assert region.view_distance == pytest.approx(8.0)
