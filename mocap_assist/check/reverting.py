@@ -3,7 +3,7 @@
 import bpy
 
 from ...solvers.errors import InvalidMotionError
-from ..actions.armature_write import keep_replaced
+from ..actions.armature_write import check_writable, keep_replaced
 from ..actions.nla_strips import remove_results
 from ..blender import compat
 from ..blender.compat import Source
@@ -21,9 +21,11 @@ def why_not_revert(context: bpy.types.Context) -> str:
     subject = selected_subject(context)
     if subject is None:
         return "Select an animated armature or marker set."
-    if played_result(subject) is not None:
-        return ""
     try:
+        if played_result(subject) is not None:
+            for player in animated_objects(subject):
+                check_writable(player)
+            return ""
         action, _ = played_source(subject)
     except InvalidMotionError as error:
         return str(error)

@@ -115,6 +115,21 @@ def test_compare_says_why_nothing_can_be_reverted(noisy, clean, blank, draw):
     assert "The raw action of walk.clean is not in this file." in texts
 
 
+def test_result_in_tweak_mode_is_not_reverted_and_the_button_says_why(noisy, clean, blank):
+    """Blender locks the action then."""
+    clean(result_as="NLA_TRACK")
+    animation = noisy.animation_data
+    animation.nla_tracks.active = animation.nla_tracks[0]
+    animation.nla_tracks[0].strips[0].select = True
+    animation.use_tweak_mode = True
+
+    with pytest.raises(RuntimeError, match="Actor is in tweak mode, which locks its action"):
+        blank.ops.mocap_assist.revert_to_raw()
+
+    animation.use_tweak_mode = False
+    assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
+
+
 @pytest.mark.parametrize("output", ["ACTION", "NLA_TRACK"])
 def test_new_result_replaces_the_strip_of_the_one_before(noisy, clean, blank, output):
     clean(result_as="NLA_TRACK")
