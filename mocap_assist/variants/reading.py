@@ -6,6 +6,7 @@ from functools import partial
 from typing import NamedTuple
 
 import bpy
+import numpy as np
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.retargeting import RootMotion
@@ -102,6 +103,10 @@ def read(
     takes = []
     for each in lasting:
         take = yield from _read_once(here, each)
+        body = take.parts[0].motion
+        if not (np.isfinite(body.rotations).all() and np.isfinite(body.root_positions).all()):
+            action, _ = each.find()
+            raise InvalidMotionError(f"{action.name} has gaps. Press Clean first.")
         takes.append(take)
     scene, armature = here.find()
     sources = tuple(each.find() for each in lasting)
