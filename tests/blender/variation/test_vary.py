@@ -132,7 +132,7 @@ def test_take_with_gaps_is_named_before_the_solve(blank, load, monkeypatch):
     monkeypatch.setattr(load("mocap_assist.jobs.job"), "Job", None)
     blank.ops.mocap_assist.load_sample()
 
-    with pytest.raises(RuntimeError, match="Sample Walk has gaps. Press Clean first."):
+    with pytest.raises(RuntimeError, match=r"Sample Walk has gaps\. Press Clean first\."):
         blank.ops.mocap_assist.vary()
 
 
