@@ -103,8 +103,11 @@ def read(
     takes = []
     for each in lasting:
         take = yield from _read_once(here, each)
-        body = take.parts[0].motion
-        if not (np.isfinite(body.rotations).all() and np.isfinite(body.root_positions).all()):
+        motion = take.parts[0].motion
+        observed = (
+            np.isfinite(motion.rotations).all() and np.isfinite(motion.root_positions).all()
+        )
+        if not observed:
             action, _ = each.find()
             raise InvalidMotionError(f"{action.name} has gaps. Press Clean first.")
         takes.append(take)
