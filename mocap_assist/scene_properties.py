@@ -187,8 +187,8 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     crowd: bpy.props.PointerProperty(type=MOCAP_PG_crowd)
     variants: bpy.props.PointerProperty(type=MOCAP_PG_variants)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
-    checked: bpy.props.StringProperty(
-        name="Checked", description="Action whose issues are listed"
+    checked: bpy.props.PointerProperty(
+        type=bpy.types.Action, name="Checked", description="Action whose issues are listed"
     )
     issues: bpy.props.CollectionProperty(type=MOCAP_PG_issue)
     active_issue: bpy.props.IntProperty(name="Issue", description="Selected issue of the list")

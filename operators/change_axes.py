@@ -15,6 +15,7 @@ from ..mocap_assist.importing.changing_axes import (
     why_fixed,
 )
 from ..mocap_assist.importing.dialog.operators import DIALOG_WIDTH_PX
+from ..mocap_assist.importing.show_actor import follow_actor, positions_of_views
 from ..solvers.errors import InvalidMotionError
 
 
@@ -28,6 +29,7 @@ class MOCAP_OT_change_axes(SettingsMixin, ActOperator, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.set_properties(noted_change(imported_object(context)))
+        self._positions = positions_of_views(context)  # again for each change in the redo panel
         status: set[str] = context.window_manager.invoke_props_dialog(
             self, width=DIALOG_WIDTH_PX, confirm_text="Change"
         )
@@ -37,7 +39,12 @@ class MOCAP_OT_change_axes(SettingsMixin, ActOperator, bpy.types.Operator):
         owner = imported_object(context)
         if owner is None:
             raise InvalidMotionError(why_fixed(context))
-        return change_axes(context, owner, self.settings().change)
+        before = owner.matrix_world.copy()
+        message = change_axes(context, owner, self.settings().change)
+        if hasattr(self, "_positions"):
+            change = owner.matrix_world @ before.inverted_safe()
+            follow_actor(context, self._positions, change)
+        return message
 
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True

@@ -15,7 +15,6 @@ from ..blender.time_slices import Sliced, Steps, in_thread, should_yield
 from ..scene.body import body_root
 from ..scene.history import playing_strips, was_thinned
 from ..scene.origin import origin_of
-from ..scene.played_time import played_time
 from ..scene.rig import Placement, Rig, read_rig
 from ..scene.units import meters_per_unit
 from .bone_channels import animated_curves, bone_path, read_bone, read_space
@@ -71,7 +70,7 @@ def read_take(
     yield from keyed.read_keys()
     if grid is None:
         own = keyed.curves_of_bones(rig)
-        bounds = range_bounds(choice, keyed.scene, own, played_time(keyed.armature))
+        bounds = range_bounds(choice, keyed.scene, own, keyed.armature)
         grid = key_grid(own, bounds, recorded=recorded)
     channels, travels = [], []
     for number, bone in enumerate(rig.bones):

@@ -31,6 +31,7 @@ from .bone_channels import (
 )
 from .curve_modifiers import act_on_keys
 from .curves import Channel, write_values
+from .nla_strips import new_strip, remove_results
 from .rotation_modes import channels_from_quaternions
 from .take import ArmatureTake, BoneChannels, BonePoses
 from .unchanged_samples import RecordedChannels, UnchangedSamples
@@ -182,7 +183,7 @@ def assign_result(
 ) -> None:
     """Let the armature play a result: as its action, or on an NLA track of its own.
 
-    The delta layer of an earlier result of the same take is removed: it would be added.
+    NLA strips of earlier results of the same take are removed; the actions stay in the file.
 
     Raises
     ------
@@ -192,7 +193,7 @@ def assign_result(
     check_writable(armature)
     raw = history.raw_of(action, slot)
     if raw and armature.animation_data is not None:
-        remove_deltas(armature.animation_data, raw[0])
+        remove_results(armature.animation_data, raw)
     if armature.animation_data is not None:
         keep_replaced(armature.animation_data, (action, raw[0] if raw else None))
     if output is Output.ACTION:
@@ -212,48 +213,6 @@ def keep_replaced(
     replaced = animation.action
     if replaced is not None and replaced not in known and replaced.library is None:
         replaced.use_fake_user = True
-
-
-def remove_deltas(animation: bpy.types.AnimData, base: bpy.types.Action) -> None:
-    """Remove the delta tracks of a recorded action, and the tracks below that play it."""
-    for pair in delta_tracks(animation, base):
-        for track in pair:
-            animation.nla_tracks.remove(track)
-
-
-def delta_tracks(
-    animation: bpy.types.AnimData, base: bpy.types.Action
-) -> list[tuple[bpy.types.NlaTrack, ...]]:
-    """Return each delta track of a recorded action, after the track below that plays it."""
-    found: list[tuple[bpy.types.NlaTrack, ...]] = []
-    below = None
-    for track in animation.nla_tracks:
-        actions = [strip.action for strip in track.strips if strip.action]
-        if actions and all(history.base_of_delta(action) == base for action in actions):
-            plays_base = below is not None and {each.action for each in below.strips} == {base}
-            found.append((below, track) if plays_base else (track,))
-        below = track
-    return found
-
-
-def new_strip(animation: bpy.types.AnimData, source: Source) -> bpy.types.NlaStrip:
-    """Put an action on a new NLA track, at its own frames."""
-    action, slot = source
-    track = animation.nla_tracks.new()
-    track.name = action.name
-    strip = track.strips.new(action.name, int(action.frame_range[0]), action)
-    strip.action_slot = slot
-    strip.frame_start, strip.frame_end = action.frame_range  # not always whole frames
-    return strip
-
-
-def assign_to_strip(strip: bpy.types.NlaStrip, source: Source) -> None:
-    """Let a strip play an action at the action's own frames."""
-    action, slot = source
-    strip.action, strip.name = action, action.name
-    strip.action_slot = slot
-    strip.action_frame_start, strip.action_frame_end = action.frame_range
-    strip.frame_start, strip.frame_end = action.frame_range
 
 
 def check_writable(armature: bpy.types.Object) -> None:

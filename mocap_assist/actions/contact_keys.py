@@ -142,7 +142,7 @@ def _give_back(*_: object) -> None:
             if (_path(name), 0) in curves and name not in armature:
                 frame = bpy.context.scene.frame_current_final
                 value = curves[_path(name), 0].curve.evaluate(
-                    played_time(armature).action_frame(frame)
+                    played_time(armature, frame).action_frame(frame)
                 )
                 _declare(armature, name, int(value > 0.5))  # NaN is not
 

@@ -17,18 +17,10 @@ from ..blender.block_references import (
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene import history
-from .armature_write import (
-    NUMBERED,
-    assign_to_strip,
-    check_writable,
-    delta_tracks,
-    identify_played,
-    keep_replaced,
-    new_strip,
-    remove_deltas,
-)
+from .armature_write import NUMBERED, check_writable, identify_played, keep_replaced
 from .bone_channels import Curves, animated_curves, curves_of, sampled
 from .curves import deselect, write_first
+from .nla_strips import assign_to_strip, delta_tracks, new_strip, remove_deltas
 from .rotation_modes import quaternions_from_channels
 from .unchanged_samples import MIN_CHANGE
 

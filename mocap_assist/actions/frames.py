@@ -9,7 +9,7 @@ import numpy as np
 from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
-from ..scene.played_time import PlayedTime
+from ..scene.played_time import played_time
 from .curves import ON_FRAME, Channel
 
 MAX_RECORDED_STEP_FRAMES = 2.5
@@ -45,9 +45,12 @@ class FrameRange(Choice):
 
 
 def range_bounds(
-    choice: FrameRange, scene: bpy.types.Scene, channels: Sequence[Channel], time: PlayedTime
+    choice: FrameRange,
+    scene: bpy.types.Scene,
+    channels: Sequence[Channel],
+    player: bpy.types.Object,
 ) -> tuple[float, float]:
-    """Return the first and last frame of a range, as frames of the action.
+    """Return the first and last frame of a range, as frames of the action that is played.
 
     Raises
     ------
@@ -55,14 +58,14 @@ def range_bounds(
         There is no preview range, or no key is selected.
     """
     if choice is FrameRange.SCENE:
-        return time.action_range(scene.frame_start, scene.frame_end)
+        return _played_range(player, scene.frame_start, scene.frame_end)
     if choice is FrameRange.PREVIEW:
         if not scene.use_preview_range:
             raise InvalidMotionError(
                 "The scene has no preview range. Set one in the timeline (P), or work on"
                 " another frame range."
             )
-        return time.action_range(scene.frame_preview_start, scene.frame_preview_end)
+        return _played_range(player, scene.frame_preview_start, scene.frame_preview_end)
     if choice is FrameRange.SELECTED_KEYS:
         selected = [_selected_keys(channel) for channel in channels]
         times = np.concatenate([np.empty(0), *selected])
@@ -73,6 +76,11 @@ def range_bounds(
             )
         return float(times.min()), float(times.max())
     return -np.inf, np.inf
+
+
+def _played_range(player: bpy.types.Object, first: float, last: float) -> tuple[float, float]:
+    """Return the frames of the action that are played on a range of the scene."""
+    return played_time(player, first).action_range(first, last)
 
 
 class Grid(NamedTuple):

@@ -32,7 +32,6 @@ from .verbs import VERBS, SceneVerb
 
 PROG = "blender FILE --command mocap_assist"
 FAILED_STATUS = 2
-_commands: list[object] = []
 
 
 def run(words: Sequence[str]) -> int:
@@ -93,17 +92,6 @@ def _check_words(words: list[str]) -> list[str]:
     files = ["FILE"] if words[0] in {"import", "capture"} else []
     _parser().parse_args([words[0], *files, *words[1:]])
     return words
-
-
-def register() -> None:
-    """Let `blender --command mocap_assist` find `run`."""
-    _commands.append(bpy.utils.register_cli_command("mocap_assist", run))
-
-
-def unregister() -> None:
-    """Remove the command."""
-    while _commands:
-        bpy.utils.unregister_cli_command(_commands.pop())
 
 
 def _parser() -> SentenceParser:

@@ -74,7 +74,7 @@ def list_issues(
     shown = scene.mocap_assist
     shown.issues.clear()
     shown.active_issue = 0
-    shown.checked = played_source(subject)[0].name
+    shown.checked = played_source(subject)[0]
     shown.report = report
     for issue in issues:
         item = shown.issues.add()
@@ -91,12 +91,15 @@ def _summary(checked: Checked) -> str:
     return f"{found} found. Worst: {checked.issues[0].sentence}"
 
 
-def is_stale(checked: str, subject: bpy.types.Object | None) -> bool:
-    """Whether the subject plays another action than the one that was checked."""
+def is_stale(checked: bpy.types.Action | None, subject: bpy.types.Object | None) -> bool:
+    """Whether the subject plays another action than the one that was checked.
+
+    A checked action that was deleted is None.
+    """
     if subject is None:
         return True
     try:
-        return bool(played_source(subject)[0].name != checked)
+        return bool(played_source(subject)[0] != checked)
     except InvalidMotionError:
         return True
 

@@ -7,7 +7,7 @@ from ..blender.mixins import PanelMixin
 from ..exporting.menu import EXPORT, draw_export
 from ..languages import translated
 from ..overlays.comparison.switches import draw_overlay_switches
-from ..panel_parts.panel_layout import exists
+from ..panel_parts.panel_layout import draw_sentence, exists
 from ..runtime.selection import played_result, selected_subject
 from ..scene import history
 from .key_map import key_text
@@ -27,8 +27,10 @@ class ComparePanel(PanelMixin):
         _draw_actions(layout, context)
         draw_overlay_switches(layout, context)
         _draw_key(layout, context)
-        if exists(REVERT) and not why_not_revert(context):
+        if exists(REVERT):
             layout.operator(REVERT, icon="LOOP_BACK")
+            if reason := why_not_revert(context):
+                draw_sentence(layout, context, reason, icon="INFO")
         if exists(EXPORT):
             draw_export(layout, context)
 

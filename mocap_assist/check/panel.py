@@ -120,8 +120,14 @@ def _draw_issues(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         draw_sentence(layout, context, shown.issues[shown.active_issue].sentence)
     subject = selected_subject(context)
     if subject is not None and is_stale(shown.checked, subject):
-        message = translated(STALE).format(action=shown.checked)
-        draw_sentence(layout, context, message, icon="INFO")
+        draw_sentence(layout, context, _stale_text(shown.checked), icon="INFO")
+
+
+def _stale_text(checked: bpy.types.Action | None) -> str:
+    """Return a sentence about issues that are not of the played action."""
+    if checked is None:
+        return "The checked action was deleted. Run Check again."
+    return translated(STALE).format(action=checked.name)
 
 
 def _draw_markers(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:

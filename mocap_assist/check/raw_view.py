@@ -13,8 +13,8 @@ import bpy
 from bpy.app import handlers
 
 from ...solvers.errors import InvalidMotionError
-from ..actions.armature_write import new_strip
 from ..actions.delta_layer import TIMING
+from ..actions.nla_strips import new_strip
 from ..blender import compat
 from ..blender.block_references import BlockReference, SourceReference
 from ..runtime.selection import animated_objects, selected_subject
@@ -25,7 +25,6 @@ from .reverting import why_not_revert
 
 POSE = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
 """Values of an object or a bone that only the recorded action may animate."""
-TWEAKED = "Leave Tweak Mode in the NLA Editor first."
 
 
 class _Shown(NamedTuple):
@@ -48,13 +47,7 @@ _shown: list[_Shown] = []
 
 def why_not_show_raw(context: bpy.types.Context) -> str:
     """Return why the recorded action cannot be shown, or an empty text."""
-    if reason := why_busy() or why_not_revert(context):
-        return reason
-    players = animated_objects(selected_subject(context))
-    tweaked = any(
-        each.animation_data and each.animation_data.use_tweak_mode for each in players
-    )
-    return TWEAKED if tweaked else ""
+    return why_busy() or why_not_revert(context)
 
 
 def show_raw(context: bpy.types.Context) -> str:

@@ -16,10 +16,13 @@ class CheckOperator(SolverOperator):
     """Mix in before bpy.types.Operator: a check that may be quiet.
 
     The message of the result that it follows stays in the status bar. The animator works on
-    meanwhile: a check that was not requested blocks nothing.
+    meanwhile: a check that was not requested blocks nothing, and a press of a button ends it.
     """
 
     is_quiet: bpy.props.BoolProperty(options={"SKIP_SAVE", "HIDDEN"})
+
+    def is_requested(self) -> bool:
+        return not self.is_quiet
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if self.is_quiet and self._watch.is_on and event.type != "TIMER":

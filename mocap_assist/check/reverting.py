@@ -2,10 +2,17 @@
 
 import bpy
 
-from ..actions.armature_write import keep_replaced, remove_deltas
+from ...solvers.errors import InvalidMotionError
+from ..actions.armature_write import check_writable, keep_replaced
+from ..actions.nla_strips import remove_results
 from ..blender import compat
 from ..blender.compat import Source
-from ..runtime.selection import animated_objects, played_result, selected_subject
+from ..runtime.selection import (
+    animated_objects,
+    played_result,
+    played_source,
+    selected_subject,
+)
 from ..scene import history
 
 
@@ -14,12 +21,19 @@ def why_not_revert(context: bpy.types.Context) -> str:
     subject = selected_subject(context)
     if subject is None:
         return "Select an animated armature or marker set."
-    if played_result(subject) is None:
-        return (
-            f"The action of {subject.name} is not a result of Mocap Assist, or its raw action"
-            " is not in this file."
-        )
-    return ""
+    try:
+        if played_result(subject) is not None:
+            for player in animated_objects(subject):
+                check_writable(player)
+            return ""
+        action, _ = played_source(subject)
+    except InvalidMotionError as error:
+        return str(error)
+    if history.SOURCE in action:
+        return f"The raw action of {action.name} is not in this file."
+    if history.GIVEN_BY in action:
+        return f"{action.name} was made for {subject.name}. It has no raw action to revert to."
+    return f"{action.name} is the raw action. Press Fix My Take or Clean first."
 
 
 def revert(subject: bpy.types.Object) -> str:
@@ -37,15 +51,7 @@ def revert(subject: bpy.types.Object) -> str:
 
 
 def _revert(player: bpy.types.Object, raw: Source) -> None:
-    """Assign the recorded action and slot; remove NLA tracks of its results."""
+    """Assign the recorded action and slot; remove NLA strips of its results."""
     keep_replaced(player.animation_data, raw[:1])
-    tracks = player.animation_data.nla_tracks
-    remove_deltas(player.animation_data, raw[0])
-    for track in list(tracks):
-        sources = [
-            strip.action and history.raw_of(strip.action, strip.action_slot)
-            for strip in track.strips
-        ]
-        if sources == [raw] and not track.mute:
-            tracks.remove(track)
+    remove_results(player.animation_data, raw)
     compat.assign(player, *raw)

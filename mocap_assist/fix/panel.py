@@ -133,11 +133,12 @@ def _draw_card(
     row = box.row(align=True)
     row.operator(ACCEPT)
     row.prop(context.window_manager, DETAILS, text="Details", toggle=True)
-    is_revertible = not why_not_revert(context)
-    if is_revertible:
+    reason = why_not_revert(context)
+    if not reason:
         row.operator(REVERT, text="Revert")
     if getattr(context.window_manager, DETAILS):
         for step in card["steps"]:
             draw_sentence(box, context, str(step))
-    if card.get("origin") == TakeOrigin.MARKERS.value:
-        draw_sentence(box, context, UNDO)
+    if reason:
+        is_solved = card.get("origin") == TakeOrigin.MARKERS.value
+        draw_sentence(box, context, UNDO if is_solved else reason)

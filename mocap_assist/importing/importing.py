@@ -75,7 +75,7 @@ def _recordings_of(given: tuple[Path, ...], folder: Path | None) -> tuple[Path, 
 
 
 def preview(context: bpy.types.Context, paths: list[Path]) -> str:
-    """Return a line about the first file for the import dialog.
+    """Return sentences about the first file for the import dialog.
 
     A large one is not read for it: the dialog would be long in coming.
     """
@@ -84,7 +84,7 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
     try:
         size = path.stat().st_size
         if size > MAX_PREVIEW_BYTES or is_scene_file(path):
-            return f"{path.name}: {size / 1e6:.1f} MB; {plays}"
+            return f"{path.name}: {size / 1e6:.1f} MB; {plays}."
         content = read_again(path, Conversion(floor=FloorPlacement.AUTO))[0]
     except MocapAssistError as error:
         return str(error)
@@ -95,7 +95,7 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
     warnings = content.warnings
     if not isinstance(recording, DepthRecording):
         warnings = (conventions_of(recording).sentence(), *warnings)
-    return ". ".join([f"{path.name}: {frames}; {plays}", *warnings])
+    return ". ".join([f"{path.name}: {frames}; {plays}", *warnings]) + "."
 
 
 def import_files(

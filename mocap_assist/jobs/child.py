@@ -17,7 +17,13 @@ REPORT_INTERVAL_S = 0.1
 """Seconds between two reports of progress. It bounds the load of the pipe."""
 OURS = Path(__file__).parents[1]
 """The folder `mocap_assist`, whose modules `solve_…` hold all that is called here."""
-IMPORTED_LATE = ("scipy.signal", "scipy.sparse.csgraph")
+IMPORTED_LATE = tuple(
+    f"scipy.{name}"
+    for name in (
+        "cluster.hierarchy", "cluster.vq", "fft", "interpolate", "linalg", "ndimage",
+        "optimize", "signal", "sparse.csgraph", "spatial", "special",
+    )
+)  # fmt: skip
 """What the solvers import only when they need it."""
 
 

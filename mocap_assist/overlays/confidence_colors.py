@@ -64,7 +64,7 @@ def colored_bones_at(
     bones = list(armature.pose.bones)
     if source is None or not bones:
         return None
-    frame = played_time(armature).action_frame(frame)
+    frame = played_time(armature, frame).action_frame(frame)
     reliabilities = reliability_at(source, [bone.name for bone in bones], frame, term)
     if not reliabilities:
         return None

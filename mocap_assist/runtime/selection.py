@@ -10,7 +10,7 @@ from ..actions.markers.holders import first_marker_of, holder_of, markers_of, po
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
-from ..scene.played_time import played_time
+from ..scene.played_time import played_times
 
 
 class Bones(Choice):
@@ -104,7 +104,9 @@ def shown_frames(
     subject = selected_subject(context)
     if subject is None:
         return issue.start, issue.stop
-    return played_time(first_animated_object(subject)).scene_range(issue.start, issue.stop)
+    times = played_times(first_animated_object(subject))
+    plays = (each for each in times if each.first <= issue.start <= each.last)
+    return next(plays, times[0]).scene_range(issue.start, issue.stop)
 
 
 def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:

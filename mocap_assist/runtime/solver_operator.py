@@ -107,7 +107,11 @@ class SolverOperator(SettingsMixin):
             note_press(self, error)
             raise
         self._watch = Watch(
-            context, self.settings_group, self._acts.close, type(self).look_interval_s
+            context,
+            self.settings_group,
+            self._acts.close,
+            type(self).look_interval_s,
+            is_quiet=not self.is_requested(),
         )
         self._watch.show(context, *progress)
         context.window_manager.modal_handler_add(self)
@@ -136,6 +140,10 @@ class SolverOperator(SettingsMixin):
             raise
         watch.show(context, *progress)
         return {"RUNNING_MODAL"}
+
+    def is_requested(self) -> bool:
+        """Return whether the animator pressed the button."""
+        return True
 
     def lets_pass(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         """Return whether an event reaches Blender's editors now."""

@@ -40,6 +40,9 @@ class Watch:
         Discards the work before another file is loaded.
     interval_s : float, seconds
         Between two looks at the solve. The progress is displayed less often.
+    is_quiet : bool
+        The animator did not request this solve: nothing displays it, no button waits for it,
+        and the next solve ends it.
     """
 
     def __init__(
@@ -48,15 +51,20 @@ class Watch:
         owner: str,
         stop: Callable[[], None],
         interval_s: float = TIMER_INTERVAL_S,
+        *,
+        is_quiet: bool = False,
     ) -> None:
+        self.is_cancelled, self.is_quiet = False, is_quiet
+        for quiet in [each for each in _on if each.is_quiet]:
+            quiet.abandon(context)
         self._stop = stop
         self._began = monotonic()
         self._shown_at = float("-inf")
         self._display_s = TIMER_INTERVAL_S if interval_s < TIMER_INTERVAL_S else 0.0
-        self.is_cancelled = False
         self.ending = CANCELS
         manager = context.window_manager
-        manager.mocap_assist_job.owner = owner
+        if not is_quiet:
+            manager.mocap_assist_job.owner = owner
         self._timer = manager.event_timer_add(interval_s, window=context.window)
         _on.append(self)
 
@@ -67,7 +75,7 @@ class Watch:
 
     def show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
         """Show the progress, at limited intervals."""
-        if monotonic() - self._shown_at < self._display_s:
+        if self.is_quiet or monotonic() - self._shown_at < self._display_s:
             return
         self._shown_at = monotonic()
         state = context.window_manager.mocap_assist_job
@@ -91,8 +99,9 @@ class Watch:
         """Remove the display."""
         _on.remove(self)
         context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.mocap_assist_job.running = False
-        context.workspace.status_text_set(None)
+        if not self.is_quiet:
+            context.window_manager.mocap_assist_job.running = False
+            context.workspace.status_text_set(None)
         redraw(context)
 
     def abandon(self, context: bpy.types.Context) -> None:
@@ -105,7 +114,7 @@ class Watch:
 
 def why_not_cancel(context: bpy.types.Context) -> str:
     """Return why there is nothing to cancel, or an empty text."""
-    return "" if _on else "No solve is running."
+    return "" if why_busy() else "No solve is running."
 
 
 def cancel_running() -> None:
@@ -131,7 +140,7 @@ def time_left(fraction: float, elapsed_s: float) -> str:
 
 def why_busy() -> str:
     """Return why no other solve can start, or an empty text."""
-    return BUSY if _on else ""
+    return BUSY if any(not each.is_quiet for each in _on) else ""
 
 
 register, unregister = ends_with_file(_on, "mocap_assist_job")

@@ -20,6 +20,11 @@ class PlayedTime(NamedTuple):
     last: float = inf
     n_repeats: float = 1.0
 
+    @property
+    def begin(self) -> float:
+        """Return the scene frame from which it is played."""
+        return self.scene_range(self.first, self.last)[0]
+
     def scene_frame(self, frame: float) -> float:
         """Return the scene frame of a frame of the action, in a repeated strip the first."""
         return self.start + self.scale * frame
@@ -52,24 +57,39 @@ class PlayedTime(NamedTuple):
         return begin + (end - begin) * (n_passed - max(n_complete, 0))
 
 
-def played_time(player: bpy.types.Object) -> PlayedTime:
+def played_time(player: bpy.types.Object, frame: float = -inf) -> PlayedTime:
     """Return when an armature or a marker plays its result; by default at its own frames.
 
-    A strip whose time is animated counts as one that is not.
+    Where several strips play it, that is the time of the one that plays at this scene frame, or
+    of the first.
+    """
+    times = played_times(player)
+    return next((each for each in reversed(times) if each.begin <= frame), times[0])
+
+
+def played_times(player: bpy.types.Object) -> tuple[PlayedTime, ...]:
+    """Return the times of the strips of a track that play the result, from first to last.
+
+    A strip whose time is animated counts as one that is not. In Tweak Mode it is the tweaked
+    strip, whatever that plays; an assigned action has its own frames.
     """
     animation = player.animation_data
     found = result_player(player)
-    if found == animation and animation is not None and animation.use_tweak_mode:
+    if animation is not None and animation.use_tweak_mode and found in {None, animation}:
         found = _tweaked(animation)
-    return _time_of_strip(found) if isinstance(found, bpy.types.NlaStrip) else PlayedTime()
+        return (PlayedTime(),) if found is None else (_time_of_strip(found),)
+    if not isinstance(found, bpy.types.NlaStrip):
+        return (PlayedTime(),)
+    tracks = (each.strips.values() for each in animation.nla_tracks)
+    track = next(strips for strips in tracks if found in strips)
+    same = (each for each in track if each.action == found.action and not each.mute)
+    return tuple(map(_time_of_strip, same))
 
 
 def _tweaked(animation: bpy.types.AnimData) -> bpy.types.NlaStrip | None:
     """Return the strip whose action is assigned in Tweak Mode."""
-    strips = playing_strips(animation)
-    return next(
-        (each for each in strips if each.active and each.action == animation.action), None
-    )
+    same = (each for each in playing_strips(animation) if each.action == animation.action)
+    return max(same, key=lambda each: each.active, default=None)
 
 
 def _time_of_strip(strip: bpy.types.NlaStrip) -> PlayedTime:

@@ -40,7 +40,7 @@ def body_at(armature: bpy.types.Object | None, frame: float) -> Solid | None:
         return None
     names = [bones[name] for name in SEGMENTS]
     source = reliability_source(armature)
-    played = played_time(armature).action_frame(frame)
+    played = played_time(armature, frame).action_frame(frame)
     confidence = {} if source is None else reliability_at(source, names, played)
     colors = np.array([
         color_from_reliability(confidence[name]) if name in confidence else NEUTRAL_COLOR

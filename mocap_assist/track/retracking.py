@@ -70,7 +70,7 @@ def read_retracking(
     take, played = yield from _read_played_take(armature)
     scene, armature = here.find()
     source = played_source(armature)
-    time = played_time(armature)
+    time = played_time(armature, scene.frame_current_final)
     now = time.action_frame(scene.frame_current_final)
     frame = round((now - take.frames[0]) / take.tracked.shown.step)
     if not 0 <= frame < len(take.frames):

@@ -6,6 +6,7 @@ from functools import partial
 from typing import NamedTuple
 
 import bpy
+import numpy as np
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.retargeting import RootMotion
@@ -102,6 +103,13 @@ def read(
     takes = []
     for each in lasting:
         take = yield from _read_once(here, each)
+        motion = take.parts[0].motion
+        observed = (
+            np.isfinite(motion.rotations).all() and np.isfinite(motion.root_positions).all()
+        )
+        if not observed:
+            action, _ = each.find()
+            raise InvalidMotionError(f"{action.name} has gaps. Press Clean first.")
         takes.append(take)
     scene, armature = here.find()
     sources = tuple(each.find() for each in lasting)

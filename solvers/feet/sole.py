@@ -1,8 +1,8 @@
 """Estimate which point of a foot rests while in contact: heel, ball, toe tip or ankle."""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian repeats them
 
 from ..arrays import Array
 from ..motion import Skeleton
@@ -92,7 +92,8 @@ def smoothed_paths(points: Array, frame_rate: float) -> tuple[Array, Array]:
 
     Both have the shape (n_frames, n_points).
     """
-    heights = gaussian_filter1d(points[..., 2], SMOOTHING_S * frame_rate, axis=0)
+    # It reflects ends; smooth_gaussian repeats them.
+    heights = scipy.ndimage.gaussian_filter1d(points[..., 2], SMOOTHING_S * frame_rate, axis=0)
     speeds = _speeds(points, frame_rate) if len(points) > 1 else np.zeros_like(heights)
     return heights, speeds
 
@@ -120,4 +121,4 @@ def load_shares(heights: Array, speeds: Array, size: float) -> Array:
 def _speeds(points: Array, frame_rate: float) -> Array:
     """Return the smoothed speeds of points in meters per second, (n_frames, n_points)."""
     speeds = np.linalg.norm(np.gradient(points, axis=0), axis=-1) * frame_rate
-    return np.asarray(gaussian_filter1d(speeds, SMOOTHING_S * frame_rate, axis=0))
+    return np.asarray(scipy.ndimage.gaussian_filter1d(speeds, SMOOTHING_S * frame_rate, axis=0))

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian repeats them
+import scipy
 
 from ..arrays import Array, Flags
 from ..motion import Motion, WorldPoses
@@ -102,7 +102,10 @@ def _flatness(rotations: Array, contact: Flags, load: Array, rate: float) -> Arr
     rotation_changes = rotation_vector_from_quaternion(
         multiply(rotations[1:], inverse(rotations[:-1]))
     )
-    velocity = gaussian_filter1d(rotation_changes * rate, SMOOTHING_S * rate, axis=0)
+    # It reflects ends; smooth_gaussian repeats them.
+    velocity = scipy.ndimage.gaussian_filter1d(
+        rotation_changes * rate, SMOOTHING_S * rate, axis=0
+    )
     slowness = np.clip(2.0 - 2.0 * np.linalg.norm(velocity, axis=1) / MAX_FLAT_RATE, 0.0, 1.0)
     heel = load[:, 0]
     shared = np.clip(4.0 * heel * (1.0 - heel), 0.0, 1.0)

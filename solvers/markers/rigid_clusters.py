@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.cluster.hierarchy import fcluster, linkage
-from scipy.spatial.distance import squareform
+import scipy
 
 from ..arrays import Array
 from ..motion import Tracks
@@ -130,8 +129,11 @@ def _groups(median: Array, spread: Array, settings: ClusterSettings) -> list[lis
     )
     distances = np.round(distances, 6)  # Rounding errors must not decide between ties.
     np.fill_diagonal(distances, 0.0)
-    tree = linkage(squareform(np.maximum(distances, distances.T), checks=False), "complete")
-    labels = fcluster(tree, settings.slack, "distance")
+    tree = scipy.cluster.hierarchy.linkage(
+        scipy.spatial.distance.squareform(np.maximum(distances, distances.T), checks=False),
+        "complete",
+    )
+    labels = scipy.cluster.hierarchy.fcluster(tree, settings.slack, "distance")
     groups = [np.flatnonzero(labels == label).tolist() for label in np.unique(labels)]
     return sorted(group for group in groups if len(group) > 1)
 

@@ -1,8 +1,8 @@
 """Measure the surface of a simulated body relative to the ground."""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import grey_opening, median_filter
 
 from ..arrays import Array
 from ..motion import Motion, forward_kinematics
@@ -78,8 +78,8 @@ def height_correction(heights: Array, frame_rate: float, size: float) -> Array:
     """
     window = min(2 * int(ERROR_WINDOW_S * frame_rate / 2) + 1, 2 * len(heights) - 1)
     depth = np.maximum(-heights - MAX_SINK_M * size, 0.0)
-    sink = median_filter(depth, size=window, mode="nearest")
-    hover = grey_opening(np.maximum(heights, 0.0), size=window, mode="nearest")
+    sink = scipy.ndimage.median_filter(depth, size=window, mode="nearest")
+    hover = scipy.ndimage.grey_opening(np.maximum(heights, 0.0), size=window, mode="nearest")
     hover = np.where(hover > MAX_HOVER_M * size, 0.0, hover)
     return smooth_gaussian(sink - hover, ERROR_WINDOW_S / 4 * frame_rate)
 

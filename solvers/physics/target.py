@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 
 from ..arrays import Array
 from ..errors import InvalidMotionError
@@ -146,7 +146,7 @@ def fade_around(frames: NDArray[np.bool_], ease: float) -> Array:
     n_padding = int(ease) + 2
     is_clear = np.pad(~frames, n_padding, constant_values=True)
     is_clear[[0, -1]] = False
-    distances = distance_transform_edt(is_clear)[n_padding:-n_padding]
+    distances = scipy.ndimage.distance_transform_edt(is_clear)[n_padding:-n_padding]
     return np.asarray(np.minimum(1.0, distances / ease))
 
 

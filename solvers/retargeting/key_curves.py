@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solveh_banded
+import scipy
 
 from ..arrays import Array, Integers
 
@@ -93,7 +93,7 @@ def fit_curve(samples: Array, keys: Integers) -> KeyCurve:
         slope_weights[:, None]
         * np.gradient(samples, axis=0, edge_order=2 if len(samples) > 2 else 1)[keys]
     )
-    solution = solveh_banded(banded, side, check_finite=False)
+    solution = scipy.linalg.solveh_banded(banded, side, check_finite=False)
     return KeyCurve(keys, solution[0::2], solution[1::2])
 
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from ..errors import InvalidMotionError
 from ..motion import Motion, Skeleton
@@ -102,7 +102,9 @@ def _slow_noise(motion: Motion, rng: np.random.Generator) -> NDArray[np.float64]
     """Return unit-variance curves, shape (n_frames, 2), smooth over about a second."""
     time = np.arange(motion.n_frames) * motion.dt
     knots = np.arange(-1, int(time[-1] / SWAY_PERIOD_S) + 4) * SWAY_PERIOD_S
-    return np.asarray(CubicSpline(knots, rng.normal(size=(len(knots), 2)))(time))
+    return np.asarray(
+        scipy.interpolate.CubicSpline(knots, rng.normal(size=(len(knots), 2)))(time)
+    )
 
 
 def _gaps(motion: Motion, missing: Mapping[str, range]) -> list[tuple[int, range]]:

@@ -4,11 +4,12 @@ The stride of a foot has phase 0 to 1, from one heel strike to the next of the s
 rolls over the heel, stands flat, rolls over the ball, leaves at TOE_OFF, and swings.
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import BPoly
 
 from ..arrays import Array
 from ..rotations import multiply, quaternion_from_rotation_vector, rotate
@@ -74,8 +75,8 @@ def plan_foot_path(strides: Array, positions: Array, headings: Array) -> FootTra
     ankles = np.where((phase < TOE_OFF)[:, None], standing, swinging)
     return FootTrajectory(
         ankles,
-        _foot_rotation(yaw, _SOLE_CURVE(phase)),
-        _foot_rotation(yaw, _TOE_CURVE(phase)),
+        _foot_rotation(yaw, _angle_curve(SOLE_KEYS)(phase)),
+        _foot_rotation(yaw, _angle_curve(TOE_KEYS)(phase)),
         phase,
     )
 
@@ -83,7 +84,7 @@ def plan_foot_path(strides: Array, positions: Array, headings: Array) -> FootTra
 def _standing_ankle(position: Array, heading: Array, phase: Array) -> Array:
     """Return ankles that rotate about the heel while the toes are up, otherwise about the
     ball."""
-    angle = _SOLE_CURVE(phase)
+    angle = _angle_curve(SOLE_KEYS)(phase)
     pivot = np.where((angle > 0.0)[:, None], HEEL_OFFSET_M, BALL_OFFSET_M)
     flat = _foot_rotation(heading, np.zeros_like(heading))
     return np.asarray(
@@ -140,12 +141,9 @@ def _foot_rotation(yaw: Array, toes_up: Array) -> Array:
     return multiply(yaw_rotation, pitch_rotation)
 
 
-def _angle_curve(rows: tuple[tuple[float, float, float], ...]) -> BPoly:
+@cache
+def _angle_curve(rows: tuple[tuple[float, float, float], ...]) -> "scipy.interpolate.BPoly":
     """Return a smooth curve over one stride, in radians, without acceleration at its knots."""
     phases = [phase for phase, _, _ in rows]
     values = [(np.radians(angle), np.radians(rate), 0.0) for _, angle, rate in rows]
-    return BPoly.from_derivatives(phases, values)
-
-
-_SOLE_CURVE = _angle_curve(SOLE_KEYS)
-_TOE_CURVE = _angle_curve(TOE_KEYS)
+    return scipy.interpolate.BPoly.from_derivatives(phases, values)

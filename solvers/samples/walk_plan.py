@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from ..arrays import Array
 from .footsteps import MID_STANCE, FootTrajectory, plan_foot_path
@@ -84,8 +84,8 @@ def plan_walk(
     speeds = speed * (
         1.0 + SPEED_STD * _noise_curve(rng, span, N_HEADING_STEPS)(grid / step_time)
     )
-    velocity = CubicSpline(grid, speeds[:, None] * _forward(heading))
-    path, direction = velocity.antiderivative(), CubicSpline(grid, heading)
+    velocity = scipy.interpolate.CubicSpline(grid, speeds[:, None] * _forward(heading))
+    path, direction = velocity.antiderivative(), scipy.interpolate.CubicSpline(grid, heading)
 
     def on_ground(times: Array) -> Array:
         horizontal = path(times) - path(time[0])
@@ -102,10 +102,10 @@ def plan_walk(
         ankles[:, :2] += STEP_POSITION_STD_M * rng.normal(size=(len(yaw), 2))
         yaw = yaw + side * TOE_OUT_RAD + STEP_HEADING_STD_RAD * rng.normal(size=len(yaw))
         strides = (
-            CubicSpline(step_times, index)(time) - index[own_steps][0]
+            scipy.interpolate.CubicSpline(step_times, index)(time) - index[own_steps][0]
         ) / 2.0 + MID_STANCE
         feet.append(plan_foot_path(strides, ankles, yaw))
-    steps = CubicSpline(step_times, index)(time)
+    steps = scipy.interpolate.CubicSpline(step_times, index)(time)
     return WalkPlan(steps, on_ground(time), direction(time), (feet[0], feet[1]), span, rng)
 
 
@@ -117,7 +117,7 @@ def _forward(heading: Array) -> Array:
 
 def _noise_curve(
     rng: np.random.Generator, span: tuple[float, float], spacing: float
-) -> CubicSpline:
+) -> "scipy.interpolate.CubicSpline":
     """Return a smooth curve over `span` through one normal number per `spacing`."""
     knots = np.arange(np.floor(span[0] / spacing) - 1, np.ceil(span[1] / spacing) + 2)
-    return CubicSpline(knots * spacing, rng.normal(size=len(knots)))
+    return scipy.interpolate.CubicSpline(knots * spacing, rng.normal(size=len(knots)))

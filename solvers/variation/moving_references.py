@@ -9,8 +9,8 @@ neither. For such joints the reference is the rotation of the center example at 
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian repeats them
 
 from ..arrays import Array
 from ..rotations import (
@@ -103,7 +103,10 @@ def _smooth_rotations(rotations: Array, sigma: float, is_loop: bool) -> Array:
         after = np.repeat(rotations[-1:], n_padding, axis=0)
     before = _match_signs(before, rotations[0], before[-1])
     after = _match_signs(after, rotations[-1], after[0])
-    smooth = gaussian_filter1d(np.concatenate([before, rotations, after]), sigma, axis=0)
+    # It reflects ends; smooth_gaussian repeats them.
+    smooth = scipy.ndimage.gaussian_filter1d(
+        np.concatenate([before, rotations, after]), sigma, axis=0
+    )
     return normalize(smooth[n_padding : n_padding + n])
 
 

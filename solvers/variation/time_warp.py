@@ -1,7 +1,7 @@
 """Convert the common time of the examples to the frames of a variant."""
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from ..arrays import Array
 from ..rotations import normalize, unroll
@@ -20,7 +20,9 @@ def apply_time_warp(curves: MotionCurves, durations: Array) -> MotionCurves:
     ends = np.concatenate([[0.0], np.cumsum(steps)])
     n_frames = max(round(ends[-1]), 1) + 1
     ends *= (n_frames - 1) / ends[-1]
-    samples = PchipInterpolator(ends, np.arange(len(ends)))(np.arange(n_frames))
+    samples = scipy.interpolate.PchipInterpolator(ends, np.arange(len(ends)))(
+        np.arange(n_frames)
+    )
     times = np.clip(samples, 0.0, len(ends) - 1.0)
     displacements = np.cumsum(curves.root[:, :HEIGHT_COLUMN], axis=0)
     channels = [

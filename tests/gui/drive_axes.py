@@ -14,6 +14,8 @@ from driver_scene import empty_scene, settle, until_done
 FOLDER = Path(__file__).parent
 WALK, JOINTS = FOLDER / "walk.bvh", FOLDER / "joints.txt"
 CHANGE = "mocap_assist.change_axes"
+SCALE, CONFIRM = (1070, 651), (1091, 620)
+"""Positions of a field and a button of the dialog, which opens below the pointer."""
 
 
 def drop(path):
@@ -41,6 +43,16 @@ def show_joints_dialog():
     yield 0.5
 
 
+def double_the_size():
+    """Type another scale into the dialog, which is below the pointer, and confirm it."""
+    yield from bgui.click(*SCALE)
+    yield from bgui.click(*SCALE)
+    yield from bgui.key("ctrl+a")
+    yield from bgui.type_text("2")
+    yield from bgui.key("Return")
+    yield from bgui.click(*CONFIRM)
+
+
 def steps():
     empty_scene()
     yield from bgui.open_sidebar("Mocap")
@@ -62,10 +74,12 @@ def steps():
     yield from bgui.click(*bgui.at(CHANGE))
     yield 1.5
     bgui.shot("4-change-dialog.png")
-    yield from bgui.key("Escape")
-    yield 0.5
+    yield from double_the_size()
+    yield from settle()
+    bgui.shot("4b-doubled.png")
+    assert 1.9 < head_above_hips(armature) / tall < 2.1, head_above_hips(armature)
     with bgui.override("WINDOW"):
-        bpy.ops.mocap_assist.change_axes(up="Z", global_scale=2.0)
+        bpy.ops.mocap_assist.change_axes(up="Z", global_scale=1.0)
     yield from settle()
     lying = head_above_hips(armature)
     assert abs(lying) < 0.5 * tall, (lying, tall)

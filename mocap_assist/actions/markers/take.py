@@ -16,7 +16,6 @@ from ...blender.block_references import BlockReference, SourceReference, removed
 from ...blender.compat import Source
 from ...blender.time_slices import Sliced, Steps, should_yield
 from ...scene import history
-from ...scene.played_time import played_time
 from ...scene.rig import Placement, check_finite, placement_of
 from ...scene.units import unit_of
 from ..armature_write import copy_of, same_slot
@@ -90,8 +89,8 @@ def read_markers(
         keyed = [
             curve for each in markers.curves for curve in curves_of(each, PATH, 3).values()
         ]
-        time = played_time(markers.objects[0])
-        grid = key_grid(keyed, range_bounds(choice, scene, keyed, time), recorded=True)
+        bounds = range_bounds(choice, scene, keyed, markers.objects[0])
+        grid = key_grid(keyed, bounds, recorded=True)
     _check_captured(markers)
     bpy.context.view_layer.update()
     spaces = tuple(_space(marker, unit_of(scene)) for marker in markers.objects)

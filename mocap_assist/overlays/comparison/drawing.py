@@ -87,7 +87,7 @@ def draw(context: bpy.types.Context, look: Look) -> None:
 
 def _draw_figures(armature: bpy.types.Object, frame: float, look: Look) -> None:
     sources = figures.raw_and_clean(armature)
-    frame = played_time(armature).action_frame(frame)
+    frame = played_time(armature, frame).action_frame(frame)
     for source, color, is_raw in zip(sources, look.colors, (True, False), strict=True):
         if source is None:
             continue

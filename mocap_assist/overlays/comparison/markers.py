@@ -119,7 +119,8 @@ def lines_at(played: ComparedMarkers, scene: bpy.types.Scene) -> Array:
         return np.zeros((0, 2, 3))
     spaces = [each.matrix_world @ each.matrix_basis.inverted_safe() for each in played.markers]
     reach = round(TRAIL_S * scene.render.fps / scene.render.fps_base)
-    frame = played_time(played.markers[0]).action_frame(scene.frame_current_final)
+    frame = scene.frame_current_final
+    frame = played_time(played.markers[0], frame).action_frame(frame)
     size = CROSS_RADIUS_M / unit_of(scene)
     return trails_at(played, frame, reach).segments(frame, reach, size, np.array(spaces))
 

@@ -54,7 +54,7 @@ def rings_at(armature: bpy.types.Object, frame: float) -> Rings | None:
     contacts = contacts_of(armature)
     if contacts is None:
         return None
-    frame = played_time(armature).action_frame(frame)
+    frame = played_time(armature, frame).action_frame(frame)
     standing = [is_in_contact(keys, frame) for keys in contacts]
     if not any(standing):
         return None

@@ -109,8 +109,9 @@ def strip_of(context: bpy.types.Context) -> Strip | None:
     if source is None:
         return None
     shown = context.scene.mocap_assist
-    is_checked = shown.checked == source[0].name
-    block, time = _block(armature, source), played_time(armature)
+    is_checked = shown.checked == source[0]
+    block = _block(armature, source)
+    time = played_time(armature, context.scene.frame_current_final)
     bones = _selected(armature)
     report, n_issues = (shown.report, len(shown.issues)) if is_checked else ("", 0)
     key = _StripKey(block, bones, report, n_issues, time)

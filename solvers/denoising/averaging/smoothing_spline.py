@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import eigh
+import scipy
 
 from ...arrays import Array
 from ..channels import Smoothed
@@ -66,6 +66,6 @@ def _smooth_block(samples: Array) -> Smoothed:
 def _demmler_reinsch_basis(length: int) -> tuple[Array, Array]:
     """Return the basis in which the spline is diagonal, and the roughness of its columns."""
     second_differences = np.diff(np.eye(length), 2, axis=0)
-    roughness, basis = eigh(second_differences.T @ second_differences)
+    roughness, basis = scipy.linalg.eigh(second_differences.T @ second_differences)
     roughness[:2] = 0.0  # straight lines
     return basis, np.maximum(roughness, 0.0)

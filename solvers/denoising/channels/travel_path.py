@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import correlate1d
+import scipy
 
 from ...arrays import Array
 from ...rotations import FULL_TURN_RAD, quaternion_from_rotation_vector
@@ -128,4 +128,4 @@ def fit_local_lines(values: Array, width: float) -> Array:
 
 
 def _weighted_sum(values: Array, kernel: Array) -> Array:
-    return np.asarray(correlate1d(values, kernel, axis=0, mode="constant"))
+    return np.asarray(scipy.ndimage.correlate1d(values, kernel, axis=0, mode="constant"))

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import solve_triangular
+import scipy
 
 from ...arrays import Array
 
@@ -43,5 +43,7 @@ def blend_weights(trials: Sequence[Array]) -> Array:
     squares = np.diag(products) + MIN_SQUARED_ERROR
     products += np.diag(MIN_SQUARED_ERROR + INDEPENDENT_FRACTION * squares)
     root = np.linalg.cholesky(products / squares.min())
-    weights, _ = nnls(root.T, solve_triangular(root, np.ones(len(root)), lower=True))
+    weights, _ = nnls(
+        root.T, scipy.linalg.solve_triangular(root, np.ones(len(root)), lower=True)
+    )
     return np.asarray(weights / weights.sum())

@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dpotrf, dpotri
 
 from ...arrays import Array
 from .blend_estimates import MIN_SQUARED_ERROR, blend_weights
@@ -169,8 +169,8 @@ def matern(steps: Array) -> Array:
 
 
 def _inverse(matrix: Array) -> Array:
-    lower, _ = dpotrf(matrix, lower=1, clean=1, overwrite_a=1)
-    inverse = dpotri(lower, lower=1, overwrite_c=1)[0]
+    lower, _ = scipy.linalg.lapack.dpotrf(matrix, lower=1, clean=1, overwrite_a=1)
+    inverse = scipy.linalg.lapack.dpotri(lower, lower=1, overwrite_c=1)[0]
     return np.asarray(inverse + np.tril(inverse, -1).T)
 
 

@@ -1,8 +1,8 @@
 """Find points that jump away for a few frames, independent of orientation."""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from ...arrays import Array
 
@@ -39,5 +39,7 @@ def find_transient_outliers(positions: Array) -> NDArray[np.bool_]:
             distance = np.linalg.norm(positions[reach:-reach] - middle, axis=2)
             distances[row, reach:-reach] = distance
     jump = np.nan_to_num(np.fmin.reduce(distances))  # the smaller one that is observed
-    typical_jump = median_filter(jump, (2 * NEIGHBORHOOD_FRAMES + 1, 1), mode="nearest")
+    typical_jump = scipy.ndimage.median_filter(
+        jump, (2 * NEIGHBORHOOD_FRAMES + 1, 1), mode="nearest"
+    )
     return np.asarray(jump > np.maximum(MIN_SPIKE_M, MIN_SPIKE_RATIO * typical_jump))

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.fft import dct
+import scipy
 
 from ...arrays import Array
 from ...errors import InvalidMotionError
@@ -60,7 +60,7 @@ def extract_windows(motions: Sequence[Motion]) -> Array:
         along_axes = np.einsum("tjc,jac->tja", centered, axes.from_channels)
         starts = np.arange(0, len(values) - WINDOW_FRAMES + 1, HOP_FRAMES)
         windows = np.stack([along_axes[start : start + WINDOW_FRAMES] for start in starts])
-        coefficients = dct(windows, axis=1, norm="ortho").transpose(0, 2, 3, 1)
+        coefficients = scipy.fft.dct(windows, axis=1, norm="ortho").transpose(0, 2, 3, 1)
         found.append(coefficients.reshape(-1, N_CHANNELS, WINDOW_FRAMES))
     return np.concatenate(found) if found else np.zeros((0, N_CHANNELS, WINDOW_FRAMES))
 

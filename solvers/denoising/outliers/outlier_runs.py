@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from ...arrays import Array
 from ...signals import fill_channel_gaps, find_runs
@@ -132,7 +132,7 @@ def find_bursts(noisy: Array, frame_rate: float, mixture: MotionMixture) -> NDAr
     max_frames = round(MAX_BURST_S * frame_rate)
     complete = fill_channel_gaps(noisy)
     # Single frames that jump are no bursts, and say nothing about one.
-    despiked = median_filter(complete, (3, 1), mode="nearest")
+    despiked = scipy.ndimage.median_filter(complete, (3, 1), mode="nearest")
     noisy = np.where(np.abs(noisy - despiked) > MIN_STEP, np.nan, noisy)
     found = _select(
         noisy, np.zeros(noisy.shape, dtype=np.bool_), despiked, frame_rate, mixture, False,

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
 from ...arrays import Array
 from ...motion import Motion, Tracks
@@ -138,8 +138,12 @@ def estimate_local_noise(trajectory: Array, window: int) -> Array:
     lagged_products = -np.sum(differences[1:] * differences[:-1], axis=1) / (3 * 15.0)
     observed = np.isfinite(lagged_products)
     size = min(max(window, 1), len(lagged_products))
-    power = uniform_filter1d(np.where(observed, lagged_products, 0.0), size, mode="constant")
-    observed_fraction = uniform_filter1d(observed.astype(np.float64), size, mode="constant")
+    power = scipy.ndimage.uniform_filter1d(
+        np.where(observed, lagged_products, 0.0), size, mode="constant"
+    )
+    observed_fraction = scipy.ndimage.uniform_filter1d(
+        observed.astype(np.float64), size, mode="constant"
+    )
     local_noise[2:-2] = np.sqrt(
         np.maximum(power, 0.0) / np.maximum(observed_fraction, 1.0 / size)
     )

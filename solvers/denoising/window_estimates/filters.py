@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dpotrf, dpotri
+import scipy
 
 from ...arrays import Array
 from ..window_priors import Windows
@@ -189,8 +189,8 @@ def compute_gains(slow: Array, fast: Array, noise: Array, density: float) -> Gai
     whitened[np.diag_indices(size)] += 1.0
     # LAPACK's inverse takes a third of the time of solving for the identity. It is in place,
     # and only one triangle is complete.
-    dpotrf(whitened.T, lower=1, clean=0, overwrite_a=1)
-    dpotri(whitened.T, lower=1, overwrite_c=1)
+    scipy.linalg.lapack.dpotrf(whitened.T, lower=1, clean=0, overwrite_a=1)
+    scipy.linalg.lapack.dpotri(whitened.T, lower=1, overwrite_c=1)
     gain = np.negative(whitened, out=whitened)
     for first in range(0, size, MAX_BLOCK_ROWS):
         rows = slice(first, first + MAX_BLOCK_ROWS)

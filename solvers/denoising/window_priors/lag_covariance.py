@@ -1,7 +1,7 @@
 """Compute the covariance of all windows of clips without building the windows."""
 
 import numpy as np
-from scipy.linalg import eigh
+import scipy
 
 from ...arrays import Array
 
@@ -98,7 +98,9 @@ def find_leading_eigenpairs(covariance: Array, energy: float) -> tuple[Array, Ar
     total = float(np.trace(covariance))
     while True:
         n_wanted = min(n_wanted, size)
-        values, vectors = eigh(covariance, subset_by_index=(size - n_wanted, size - 1))
+        values, vectors = scipy.linalg.eigh(
+            covariance, subset_by_index=(size - n_wanted, size - 1)
+        )
         values, vectors = np.maximum(values[::-1], 0.0), vectors[:, ::-1]
         n_enough = int(np.searchsorted(np.cumsum(values), energy * total)) + 1
         if n_enough <= len(values) or len(values) == size:

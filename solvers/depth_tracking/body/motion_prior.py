@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ...archives import ArchiveLayout
 from ...arrays import Array
@@ -55,7 +55,7 @@ class MotionPrior:
     @cached_property
     def tree(self) -> Any:
         """Search tree of the poses."""
-        return cKDTree(self.poses)
+        return scipy.spatial.cKDTree(self.poses)
 
     def save(self, path: Path | str) -> None:
         """Write an archive that `load_motion_prior` reads."""

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import solveh_banded
+import scipy
 
 from ...arrays import Array
 from ...signals import lower_block_bands
@@ -42,5 +42,5 @@ def smooth_take(
     blocks[:, diagonal, diagonal] += _MIN_WEIGHT
     right_side += _MIN_WEIGHT * poses
     bands = lower_block_bands(blocks, stiffness)
-    solution: Array = solveh_banded(bands, right_side.ravel(), lower=True)
+    solution: Array = scipy.linalg.solveh_banded(bands, right_side.ravel(), lower=True)
     return solution.reshape(n_frames, N_COORDINATES)

@@ -1,8 +1,8 @@
 """Canny edges of a depth image."""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt, gaussian_filter, label, sobel
 
 from ...arrays import Array, Integers
 
@@ -35,11 +35,14 @@ def canny(image: Array, strong: float, weak: float) -> NDArray[np.bool_]:
     .. [CAN86] Canny (1986). A computational approach to edge detection. IEEE Transactions on
        Pattern Analysis and Machine Intelligence 8(6).
     """
-    smooth = gaussian_filter(image, SMOOTHING_PX)
-    across, down = sobel(smooth, axis=1) / _SOBEL_GAIN, sobel(smooth, axis=0) / _SOBEL_GAIN
+    smooth = scipy.ndimage.gaussian_filter(image, SMOOTHING_PX)
+    across, down = (
+        scipy.ndimage.sobel(smooth, axis=1) / _SOBEL_GAIN,
+        scipy.ndimage.sobel(smooth, axis=0) / _SOBEL_GAIN,
+    )
     slope = np.hypot(across, down)
     thinned_mask = (slope >= weak) & _is_local_maximum(slope, across, down)
-    groups, n_groups = label(thinned_mask, structure=np.ones((3, 3)))
+    groups, n_groups = scipy.ndimage.label(thinned_mask, structure=np.ones((3, 3)))
     is_edge_group = np.zeros(n_groups + 1, dtype=bool)
     is_edge_group[groups[thinned_mask & (slope >= strong)]] = True
     is_edge_group[0] = False
@@ -87,7 +90,7 @@ def edge_pixels(depth: Array, nearest: Integers | None = None) -> Integers:
     )
     width = depth.shape[1]
     if nearest is None:
-        rows, columns = distance_transform_edt(
+        rows, columns = scipy.ndimage.distance_transform_edt(
             ~actor, return_distances=False, return_indices=True
         )
         nearest = (rows * width + columns).ravel().astype(np.intp)

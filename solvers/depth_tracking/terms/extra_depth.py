@@ -1,7 +1,7 @@
 """The extra depth term: closest-point pairs for pixels that cannot be compared."""
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from ...arrays import Array, Integers
 from ..body import NO_ROWS, SurfaceRows, rows_toward_targets
@@ -39,7 +39,9 @@ def extra_depth_term(
     pushed_points = np.concatenate([groups.off_actor, groups.too_near])
     behind = hypothesis.image.pixels[groups.too_far]
     pulling = observation.index_image[np.concatenate([groups.uncovered, behind])]
-    rendered_tree = cKDTree(hypothesis.points, balanced_tree=False, compact_nodes=False)
+    rendered_tree = scipy.spatial.cKDTree(
+        hypothesis.points, balanced_tree=False, compact_nodes=False
+    )
     pushes = _one_to_one(
         pushed_points, *observation.tree.query(hypothesis.points[pushed_points])
     )

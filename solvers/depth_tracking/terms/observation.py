@@ -5,8 +5,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt
-from scipy.spatial import cKDTree
+import scipy
 
 from ...arrays import Array, Integers
 from ...depth_scene import Camera, DepthRecording
@@ -65,12 +64,12 @@ class Observation:
     @cached_property
     def tree(self) -> Any:
         """Search tree of the points."""
-        return cKDTree(self.points)
+        return scipy.spatial.cKDTree(self.points)
 
     @cached_property
     def nearest_pixel(self) -> Integers:
         """Pixel of the actor nearest to each pixel, shape (height * width,)."""
-        rows, columns = distance_transform_edt(
+        rows, columns = scipy.ndimage.distance_transform_edt(
             self.depth == 0.0, return_distances=False, return_indices=True
         )
         pixels: Integers = (rows.astype(np.intp) * self.camera.width + columns).ravel()

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import solveh_banded
+import scipy
 
 from ...arrays import Array
 from ...motion import Skeleton
@@ -297,4 +297,4 @@ def solve_smooth_paths(weighted: Array, weights: Array, stiffness: float) -> Arr
     bands = np.zeros((2, n_frames))
     bands[0, 1:] = -stiffness
     bands[1] = weights + stiffness * ends
-    return np.asarray(solveh_banded(bands, weighted))
+    return np.asarray(scipy.linalg.solveh_banded(bands, weighted))

@@ -1,8 +1,8 @@
 """Blend completed joints with their own interpolated paths, by the expected error of each."""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from ...arrays import Array
 from ...signals import find_runs
@@ -79,7 +79,9 @@ def _weight_by_time(
     return np.asarray(1.0 / (1.0 + (gap_time / HALF_WEIGHT_S) ** 2))
 
 
-def _hermite_path(frames: NDArray[np.intp], positions: Array) -> CubicHermiteSpline:
+def _hermite_path(
+    frames: NDArray[np.intp], positions: Array
+) -> "scipy.interpolate.CubicHermiteSpline":
     """Return a smooth path through positions with limited overshoot.
 
     Slopes are at most three times those of the adjacent straight segments (Fritsch and Carlson
@@ -91,4 +93,4 @@ def _hermite_path(frames: NDArray[np.intp], positions: Array) -> CubicHermiteSpl
     slower = np.minimum(np.append(speeds, speeds[-1]), np.insert(speeds, 0, speeds[0]))
     slope_sizes = np.linalg.norm(slopes, axis=-1)
     scale = np.minimum(1.0, 3.0 * slower / np.maximum(slope_sizes, 1e-12))
-    return CubicHermiteSpline(frames, positions, slopes * scale[:, None])
+    return scipy.interpolate.CubicHermiteSpline(frames, positions, slopes * scale[:, None])

@@ -8,9 +8,8 @@ indicators, so the model misses it.
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
-from scipy.special import ndtr
 
 from ...arrays import Array, Flags
 from ...signals import fill_gaps
@@ -59,7 +58,9 @@ class ErrorModel:
     def probability_within(self, indicators: "ErrorIndicators", tolerance: float) -> Array:
         """Return the probability that the error of a joint is below a tolerance, in meters."""
         expected = self.level + self.slope * self.combine(indicators)
-        probability = ndtr((np.log(tolerance + ONE_CENTIMETER) - expected) / self.spread)
+        probability = scipy.special.ndtr(
+            (np.log(tolerance + ONE_CENTIMETER) - expected) / self.spread
+        )
         return np.where(indicators.jumps, 0.0, probability)
 
 
@@ -167,10 +168,12 @@ def _root_mean_square(values: Array, window: float, frame_rate: float, causal: b
         return np.asarray(np.sqrt(total / np.maximum(weight_sums, 1e-9)))
     n_averaged = 2 * (n_averaged // 2) + 1
     for _ in range(2):
-        squares = uniform_filter1d(squares, n_averaged, axis=0, mode="nearest")
+        squares = scipy.ndimage.uniform_filter1d(squares, n_averaged, axis=0, mode="nearest")
     if is_known.all():
         return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
     weight_sums = is_known.astype(np.float64)
     for _ in range(2):
-        weight_sums = uniform_filter1d(weight_sums, n_averaged, axis=0, mode="nearest")
+        weight_sums = scipy.ndimage.uniform_filter1d(
+            weight_sums, n_averaged, axis=0, mode="nearest"
+        )
     return np.asarray(np.sqrt(np.maximum(squares, 0.0) / np.maximum(weight_sums, 1e-9)))

@@ -4,8 +4,8 @@ Each has shape (n_frames, n_joints), 0 to 1.
 """
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import convolve1d
 
 from ...arrays import Array
 from ...motion import JointRecording
@@ -144,7 +144,7 @@ def weighted_sum(values: Array, weights: Array, causal: bool) -> Array:
     """Sum neighboring frames; if causal, the first weight is for the current frame."""
     if causal:
         weights = np.concatenate([np.zeros(len(weights) - 1), weights])
-    return np.asarray(convolve1d(values, weights, axis=0, mode="constant"))
+    return np.asarray(scipy.ndimage.convolve1d(values, weights, axis=0, mode="constant"))
 
 
 def vector_lengths(vectors: Array) -> Array:

@@ -1,16 +1,15 @@
 """Probability that a joint is near the position that a residual prior predicts."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import gammainc, roots_hermitenorm
+import scipy
 
 from ...arrays import Array
 
 MIN_VARIANCE_M2 = 1e-12
 """Minimum variance (m²); smaller ones carry no information. It guards a division."""
-NODES, _WEIGHTS = roots_hermitenorm(7)
-NODE_WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 
 
 class Calibration(NamedTuple):
@@ -64,12 +63,19 @@ def probability_within(
     scaled_distance = (
         0.5 * distance**2 * np.exp(-level - shift - slope * (log_variances - level))
     )
-    nodes = zip(NODES, NODE_WEIGHTS, strict=True) if spread else [(0.0, 1.0)]
+    nodes = _quadrature() if spread else [(0.0, 1.0)]
     chance = sum(
-        fraction * gammainc(1.5, scaled_distance * np.exp(-spread * node))
+        fraction * scipy.special.gammainc(1.5, scaled_distance * np.exp(-spread * node))
         for node, fraction in nodes
     )
     return np.where(known, chance, 0.0)
+
+
+@cache
+def _quadrature() -> list[tuple[float, float]]:
+    """Return nodes of Gauss-Hermite quadrature and their weights, which sum to 1."""
+    nodes, weights = scipy.special.roots_hermitenorm(7)
+    return list(zip(nodes.tolist(), (weights / weights.sum()).tolist(), strict=True))
 
 
 def mean_log_variance(variances: Array) -> float:

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
-from scipy.optimize import minimize
 
 from ...arrays import Array
 
@@ -106,7 +105,7 @@ def learn_kernel(
         for index in (3, 4, 5, 6, 7):
             start[index] = np.log(MIN_VARIANCE_RATIO * total * 1e-3)
             bounds[index] = (start[index], start[index])
-    optimum = minimize(
+    optimum = scipy.optimize.minimize(
         _negative_log_likelihood, start, args=(far, same, centered), jac=True,
         method="L-BFGS-B", bounds=bounds, options={"maxiter": MAX_ITERATIONS},
     )  # fmt: skip
@@ -127,10 +126,10 @@ def _negative_log_likelihood(
     covariance = kernel.take * same[0] + kernel.actor * same[1] + kernel.noise * np.eye(n)
     for shape, strength in zip(shapes, strengths, strict=True):
         covariance += shape * strength
-    factor = cho_factor(covariance, lower=True, check_finite=False)
-    solved = cho_solve(factor, errors, check_finite=False)
+    factor = scipy.linalg.cho_factor(covariance, lower=True, check_finite=False)
+    solved = scipy.linalg.cho_solve(factor, errors, check_finite=False)
     value = 0.5 * (errors * solved).sum() + n_axes * np.log(np.diag(factor[0])).sum()
-    inverse = cho_solve(factor, np.eye(n), check_finite=False)
+    inverse = scipy.linalg.cho_solve(factor, np.eye(n), check_finite=False)
     slope = -0.5 * (solved @ solved.T - n_axes * inverse)
     weighted = [slope * shape for shape in shapes]
     gradient = [

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+import scipy
 
 from ...arrays import Array, Integers, Single
 from ...motion.humanoid import MIRROR_JOINTS, mirror_postures
@@ -139,6 +139,8 @@ def _covariance(points: Single, take: Integers, actor: Integers) -> Array:
 
 
 def _solve(covariance: Array, errors: Array) -> Array:
-    factor = cho_factor(covariance, lower=True, check_finite=False)
-    solution = cho_solve(factor, errors.reshape(len(errors), -1), check_finite=False)
+    factor = scipy.linalg.cho_factor(covariance, lower=True, check_finite=False)
+    solution = scipy.linalg.cho_solve(
+        factor, errors.reshape(len(errors), -1), check_finite=False
+    )
     return np.asarray(solution.reshape(errors.shape))

@@ -13,8 +13,8 @@ from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
 from ...arrays import Array, Single, row_blocks
 from ...motion.humanoid import N_JOINTS, mirror_postures
@@ -174,8 +174,8 @@ def movement_parts(features: Array, frame_rate: float) -> Array:
     away = max(round(CONTEXT_S * frame_rate), 1)
     window = 2 * round(MEAN_WINDOW_S * frame_rate) + 1
     frames = np.arange(n)
-    counts = uniform_filter1d(np.ones(n), window, mode="constant")[:, None, None]
-    mean = uniform_filter1d(features, window, axis=0, mode="constant") / counts
+    counts = scipy.ndimage.uniform_filter1d(np.ones(n), window, mode="constant")[:, None, None]
+    mean = scipy.ndimage.uniform_filter1d(features, window, axis=0, mode="constant") / counts
     smooth = smooth_gaussian(features, SPEED_SMOOTHING_S * frame_rate)
     speed = np.gradient(smooth, 1.0 / frame_rate, axis=0) if n > 1 else 0.0 * features
     before = features[np.maximum(frames - away, 0)]

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import solveh_banded
+import scipy
 
 from ...arrays import Array
 from ...signals import second_difference_bands
@@ -31,7 +31,7 @@ def smooth_trajectories(positions: Array, weights: Array, frames: float) -> Arra
     for joint in np.flatnonzero(np.isfinite(positions).all(axis=(0, 2))):
         matrix = bands.copy()
         matrix[2] += weights[:, joint]
-        result[:, joint] = solveh_banded(
+        result[:, joint] = scipy.linalg.solveh_banded(
             matrix, weights[:, joint, None] * positions[:, joint], check_finite=False
         )
     return result

@@ -9,9 +9,8 @@ counts as independent noise of that example.
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.cluster.vq import kmeans2
-from scipy.linalg import solve_triangular
 
 from ...arrays import Array
 from .kernel import Kernel, squared_distances, squared_exponential
@@ -29,7 +28,9 @@ def inducing_points(features: Array, count: int, seed: int) -> Array:
     distinct = np.unique(features, axis=0)
     if len(distinct) <= count:
         return distinct
-    centers, _ = kmeans2(features, count, iter=5, minit="++", seed=np.random.default_rng(seed))
+    centers, _ = scipy.cluster.vq.kmeans2(
+        features, count, iter=5, minit="++", seed=np.random.default_rng(seed)
+    )
     return np.asarray(centers)
 
 
@@ -52,7 +53,9 @@ def basis_values(squared: Array, length: float, root: Array) -> Array:
     `squared` are the squared distances from the points; `root` is their `cholesky_root`.
     """
     values = np.exp(-0.5 * squared / length**2)
-    return np.asarray(solve_triangular(root, values.T, lower=True, check_finite=False).T)
+    return np.asarray(
+        scipy.linalg.solve_triangular(root, values.T, lower=True, check_finite=False).T
+    )
 
 
 def posterior(

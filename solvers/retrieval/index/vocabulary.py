@@ -10,7 +10,7 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.cluster.vq import kmeans2
+import scipy
 
 from ...arrays import Array
 from ..postures import (
@@ -166,7 +166,9 @@ def _learn_words(features: Array, n_words: int, rng: np.random.Generator) -> Arr
     distance = features + rng.normal(scale=JITTER_M, size=features.shape)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "One of the clusters is empty")
-        words, labels = kmeans2(distance, n_words, minit="++", seed=rng, missing="warn")
+        words, labels = scipy.cluster.vq.kmeans2(
+            distance, n_words, minit="++", seed=rng, missing="warn"
+        )
     empty = np.setdiff1d(np.arange(n_words), labels)
     words[empty] = features[rng.integers(len(features), size=len(empty))]
     return np.asarray(words)

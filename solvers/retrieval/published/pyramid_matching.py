@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from ...arrays import Array
 from ...settings import Settings, setting
@@ -62,7 +62,7 @@ def pyramid_descriptor(
         values.append(sizes / 2**level)
         first += 2**level * n_atoms**2
     columns = np.concatenate(indices)
-    return csr_array(
+    return scipy.sparse.csr_array(
         (np.concatenate(values), columns, np.array([0, len(columns)])), shape=(1, first)
     )
 

@@ -6,7 +6,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from scipy.sparse import csc_array, vstack
+import scipy
 
 from ...progress import Progress, unwatched, within
 from ..index import Vocabulary
@@ -74,7 +74,9 @@ def _build_pyramids(
         progress(0.7 + 0.3 * index / len(clips), "Pooling")
         rows.append(pyramid_descriptor(clip, dictionary))
     ends = np.array([[0, clip.n_frames] for clip in clips], dtype=np.int32)
-    return _Pyramids(numbers, dictionary, csc_array(vstack(rows)), ends)
+    return _Pyramids(
+        numbers, dictionary, scipy.sparse.csc_array(scipy.sparse.vstack(rows)), ends
+    )
 
 
 def _fill_gaps(clip: ClipPostures, vocabulary: Vocabulary) -> ClipPostures:

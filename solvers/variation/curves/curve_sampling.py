@@ -1,8 +1,7 @@
 """Sample curves between frames with cubic B-splines, whose second derivative is continuous."""
 
 import numpy as np
-from scipy.ndimage import spline_filter1d
-from scipy.sparse import csr_matrix
+import scipy
 
 from ...arrays import Array
 
@@ -38,7 +37,9 @@ def sample_curves(curves: Array, times: Array) -> Array:
     steps = np.minimum(np.arange(1, N_PADDING + 1), n - 1)
     before = 2.0 * flat[0] - flat[steps[::-1]]
     after = 2.0 * flat[-1] - flat[n - 1 - steps]
-    knots = spline_filter1d(np.concatenate([before, flat, after]), order=3, axis=0)
+    knots = scipy.ndimage.spline_filter1d(
+        np.concatenate([before, flat, after]), order=3, axis=0
+    )
     base_frames = np.clip(np.floor(times).astype(int), 0, n - 1)
     fractions = times - base_frames
     weights = np.stack([
@@ -49,7 +50,7 @@ def sample_curves(curves: Array, times: Array) -> Array:
     ], axis=-1) / 6.0  # fmt: skip
     columns = base_frames[:, None] + np.arange(N_PADDING - 1, N_PADDING + 3)
     rows = np.arange(0, 4 * len(times) + 1, 4)
-    interpolation = csr_matrix(
+    interpolation = scipy.sparse.csr_matrix(
         (weights.ravel(), columns.ravel(), rows), (len(times), len(knots))
     )
     return np.asarray((interpolation @ knots).reshape(len(times), *curves.shape[1:]))

@@ -18,9 +18,7 @@ channel by channel, times |det Phi|^-n: exact, and no matrix is larger than n by
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
-from scipy.optimize import minimize
-from scipy.spatial.distance import cdist
+import scipy
 
 from ...arrays import Array
 
@@ -95,7 +93,7 @@ def learn_hyperparameters(
         Whether outputs share kernels only (eq. 4.4).
     max_iterations : int
     """
-    squared_distances = cdist(features, features, "sqeuclidean")
+    squared_distances = scipy.spatial.distance.cdist(features, features, "sqeuclidean")
     log_typical_length = 0.5 * np.log(max(float(squared_distances.mean()), 1e-12))
     mixing = _initial_mixing(outputs)
     start = np.concatenate([
@@ -114,7 +112,7 @@ def learn_hyperparameters(
     if published:
         bounds[3 * N_CHANNELS :] = [(-MAX_MIXING, MAX_MIXING)] * N_CHANNELS**2
     cost = _published_cost if published else _latent_cost
-    solution = minimize(
+    solution = scipy.optimize.minimize(
         cost, start, args=(squared_distances, outputs), jac=True,
         method="L-BFGS-B", bounds=bounds, options={"maxiter": max_iterations},
     )  # fmt: skip
@@ -156,9 +154,9 @@ def _likelihood(covariance: Array, values: Array) -> tuple[float, Array, Array]:
     """Return the negative log likelihood without its constant, and its derivatives by the
     covariance and by the values."""
     n = len(values)
-    factor = cho_factor(covariance, lower=True, check_finite=False)
-    solved = cho_solve(factor, values, check_finite=False)
-    inverse = cho_solve(factor, np.eye(n), check_finite=False)
+    factor = scipy.linalg.cho_factor(covariance, lower=True, check_finite=False)
+    solved = scipy.linalg.cho_solve(factor, values, check_finite=False)
+    inverse = scipy.linalg.cho_solve(factor, np.eye(n), check_finite=False)
     cost = 0.5 * values @ solved + np.log(np.diag(factor[0])).sum()
     return float(cost), 0.5 * (inverse - np.outer(solved, solved)), solved
 

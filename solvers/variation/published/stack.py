@@ -9,8 +9,7 @@ complete function, which returns to the mean of the outputs far from all example
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve, solve_triangular
-from scipy.spatial.distance import cdist
+import scipy
 
 from ...arrays import Array, Integers
 from ...progress import Progress, unwatched
@@ -215,8 +214,12 @@ def _fit_processes(
     )
     noises = weights @ hyperparameters.noises + REGULARIZATION
     channels = np.linalg.solve(mixing, targets.T)
-    among = compute_kernels(cdist(points, points, "sqeuclidean"), hyperparameters, weights)
-    across = compute_kernels(cdist(points, scaled, "sqeuclidean"), hyperparameters, weights)
+    among = compute_kernels(
+        scipy.spatial.distance.cdist(points, points, "sqeuclidean"), hyperparameters, weights
+    )
+    across = compute_kernels(
+        scipy.spatial.distance.cdist(points, scaled, "sqeuclidean"), hyperparameters, weights
+    )
     means, roots, inverses = [], [], []
     eye = np.eye(len(points))
     for own_kernel, cross_kernel, noise, targets_of_channel in zip(
@@ -224,8 +227,8 @@ def _fit_processes(
     ):
         regularized = own_kernel + REGULARIZATION * np.trace(own_kernel) / len(own_kernel) * eye
         lower = _robust_cholesky(noise * regularized + cross_kernel @ cross_kernel.T)
-        means.append(cho_solve((lower, True), cross_kernel @ targets_of_channel))
-        roots.append(np.sqrt(noise) * solve_triangular(lower, eye, lower=True).T)
+        means.append(scipy.linalg.cho_solve((lower, True), cross_kernel @ targets_of_channel))
+        roots.append(np.sqrt(noise) * scipy.linalg.solve_triangular(lower, eye, lower=True).T)
         inverses.append(np.linalg.inv(regularized))
     return (
         hyperparameters.lengths, hyperparameters.biases, weights, mixing, noises,

@@ -74,7 +74,7 @@ def test_issues_left_are_those_that_check_lists(sample, fix, blank):
     listed = blank.context.scene.mocap_assist
     left = [(issue.name, issue.start, issue.sentence) for issue in listed.issues]
     assert len(left) == card["after"]["issues"] > 10
-    assert listed.checked == sample.animation_data.action.name
+    assert listed.checked == sample.animation_data.action
 
     assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
 
@@ -106,7 +106,8 @@ def test_accept_keeps_the_result_and_closes_the_card(sample, fix, blank, draw):
 
 
 def test_card_shows_four_figures_and_steps_on_request(sample, fix, blank, draw):
-    _, card = fix()
+    raw = sample.animation_data.action
+    action, card = fix()
 
     shown = draw("MOCAP_PT_fix")
     assert {"Before", "After", "Jitter", "Longest Slide", "Spikes, Gaps", "Issues"} <= set(
@@ -119,6 +120,12 @@ def test_card_shows_four_figures_and_steps_on_request(sample, fix, blank, draw):
         assert card["steps"][0] in " ".join(draw("MOCAP_PT_fix"))
     finally:
         blank.context.window_manager.mocap_assist_fix_details = False
+    assert "mocap_assist.revert_to_raw" in draw("MOCAP_PT_fix")
+
+    blank.data.actions.remove(raw)
+
+    reason = f"The raw action of {action.name} is not in this file."
+    assert reason in " ".join(draw("MOCAP_PT_fix"))
 
 
 def test_fixed_motion_is_retargeted_on_request(sample, fix, blank):

@@ -1,7 +1,11 @@
 """Axes, unit and scale are set on import, and changed again on what was imported."""
 
+from math import pi
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from mathutils import Matrix, Vector
 from numpy.testing import assert_allclose
 
 TOLERANCE_M = 2e-4  # meters; bones and keys are 32-bit numbers
@@ -61,6 +65,25 @@ def test_back_and_forth_leaves_it_as_it_was(walk, bring, shown, blank):
 
     assert np.abs(rotated - before).max() > 0.5
     assert_allclose(shown(armature), before, atol=TOLERANCE_M)
+
+
+def test_view_follows_the_actor(load, blank):
+    """A rotated take had left the view, which then showed nothing."""
+    shows = load("mocap_assist.importing.show_actor")
+    region = SimpleNamespace(
+        view_location=Vector((0.0, 0.0, 1.0)), view_distance=4.0, view_perspective="PERSP"
+    )
+    spaces = SimpleNamespace(active=SimpleNamespace(region_3d=region))
+    screen = SimpleNamespace(areas=[SimpleNamespace(type="VIEW_3D", spaces=spaces)])
+    context = SimpleNamespace(window=SimpleNamespace(screen=screen))
+    positions = shows.positions_of_views(context)
+    change = Matrix.Rotation(-pi / 2, 4, "X") @ Matrix.Scale(2.0, 4)
+
+    for _ in range(2):  # the redo panel changes it again
+        shows.follow_actor(context, positions, change)
+
+    assert_allclose(region.view_location, (0.0, 2.0, 0.0), atol=1e-6)
+    assert region.view_distance == pytest.approx(8.0)
 
 
 def test_scale_and_unit_change_the_size(walk, bring, shown, blank):

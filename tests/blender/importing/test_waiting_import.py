@@ -239,5 +239,6 @@ def test_the_dialog_does_not_wait_for_a_large_file(load, walks, monkeypatch, bla
     large = importing.preview(blank.context, [walks / "first.bvh"])
 
     assert small.startswith("first.bvh: 317 frames at 120 Hz; the scene plays at 24 FPS. Y is")
-    assert large == "first.bvh: 0.2 MB; the scene plays at 24 FPS"
+    assert small.endswith("lengths are in units of 0.05644 m.")
+    assert large == "first.bvh: 0.2 MB; the scene plays at 24 FPS."
     assert "cannot be read" in importing.preview(blank.context, [walks / "gone.bvh"])

@@ -1,5 +1,7 @@
 """Other uses of a match: a ghost, a link, an example to learn from, an asset."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -159,6 +161,24 @@ def test_action_becomes_an_asset_with_catalog_tags_and_preview(
     action.preview.image_pixels_float.foreach_get(pixels)
     inked = (pixels.reshape(-1, 4)[:, 0] < 0.8).mean()
     assert 0.02 < inked < 0.4
+
+
+def test_asset_is_the_result_on_a_strip_and_the_dialog_names_it(newcomer, blank):
+    """An action fixed by hand above it, of one bone, is no take."""
+    armature = newcomer("walk")
+    assert blank.ops.mocap_assist.denoise(plant_feet=False, result_as="NLA_TRACK")
+    by_hand = blank.data.actions.new("fixed by hand")
+    armature.animation_data.action = by_hand
+    result = armature.animation_data.nla_tracks[0].strips[0].action
+
+    named: list[str] = []
+    layout = SimpleNamespace(label=lambda text, **_: named.append(text), prop=lambda *_: None)
+    button = blank.types.MOCAP_ASSIST_OT_mark_asset
+    button.draw(SimpleNamespace(layout=layout), blank.context)
+    assert named == [result.name]
+    assert blank.ops.mocap_assist.mark_asset() == {"FINISHED"}
+
+    assert result.asset_data is not None and by_hand.asset_data is None
 
 
 def test_catalogs_need_a_saved_file(newcomer, blank):

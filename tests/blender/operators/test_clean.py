@@ -5,7 +5,6 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
-import pytest
 from numpy.testing import assert_allclose
 
 RAW, CLEAN = "walk", "walk.clean"
@@ -43,19 +42,6 @@ def test_clean_reports_its_result(noisy, clean):
     assert entry["after"]["mean_jitter_m_per_s3"] < entry["before"]["mean_jitter_m_per_s3"]
 
 
-def test_revert_plays_the_raw_action_again_and_keeps_the_result(noisy, clean, blank):
-    with pytest.raises(RuntimeError, match="action of Actor is not a result of"):
-        blank.ops.mocap_assist.revert_to_raw()
-    raw, result = noisy.animation_data.action, clean()
-    raw.name = "renamed by the animator"
-
-    assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
-
-    assert noisy.animation_data.action == raw
-    assert noisy.animation_data.action_slot == raw.slots[0]
-    assert result.use_fake_user
-
-
 def test_a_result_on_an_nla_track_moves_the_bones_and_can_be_reverted(
     noisy, clean, blank, poses
 ):
@@ -73,27 +59,6 @@ def test_a_result_on_an_nla_track_moves_the_bones_and_can_be_reverted(
 
 def test_results_of_results_are_named_after_the_recording(noisy, clean):
     assert [clean().name for _ in range(3)] == [CLEAN, f"{CLEAN}.001", f"{CLEAN}.002"]
-
-
-def test_revert_removes_every_result_from_the_nla_and_no_other_track(noisy, clean, blank):
-    clean(result_as="NLA_TRACK")
-    clean(result_as="NLA_TRACK")
-    layer = noisy.animation_data.nla_tracks.new()
-    layer.strips.new("layer", 1, blank.data.actions[RAW].copy())
-
-    blank.ops.mocap_assist.revert_to_raw()
-
-    assert noisy.animation_data.nla_tracks.values() == [layer]
-    with pytest.raises(RuntimeError, match="action of Actor is not a result of"):
-        blank.ops.mocap_assist.revert_to_raw()
-
-
-def test_muted_track_is_not_the_played_action(noisy, clean, blank):
-    clean(result_as="NLA_TRACK")
-    noisy.animation_data.nla_tracks[0].mute = True
-
-    with pytest.raises(RuntimeError, match="action of Actor is not a result of"):
-        blank.ops.mocap_assist.revert_to_raw()
 
 
 def test_a_strip_is_as_long_as_its_action_between_frames(noisy, clean):

@@ -89,7 +89,7 @@ def test_issues_are_shown_where_the_strip_plays_them(blank, draw, result):
     scene = blank.context.scene
     issue = scene.mocap_assist.issues.add()
     issue.name, issue.start, issue.stop, issue.kind = "LeftArm", 20.0, 22.0, "gap"
-    scene.mocap_assist.checked = "walk"
+    scene.mocap_assist.checked = blank.data.actions["walk"]
 
     blank.ops.mocap_assist.jump_to_issue(index=0)
     assert scene.frame_current == 120
@@ -110,6 +110,46 @@ def test_clean_changes_the_frames_of_the_preview_range_as_played(blank, load, re
     take = read_take(result, scene, frames.FrameRange.PREVIEW, played)
 
     assert_allclose(take.frames, np.arange(11.0, 21.0))
+
+
+def test_each_strip_of_a_cut_result_has_its_own_time(blank, load, result):
+    """The animator cuts a result at frame 30, and moves the second half to frame 131."""
+    first = lay_strip(result, action_frame_end=30.0)
+    (track,) = result.animation_data.nla_tracks
+    second = track.strips.new("second half", 131, first.action)
+    second.action_slot, second.action_frame_start = first.action_slot, 31.0
+    second.frame_start_ui = 131.0
+    played_time = load("mocap_assist.scene.played_time").played_time
+    scene = blank.context.scene
+
+    assert [played_time(result, frame).action_frame(frame) for frame in (5, 50, 131, 140)] == [
+        5.0, 30.0, 31.0, 40.0,
+    ]  # fmt: skip
+    issue = scene.mocap_assist.issues.add()
+    issue.start, issue.stop = 40.0, 42.0
+    shown_frames = load("mocap_assist.runtime.selection").shown_frames
+    assert shown_frames(blank.context, issue) == (140.0, 142.0)
+    scene.use_preview_range, scene.frame_preview_start, scene.frame_preview_end = True, 141, 150
+    assert_allclose(preview_frames(load, result, scene), np.arange(41.0, 51.0))
+
+
+def test_preview_range_of_a_raw_take_in_tweak_mode_is_that_of_its_strip(blank, load, actor):
+    strip, animation = lay_strip(actor, start=101), actor.animation_data
+    scene = blank.context.scene
+    animation.nla_tracks.active = animation.nla_tracks[0]
+    strip.select = True
+    animation.use_tweak_mode = True
+    scene.use_preview_range, scene.frame_preview_start, scene.frame_preview_end = True, 111, 120
+
+    assert_allclose(preview_frames(load, actor, scene), np.arange(11.0, 21.0))
+
+
+def preview_frames(load, armature, scene):
+    """Return the frames of the action that are read of the preview range."""
+    read_take = load("mocap_assist.actions.armature_read").read_take
+    preview = load("mocap_assist.actions.frames").FrameRange.PREVIEW
+    played = load("mocap_assist.runtime.selection").played_source(armature)
+    return read_take(armature, scene, preview, played).frames
 
 
 def test_overlay_draws_the_pose_that_blender_shows(blank, load, result, monkeypatch):

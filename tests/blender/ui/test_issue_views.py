@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 from mathutils import Matrix, Vector
-from modal_events import event
+from modal_events import event, nothing_is_left
 
 
 @pytest.fixture
@@ -216,6 +216,27 @@ def test_only_a_check_that_was_asked_for_takes_the_window(actor, load, make_butt
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 
 
+def test_quiet_check_makes_way_for_a_press(actor, blank, load, make_button, window):
+    """Buttons were gray, and the message of the result was gone, until a check had ended."""
+    settings = load("solvers.denoising")
+    kind = load("mocap_assist.check.button_settings").CheckBundle
+    check = kind(settings.QualitySettings(), settings.IssueSettings())
+    quiet = make_button("measure_quality", check)
+    quiet.is_quiet = True
+    assert quiet.invoke(window.context, None) == {"RUNNING_MODAL"}
+    assert window.status == [] and not window.job.running
+    assert blank.ops.mocap_assist.denoise.poll()
+
+    pressed = make_button("measure_quality", check)
+    pressed.is_quiet = False
+    assert pressed.invoke(window.context, None) == {"RUNNING_MODAL"}
+
+    assert quiet.modal(window.context, event("TIMER")) == {"CANCELLED"}
+    assert window.job.running and len(window.timers) == 1
+    assert pressed.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+    assert nothing_is_left(window)
+
+
 class Timers:
     def __init__(self, registered):
         self.registered = registered
@@ -238,7 +259,7 @@ def test_quiet_check_leaves_the_status_bar(blank, actor, capsys):
 
 @pytest.mark.usefixtures("all_panels")
 def test_list_and_strip_name_the_kind_of_an_issue(blank, draw, actor, issue, load):
-    blank.context.scene.mocap_assist.checked = actor.animation_data.action.name
+    blank.context.scene.mocap_assist.checked = actor.animation_data.action
 
     assert {"mocap_assist_issue_view", "mocap_assist_issue_range"} <= set(
         draw("MOCAP_PT_check")
@@ -249,9 +270,27 @@ def test_list_and_strip_name_the_kind_of_an_issue(blank, draw, actor, issue, loa
 
 def test_panel_says_that_a_checked_take_has_no_issues(blank, draw, actor):
     assert "No issues found." not in draw("MOCAP_PT_check")
-    blank.context.scene.mocap_assist.checked = actor.animation_data.action.name
+    blank.context.scene.mocap_assist.checked = actor.animation_data.action
 
     assert "No issues found." in draw("MOCAP_PT_check")
 
-    blank.context.scene.mocap_assist.checked = "another action"
+    blank.context.scene.mocap_assist.checked = blank.data.actions.new("another action")
     assert "No issues found." not in draw("MOCAP_PT_check")
+
+
+@pytest.mark.usefixtures("all_panels")
+def test_list_follows_a_renamed_action_and_names_a_deleted_one(blank, draw, actor, issue):
+    def shown():
+        return " ".join(draw("MOCAP_PT_check"))
+
+    scene, raw = blank.context.scene, actor.animation_data.action
+    scene.mocap_assist.checked = raw
+    raw.name = "renamed by the animator"
+    assert "Run Check again." not in shown()
+
+    other = blank.data.actions.new("another action")
+    scene.mocap_assist.checked = other
+    assert 'Results are for "another action". Run Check again.' in shown()
+
+    blank.data.actions.remove(other)
+    assert "The checked action was deleted. Run Check again." in shown()

@@ -128,6 +128,14 @@ def test_invalid_choices_are_reported_in_one_sentence(walker, blank):
     assert len(blank.data.actions) == len(EXAMPLES)
 
 
+def test_take_with_gaps_is_named_before_the_solve(blank, load, monkeypatch):
+    monkeypatch.setattr(load("mocap_assist.jobs.job"), "Job", None)
+    blank.ops.mocap_assist.load_sample()
+
+    with pytest.raises(RuntimeError, match=r"Sample Walk has gaps\. Press Clean first\."):
+        blank.ops.mocap_assist.vary()
+
+
 def test_vary_command_writes_variants_and_a_contact_sheet(
     walker, load, blank, capsys, tmp_path
 ):
