@@ -37,9 +37,11 @@ are rounded (`test_fingers_of_a_glove_in_coarse_steps_are_not_held`)."""
 MAX_REPEATED_FRACTION = 0.75
 """Fraction of repeated samples above which a joint counts as still. It guards joints that move
 in steps (`test_poses_on_steps_are_not_held`)."""
-MIN_DIRECTION = 0.3
-"""Cosine of the jump and of the movement before and after it, at what looks like a cut. It
-guards joined takes (`test_pose_that_fills_up_a_joined_take_is_not_held`)."""
+MIN_DIRECTION, MAX_SPEED_RATIO = 0.1, 1.6
+"""At what looks like a cut: cosine of the jump and of the movement before and after it, and
+mean speed of the jump as a ratio to the faster of both. They guard joined takes
+(`test_pose_that_fills_up_a_joined_take_is_not_held`): 6 % of the dropped frames of development
+takes are left out by them, and 6 % of the poses that fill up a clip are not."""
 N_JITTER_SAMPLES = 2000
 """Samples of a joint from which its jitter is estimated. It bounds the run time."""
 
@@ -69,8 +71,8 @@ def find_held_samples(recording: Motion | Tracks) -> Flags:
     several parts repeat in the same frames only if they were lost. A single part may stop: it
     must jump farther than it moves from frame to frame, from a value at which it does not stop
     most of the time. What looks like a cut after the repeats is one, unless the body moves on
-    in its direction. Curves without jitter were keyed by hand: there poses are held on purpose.
-    Repeats at the start or the end of a take may be such a pose, and are kept.
+    in its direction, and not faster. Curves without jitter were keyed by hand: there poses are
+    held on purpose. Repeats at the start or the end of a take may be such a pose, and are kept.
 
     Returns
     -------
@@ -194,6 +196,10 @@ def _are_cuts(
         last, stop = starts[index] - 1, stops[index]
         around = trajectories[[last - 1, last, stop, min(stop + 1, len(trajectories) - 1)]]
         before, jump, after = np.nan_to_num(np.diff(around, axis=0)).reshape(3, -1)
-        size = np.linalg.norm(jump) * np.linalg.norm(before + after)
-        are_cuts[index] = jump @ (before + after) < MIN_DIRECTION * size
+        around_it, size = before + after, np.linalg.norm(jump)
+        speed = max(np.linalg.norm(before), np.linalg.norm(after))
+        are_cuts[index] = (
+            jump @ around_it < MIN_DIRECTION * size * np.linalg.norm(around_it)
+            or size > MAX_SPEED_RATIO * (stop - last) * speed
+        )
     return are_cuts

@@ -198,20 +198,29 @@ def test_still_pose_at_the_start_is_not_held(walk):
     assert not find_held_samples(in_frames(walk, still)).any()
 
 
-def test_pose_that_fills_up_a_joined_take_is_not_held(recordings):
+@pytest.mark.parametrize(
+    ("first", "start", "then", "begin", "n_repeats"),
+    [
+        ("run_angry", 5, "walk_tired", 20, 20),  # it jumps in another direction
+        ("walk_normal", 10, "bow_active", 40, 2),  # it jumps too far
+    ],
+)
+def test_pose_that_fills_up_a_joined_take_is_not_held(
+    recordings, first, start, then, begin, n_repeats
+):
     """An editor repeats the last pose up to the next clip: that jump is a cut."""
     folder = recordings / "corpus" / "bvh" / "bandai_namco"
-    run = read_recording(folder / "dataset-1_run_angry_001.bvh").slice(5, 65)
-    walk = read_recording(folder / "dataset-1_walk_tired_001.bvh").slice(20, 80)
+    one = read_recording(folder / f"dataset-1_{first}_001.bvh").slice(start, start + 60)
+    other = read_recording(folder / f"dataset-1_{then}_001.bvh").slice(begin, begin + 60)
     joined = replace(
-        run,
-        rotations=np.concatenate([run.rotations, walk.rotations]),
-        root_positions=np.concatenate([run.root_positions, walk.root_positions]),
+        one,
+        rotations=np.concatenate([one.rotations, other.rotations]),
+        root_positions=np.concatenate([one.root_positions, other.root_positions]),
     )
-    frames = np.concatenate([np.arange(60), np.full(10, 59), np.arange(60, 120)])
+    frames = np.concatenate([np.arange(60), np.full(n_repeats, 59), np.arange(60, 120)])
     filled_up = in_frames(joined, frames)
-    assert not find_held_samples(filled_up)[60:70].any()
-    assert 70 in denoise(filled_up).cuts
+    assert not find_held_samples(filled_up)[60 : 60 + n_repeats].any()
+    assert 60 + n_repeats in denoise(filled_up).cuts
 
 
 def test_clean_moves_a_lost_arm_on(walk, arm):
