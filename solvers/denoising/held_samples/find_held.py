@@ -31,6 +31,10 @@ of single ones also to the step before. They guard poses that are left by steps 
 MIN_JUMP_RAD = np.radians(1.0)
 """Smallest jump after the repeats of all parts together, radians. It guards bodies that hardly
 move (`test_repeats_of_a_body_that_hardly_moves_do_not_matter`)."""
+MIN_ENTRY_RATIO = 3.0
+"""Step to the repeated value, as a ratio to the steps before it and after the repeats, above
+which this value is wrong too. Chosen by hand: an arm that a tracker puts into its rest pose has
+10 and more, and a punch speeds up by 2 from frame to frame at 30 Hz."""
 MIN_QUANTA = 5.0
 """Largest jump after the repeats in smallest steps of a joint, a ratio. It guards joints that
 are rounded (`test_fingers_of_a_glove_in_coarse_steps_are_not_held`)."""
@@ -57,6 +61,8 @@ class _Runs(NamedTuple):
     before: Array
     after: Array
     """Speeds of the changes before and after, per frame."""
+    earlier: Array
+    """Speed of the change before the one before; 0 if there is none."""
     quanta: Array
     """The jump in smallest steps of the part."""
     at_limit: Flags
@@ -67,7 +73,7 @@ def find_held_samples(recording: Motion | Tracks) -> Flags:
     """Return which samples repeat the one before although the body moves on.
 
     Formats of poses cannot leave a sample out, so a tracker that loses a limb, or a stream that
-    loses packets, repeats the last value and then jumps. What was recorded has some jitter, so
+    loses packets, repeats the last value or a pose at rest, and then jumps. What was recorded has some jitter, so
     several parts repeat in the same frames only if they were lost. A single part may stop: it
     must jump farther than it moves from frame to frame, from a value at which it does not stop
     most of the time. What looks like a cut after the repeats is one, unless the body moves on
@@ -97,8 +103,9 @@ def find_held_samples(recording: Motion | Tracks) -> Flags:
         recording, trajectories, runs.starts[first], runs.stops[first]
     )
     is_single = np.bincount(group)[group] < MIN_PARTS
+    starts = runs.starts - _are_entered_by_a_jump(runs, group)[group]
     for run in np.flatnonzero(are_held[group] & ~(is_single & runs.at_limit)):
-        held[runs.starts[run] : runs.stops[run], runs.parts[run]] = True
+        held[starts[run] : runs.stops[run], runs.parts[run]] = True
     return held
 
 
@@ -154,7 +161,8 @@ def _runs(part: int, trajectories: Array, repeats: Flags) -> Iterator[tuple[NDAr
         starts = frames[which - 1] + 1
         yield (
             np.full(len(which), part), starts, frames[which], sizes[which], speeds[which - 1],
-            speeds[which + 1], sizes[which] / smallest, _recur(values[starts]),
+            speeds[which + 1], np.append(0.0, speeds)[which - 1], sizes[which] / smallest,
+            _recur(values[starts]),
         )  # fmt: skip
 
 
@@ -170,10 +178,9 @@ def _recur(values: Array) -> Flags:
 def _move_on(runs: _Runs, group: NDArray[np.intp]) -> Flags:
     """Return in which groups of runs with the same frames the parts moved on."""
 
-    def together(values: Array) -> Array:
-        return np.asarray(np.sqrt(np.bincount(group, values**2)))
-
-    jumps, before, after = map(together, (runs.jumps, runs.before, runs.after))
+    jumps, before, after = (
+        _together(values, group) for values in (runs.jumps, runs.before, runs.after)
+    )
     quanta = np.zeros(len(jumps))
     np.maximum.at(quanta, group, runs.quanta)
     moved = np.where(
@@ -182,6 +189,19 @@ def _move_on(runs: _Runs, group: NDArray[np.intp]) -> Flags:
         jumps >= MIN_RATIO * np.maximum(before, after),
     )
     return np.asarray(moved & (jumps >= MIN_JUMP_RAD) & (quanta >= MIN_QUANTA))
+
+
+def _are_entered_by_a_jump(runs: _Runs, group: NDArray[np.intp]) -> Flags:
+    """Return in which groups of runs the parts jumped to the repeated value, too."""
+    before, earlier, after = (
+        _together(values, group) for values in (runs.before, runs.earlier, runs.after)
+    )
+    return np.asarray(before > MIN_ENTRY_RATIO * np.maximum(earlier, after))
+
+
+def _together(values: Array, group: NDArray[np.intp]) -> Array:
+    """Return the root of the sum of squares of each group."""
+    return np.asarray(np.sqrt(np.bincount(group, np.nan_to_num(values) ** 2)))
 
 
 def _are_cuts(

@@ -97,6 +97,14 @@ def test_lost_arm_is_held_where_it_repeats(walk, arm, degrees):
     assert walk.skeleton.index("RightArm") in parts
 
 
+def test_arm_that_a_tracker_puts_into_its_rest_pose_is_held_from_the_first_frame_on(walk, arm):
+    rotations = noisy(walk, 0.3).rotations.copy()
+    rotations[LOST, arm[:3]] = [1.0, 0.0, 0.0, 0.0]
+    held = find_held_samples(walk.with_poses(rotations))
+    assert held[LOST, arm[0]].all()
+    assert not np.delete(held, range(LOST.start, LOST.stop), axis=0).any()
+
+
 @pytest.mark.parametrize("n", [2, 3])
 def test_frames_shown_several_times_are_held(walk, n):
     held = find_held_samples(repeat(walk, n))[n:-n]
