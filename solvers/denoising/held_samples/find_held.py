@@ -73,12 +73,13 @@ def find_held_samples(recording: Motion | Tracks) -> Flags:
     """Return which samples repeat the one before although the body moves on.
 
     Formats of poses cannot leave a sample out, so a tracker that loses a limb, or a stream that
-    loses packets, repeats the last value or a pose at rest, and then jumps. What was recorded has some jitter, so
-    several parts repeat in the same frames only if they were lost. A single part may stop: it
-    must jump farther than it moves from frame to frame, from a value at which it does not stop
-    most of the time. What looks like a cut after the repeats is one, unless the body moves on
-    in its direction, and not faster. Curves without jitter were keyed by hand: there poses are
-    held on purpose. Repeats at the start or the end of a take may be such a pose, and are kept.
+    loses packets, repeats the last value or a pose at rest, and then jumps. What was recorded
+    has some jitter, so several parts repeat in the same frames only if they were lost. A single
+    part may stop: it must jump farther than it moves from frame to frame, from a value at which
+    it does not stop most of the time. What looks like a cut after the repeats is one, unless
+    the body moves on in its direction, and not faster. Curves without jitter were keyed by
+    hand: there poses are held on purpose. Repeats at the start or the end of a take may be such
+    a pose, and are kept.
 
     Returns
     -------
