@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.denoising.quality.measure import measure_jitter
+from solvers.denoising.quality.jitter import measure_jitter
 from solvers.errors import SolveCancelled
 from solvers.motion import Motion, Tracks
 from solvers.progress import unwatched

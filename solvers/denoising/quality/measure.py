@@ -19,7 +19,9 @@ from ..limits import limit_excess
 from .bone_drift import BoneDrift, measure_bone_drifts
 from .figures import quality_figures
 from .foot_slide import FootPoints, FootSlide, foot_paths, measure_foot_slide, sole_paths
+from .jitter import measure_jitter
 from .joint_signals import Signal, SpikeRule, extract_signals
+from .path_jumps import PathJump, find_path_jumps
 from .report import quality_report
 
 
@@ -80,6 +82,8 @@ class Quality:
     body_held : bool, shape (n_frames,), or None
         True where most of the body repeats the frame before although it moves on; None:
         nowhere.
+    path_jumps : tuple of PathJump
+        Where the root is put elsewhere and stays.
     """
 
     names: tuple[str, ...]
@@ -92,6 +96,7 @@ class Quality:
     limit_excess: Array | None = None
     cuts: tuple[int, ...] = ()
     body_held: Flags | None = None
+    path_jumps: tuple[PathJump, ...] = ()
 
     @cached_property
     def spikes(self) -> Flags:
@@ -216,30 +221,10 @@ def measure_quality(
         limit_excess=_excess(recording, limits, humanoid_map),
         cuts=cuts,
         body_held=body_is_held(recording, held) if held.any() else None,
+        path_jumps=find_path_jumps(seen, cuts),
     )
     progress(1.0, "Measured")
     return quality
-
-
-def measure_jitter(positions: Array, frame_rate: float, cuts: tuple[int, ...] = ()) -> Array:
-    """Return the mean absolute third difference over time, shape (n_joints,), m/s^3.
-
-    Parameters
-    ----------
-    positions : shape (n_frames, n_joints, 3), meters; NaN is skipped
-    frame_rate : float, hertz
-    cuts : tuple of int
-        First frames of later segments; no difference spans a cut.
-    """
-    if len(positions) < 4:
-        return np.full(positions.shape[1], np.nan)
-    jerk = np.linalg.norm(np.diff(positions, n=3, axis=0), axis=-1) * frame_rate**3
-    for cut in cuts:
-        jerk[max(cut - 3, 0) : cut] = np.nan
-    observed = np.isfinite(jerk)
-    total = np.where(observed, jerk, 0.0).sum(axis=0)
-    count = observed.sum(axis=0)
-    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
 def _foot_slides(

@@ -12,6 +12,7 @@ from ...settings import Settings, setting
 from ...signals import find_runs
 from .joint_signals import Signal
 from .measure import Quality, measure_quality
+from .path_jumps import MIN_JUMP_M
 
 LONG_GAP_S = 0.25
 """Seconds that an animator can still bridge by eye: severity 1, by definition."""
@@ -132,6 +133,7 @@ def find_worst_issues(
     pause = round(settings.pause * quality.frame_rate)
     issues = [
         *_spikes(quality, pause),
+        *_path_jumps(quality),
         *_gaps(quality, pause),
         *_jitter(quality, settings, pause),
         *_slides(quality, settings),
@@ -164,6 +166,13 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
                 height / signal.spike_threshold,
                 sentence,
             )
+
+
+def _path_jumps(quality: Quality) -> Iterator[Issue]:
+    name = quality.names[0]
+    for frame, distance in quality.path_jumps:
+        sentence = f"{name} jumps by {100 * distance:.0f} cm and stays there."
+        yield Issue(name, frame - 1, frame + 1, "spike", distance / MIN_JUMP_M, sentence)
 
 
 def _gaps(quality: Quality, pause: int) -> Iterator[Issue]:

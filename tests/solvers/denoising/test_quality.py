@@ -8,7 +8,8 @@ from numpy.testing import assert_allclose
 
 from solvers.denoising.quality.bone_drift import measure_bone_drifts
 from solvers.denoising.quality.foot_slide import FootPoints, measure_foot_slide
-from solvers.denoising.quality.measure import QualitySettings, measure_jitter, measure_quality
+from solvers.denoising.quality.jitter import measure_jitter
+from solvers.denoising.quality.measure import QualitySettings, measure_quality
 from solvers.denoising.quality.report import compare_quality
 from solvers.errors import InvalidMotionError, InvalidSettingError, SolveCancelled
 from solvers.motion import Motion, Tracks, forward_kinematics

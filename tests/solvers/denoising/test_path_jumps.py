@@ -1,0 +1,61 @@
+"""A body that is put elsewhere in one frame is an issue; a body that leaps is none."""
+
+import numpy as np
+import pytest
+
+from solvers.denoising import find_worst_issues
+from solvers.denoising.quality.path_jumps import find_path_jumps
+from solvers.motion import Motion
+from solvers.recordings import read_acclaim
+from solvers.samples import GaitSettings, walking_gait
+
+
+@pytest.fixture(scope="module", params=[30.0, 120.0])
+def walk(request) -> Motion:
+    return walking_gait(GaitSettings(duration=2.0, frame_rate=request.param))
+
+
+def displaced(motion: Motion, frames: slice, by: tuple[float, float, float]) -> Motion:
+    positions = motion.root_positions.copy()
+    positions[frames] += by
+    return motion.with_poses(root_positions=positions)
+
+
+def test_body_that_is_put_elsewhere_is_listed(walk):
+    jump = displaced(walk, slice(40, None), (0.3, 0.0, 0.0))
+
+    (found,) = find_path_jumps(jump, ())
+    assert found.frame == 40
+    assert found.distance == pytest.approx(0.3, abs=0.02)
+    sentences = [issue.sentence for issue in find_worst_issues(jump)]
+    assert "Hips jumps by 30 cm and stays there." in sentences
+
+
+def test_spike_and_noise_are_no_jumps_of_the_path(walk, rng):
+    assert not find_path_jumps(displaced(walk, slice(40, 42), (0.3, 0.0, 0.0)), ())
+    noise = rng.normal(scale=0.005, size=walk.root_positions.shape)
+    shaken = walk.with_poses(root_positions=walk.root_positions + noise)
+    assert not find_path_jumps(shaken, ())
+
+
+def test_cut_is_no_jump_of_the_path(walk):
+    assert not find_path_jumps(displaced(walk, slice(40, None), (0.3, 0.0, 0.0)), (40,))
+
+
+@pytest.mark.parametrize("step", [1, 4])
+def test_fast_bodies_make_no_jumps(recordings, step):
+    for path in sorted((recordings / "mocap" / "hdm05").glob("*.amc"))[::10]:
+        motion = read_acclaim(path)
+        frames = slice(None, None, step)
+        motion = Motion(
+            motion.skeleton, motion.rotations[frames], motion.root_positions[frames],
+            motion.frame_rate / step,
+        )  # fmt: skip
+        assert not find_path_jumps(motion, ()), path.name
+
+
+def test_take_of_a_few_frames_is_accepted(walk):
+    assert not find_path_jumps(walk.slice(0, 3), ())
+    missing = walk.root_positions.copy()
+    missing[30:40] = np.nan
+    assert not find_path_jumps(walk.with_poses(root_positions=missing), ())
