@@ -5,13 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.denoising import (
-    DenoiseMethod,
-    DenoiseSettings,
-    denoise,
-    find_worst_issues,
-    measure_quality,
-)
+from solvers.denoising import denoise, find_worst_issues, measure_quality
 from solvers.denoising.held_samples import find_held_samples
 from solvers.motion import Motion, Tracks, forward_kinematics
 from solvers.recordings import read_recording
@@ -27,12 +21,9 @@ LOST = slice(40, 56)
 
 
 def noisy(motion: Motion, degrees: float) -> Motion:
-    vectors = np.random.default_rng(3).normal(
-        scale=np.radians(degrees), size=(*motion.rotations.shape[:2], 3)
-    )
-    return motion.with_poses(
-        multiply(motion.rotations, quaternion_from_rotation_vector(vectors))
-    )
+    vectors = np.random.default_rng(3).normal(size=(*motion.rotations.shape[:2], 3))
+    noise = quaternion_from_rotation_vector(np.radians(degrees) * vectors)
+    return motion.with_poses(multiply(motion.rotations, noise))
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +55,12 @@ def repeat(motion: Motion, n: int) -> Motion:
     return in_frames(motion, np.arange(motion.n_frames) // n * n)
 
 
+def without_four_frames(motion: Motion) -> Motion:
+    frames = np.arange(motion.n_frames)
+    frames[30:34] = 29
+    return in_frames(motion, frames)
+
+
 def at_times(motion: Motion, times: np.ndarray) -> Motion:
     """Play a motion at these times, in frames."""
     low = np.minimum(times.astype(int), motion.n_frames - 2)
@@ -93,8 +90,8 @@ def moving(motion: Motion) -> np.ndarray:
 def test_lost_arm_is_held_where_it_repeats(walk, arm, degrees):
     frames, parts = np.nonzero(find_held_samples(hold(noisy(walk, degrees), LOST, arm)))
     assert set(frames) == set(range(LOST.start, LOST.stop))
+    assert arm[0] in parts
     assert set(parts) <= set(arm)
-    assert walk.skeleton.index("RightArm") in parts
 
 
 def test_arm_that_a_tracker_puts_into_its_rest_pose_is_held_from_the_first_frame_on(walk, arm):
@@ -231,41 +228,9 @@ def test_pose_that_fills_up_a_joined_take_is_not_held(
     assert 60 + n_repeats in denoise(filled_up).cuts
 
 
-def test_clean_moves_a_lost_arm_on(walk, arm):
-    held = hold(walk, LOST, arm)
-    result = denoise(held)
-    assert result.held[LOST, arm[0]].all()
-    assert "In 16 frames the tracker repeated earlier ones" in result.prior_used
-    before, after = (
-        np.degrees(angle_between(each.rotations, walk.rotations))[LOST, arm].mean()
-        for each in (held, result.recording)
-    )
-    assert after < 0.5 * before
-    assert result.confidence[LOST, arm[0]].min() < result.confidence[:30, arm[0]].min()
-
-
-def test_strength_blends_what_was_held(walk, arm):
-    held = hold(walk, LOST, arm)
-    full, half, none = (
-        denoise(held, settings=DenoiseSettings(strength_arms=each)).recording
-        for each in (1.0, 0.5, 0.0)
-    )
-    assert angle_between(none.rotations, held.rotations)[:, arm[0]].max() < 1e-7
-    steps = np.abs(angle_between(half.rotations, held.rotations))[LOST, arm[0]]
-    at_full = np.abs(angle_between(full.rotations, held.rotations))[LOST, arm[0]]
-    np.testing.assert_allclose(steps, 0.5 * at_full, atol=np.radians(0.05))
-
-
-def test_published_method_takes_repeats_as_they_are(walk, arm):
-    settings = DenoiseSettings(method=DenoiseMethod.PUBLISHED)
-    assert not denoise(hold(walk, LOST, arm), settings=settings).held.any()
-
-
 def test_dropped_frames_are_no_cut(walk):
     """The body jumps after four repeats, as it does between two joined takes."""
-    frames = np.arange(walk.n_frames)
-    frames[30:34] = 29
-    result = denoise(in_frames(walk, frames))
+    result = denoise(without_four_frames(walk))
     assert result.cuts == ()
     assert result.held[30:34].any(axis=1).all()
 
@@ -299,9 +264,7 @@ def test_check_lists_the_arm_that_stands_still_and_the_body(walk, arm):
 
 def test_check_distinguishes_missing_from_held(walk, arm):
     """A joint that is never observed stays so in a take with dropped frames."""
-    frames = np.arange(walk.n_frames)
-    frames[30:34] = 29
-    dropped = in_frames(walk, frames)
+    dropped = without_four_frames(walk)
     rotations = dropped.rotations.copy()
     rotations[:, arm[0]] = np.nan
     issues = find_worst_issues(dropped.with_poses(rotations))
