@@ -20,9 +20,9 @@ the length of a limb's bone, so that both move its end as far."""
 MIN_JITTER_RAD = 6e-5
 """Lowest jitter of a recording, radians; most have 9e-5 to 4e-3. It guards animation that was
 keyed by hand, whose curves are smooth (`test_anticipation_between_keys_is_not_held`)."""
-MIN_PARTS = 3
-"""Number of parts above which it is no chance that they repeat in the same frames. Chosen by
-hand: an arm without fingers has 3 joints."""
+MIN_PARTS = 2
+"""Number of parts from which on it is no chance that they repeat in the same frames. Chosen by
+hand: 2 are an arm whose hand has no keys."""
 MIN_GROUP_RATIO, MIN_RATIO = 0.5, 1.5
 """Jump after the repeats of several and of single parts, as a ratio to the step after it, and
 of single ones also to the step before. They guard poses that are left by steps that grow

@@ -214,3 +214,25 @@ def test_bone_locations_get_nearer_to_the_truth(make_armature, animate, clean, r
         for name, values in truth.items()
     }
     assert len(errors) >= 15 and max(errors.values()) < 0.015
+
+
+def test_arm_that_a_tracker_held_moves_on(noisy, clean):
+    """Fifteen frames that repeat the one before are filled, and painted as filled."""
+    action, lost = noisy.animation_data.action, range(20, 35)
+    curves = action.layers[0].strips[0].channelbag(action.slots[0]).fcurves
+    arm = ('pose.bones["RightArm"]', 'pose.bones["RightForeArm"]')
+    held = [each for each in curves if each.data_path.startswith(arm)]
+    assert len(held) == 6
+    for curve in held:
+        for index in lost:
+            curve.keyframe_points[index].co.y = curve.keyframe_points[19].co.y
+        curve.update()
+
+    result = clean()
+
+    after = result.layers[0].strips[0].channelbag(result.slots[0]).fcurves
+    moved = [after.find(each.data_path, index=each.array_index) for each in held]
+    spread = [np.ptp([each.keyframe_points[index].co.y for index in lost]) for each in moved]
+    assert max(spread) > 0.02
+    painted = [each.keyframe_points[index].type for each in moved for index in lost]
+    assert painted.count("GENERATED") > 0.6 * len(painted)
