@@ -5,6 +5,7 @@ both: some words are wrong in names, where they hide what a value is, and right 
 """
 
 import ast
+import gc
 import re
 from collections.abc import Iterator
 from functools import cache
@@ -104,7 +105,11 @@ def modules(folders: tuple[str, ...]) -> Iterator[tuple[Path, ast.Module]]:
 @cache
 def parsed(folder: str) -> tuple[tuple[Path, ast.Module], ...]:
     paths = sorted((ROOT / folder).rglob("*.py"))
-    return tuple((path, ast.parse(path.read_text(encoding="utf-8"))) for path in paths)
+    gc.disable()  # it would search millions of nodes again and again
+    trees = tuple((path, ast.parse(path.read_text(encoding="utf-8"))) for path in paths)
+    gc.freeze()
+    gc.enable()
+    return trees
 
 
 def strings_of(tree: ast.Module) -> Iterator[ast.Constant]:
