@@ -53,7 +53,8 @@ def point_names(labels: Sequence[str]) -> tuple[str, ...]:
 def meters_from_unit_name(word: str) -> float | None:
     """Return the meters per unit of this name; None if the name is unknown."""
     word = word.strip().lower()
-    return METERS.get(word, METERS.get(word.removesuffix("s")))
+    is_plural = len(word) > len("ms")  # milliseconds
+    return METERS.get(word, METERS.get(word.removesuffix("s")) if is_plural else None)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # numbers that are refused later
