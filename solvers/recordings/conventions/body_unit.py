@@ -22,7 +22,7 @@ from ...motion.humanoid import (
 from ...progress import Progress, Remark
 from .axes import ADULT_REACH_M, CENTIMETER, MIN_BODY_JOINTS, longest_bone_path
 from .marker_bodies import stature_of_markers
-from .unit_estimate import describe_guessed_unit, estimate_unit
+from .unit_estimate import UNITS_OF_JOINTS, describe_guessed_unit, estimate_unit
 
 ODD_STATURE_M = (0.8, 2.6)
 """Range of statures, meters, outside which the report asks. Chosen by hand: from a small child,
@@ -59,7 +59,7 @@ def convert_to_body_unit(
         return recording
     if not size > 0.0:
         return recording
-    estimated = estimate_unit(size / unit, default=unit, is_skeleton=False)
+    estimated = estimate_unit(size / unit, UNITS_OF_JOINTS, default=unit)
     if estimated.unit == unit:
         return recording
     progress(1.0, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
