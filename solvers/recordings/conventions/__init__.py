@@ -32,7 +32,7 @@ from .body_axes import (
     rotate_to_z_up,
     stand_upright,
 )
-from .body_unit import offsets_of_body, question_of_size, stature
+from .body_unit import question_of_size, stature, unit_of_skeleton
 from .camera_bodies import is_mirrored, stand_along, up_along
 from .camera_paths import path_from_camera
 from .file_axes import (
@@ -83,7 +83,7 @@ from .time_stamps import (
     constant_rate_from_times,
 )
 from .tracked_joints import joint_recording
-from .unit_estimate import describe_guessed_unit, estimate_unit, guess_unit
+from .unit_estimate import describe_guessed_unit, guess_unit
 
 __all__ = [
     "ACCLAIM_UNIT",
@@ -120,7 +120,6 @@ __all__ = [
     "describe_lying",
     "describe_placement",
     "estimate_axes_of_points",
-    "estimate_unit",
     "estimate_up_axis",
     "estimate_up_of_joints",
     "file_conventions",
@@ -138,7 +137,6 @@ __all__ = [
     "meters_from_unit_name",
     "no_body_error",
     "observed_body",
-    "offsets_of_body",
     "other_standing_axis",
     "path_from_camera",
     "point_names",
@@ -162,6 +160,7 @@ __all__ = [
     "stand_upright",
     "stature",
     "step_between",
+    "unit_of_skeleton",
     "up_along",
     "with_axes",
     "with_conventions",

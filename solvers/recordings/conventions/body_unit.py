@@ -20,8 +20,9 @@ from ...motion.humanoid import (
     posture_positions,
 )
 from ...progress import Progress, Remark
+from .axes import ADULT_REACH_M, CENTIMETER, MIN_BODY_JOINTS, longest_bone_path
 from .marker_bodies import stature_of_markers
-from .unit_estimate import describe_guessed_unit, estimate_unit
+from .unit_estimate import UNITS_OF_JOINTS, describe_guessed_unit, estimate_unit
 
 ODD_STATURE_M = (0.8, 2.6)
 """Range of statures, meters, outside which the report asks. Chosen by hand: from a small child,
@@ -58,7 +59,7 @@ def convert_to_body_unit(
         return recording
     if not size > 0.0:
         return recording
-    estimated = estimate_unit(size / unit, default=unit, is_skeleton=False)
+    estimated = estimate_unit(size / unit, UNITS_OF_JOINTS, default=unit)
     if estimated.unit == unit:
         return recording
     progress(1.0, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
@@ -67,6 +68,37 @@ def convert_to_body_unit(
     positions = estimated.unit / unit * tracks.positions
     larger = replace(tracks, positions=positions, conventions=noted)
     return recording.with_tracks(larger)
+
+
+def unit_of_skeleton(
+    skeleton: Skeleton, progress: Progress, *, stated: float | None = None
+) -> float:
+    """Return the most probable unit of a skeleton, in meters (`estimate_unit`).
+
+    It fits the body or, where none is recognized, all joints, and is centimeters with too few
+    of them. A stated unit counts, unless a body is recognized whose size makes it improbable.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+        In the unit of the file.
+    progress : Progress
+        Receives a message if the unit is unusual or not the stated one.
+    stated : float, meters, or None
+        Unit that the file states.
+    """
+    offsets = offsets_of_body(skeleton)
+    is_body = offsets is not skeleton.offsets
+    reach = longest_bone_path(skeleton.parents, offsets)
+    is_measurable = skeleton.n_joints >= MIN_BODY_JOINTS and 0.0 < reach < np.inf
+    if stated is not None and not (is_body and is_measurable):
+        return stated
+    if not is_measurable:
+        return CENTIMETER
+    estimated = estimate_unit(reach / ADULT_REACH_M, default=stated, is_body=is_body)
+    if estimated.unit != stated and (stated is not None or estimated.has_low_confidence):
+        progress(1.0, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
+    return estimated.unit
 
 
 def offsets_of_body(skeleton: Skeleton) -> Array:

@@ -15,7 +15,7 @@ from .axes import MIN_BODY_JOINTS, z_up_from_y_up
 from .file_axes import FORWARD
 from .marker_axes import estimate_up_of_markers
 from .marker_bodies import axis_of_named_markers, stature_of_markers
-from .unit_estimate import describe_guessed_unit, estimate_unit
+from .unit_estimate import UNITS_OF_MARKERS, describe_guessed_unit, estimate_unit
 
 METERS = {
     "mm": 0.001, "millimeter": 0.001, "millimetre": 0.001, "cm": 0.01, "centimeter": 0.01,
@@ -53,7 +53,8 @@ def point_names(labels: Sequence[str]) -> tuple[str, ...]:
 def meters_from_unit_name(word: str) -> float | None:
     """Return the meters per unit of this name; None if the name is unknown."""
     word = word.strip().lower()
-    return METERS.get(word, METERS.get(word.removesuffix("s")))
+    is_plural = len(word) > len("ms")  # milliseconds
+    return METERS.get(word, METERS.get(word.removesuffix("s")) if is_plural else None)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # numbers that are refused later
@@ -62,13 +63,13 @@ def guess_unit_of_points(
 ) -> float:
     """Return the probable unit of points, in meters; report an unusual one.
 
-    Labels of head and feet show the height of the actor (`estimate_unit`). Without them, as
+    Labels of head and feet show the stature of the actor (`estimate_unit`). Without them, as
     with points of a limb, it is that of meters, centimeters and millimeters whose extent is
     nearest to a person's.
     """
     height = stature_of_markers(labels, points)
     if height is not None and 0.0 < height < np.inf:
-        estimated = estimate_unit(height / ADULT_STATURE_M, is_body=False, is_skeleton=False)
+        estimated = estimate_unit(height / ADULT_STATURE_M, UNITS_OF_MARKERS, is_body=False)
         if estimated.has_low_confidence:
             progress(0.8, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
         return estimated.unit

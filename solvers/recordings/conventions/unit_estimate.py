@@ -1,6 +1,6 @@
 """Estimate the unit of length of a file by the likelihood of the body's size."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import exp, inf, log, pi, sqrt
 from typing import NamedTuple
 
@@ -20,30 +20,41 @@ from .axes import (
 MODELED_UNITS = {CENTIMETER: 0.7, 1.0: 0.2, MILLIMETER: 0.05}
 """Prior probability, a ratio, of the units of programs that model bodies of any size. Chosen by
 hand: of 18 makers of BVH files in docs/benchmarks/importing.md, 11 write centimeters."""
-CAPTURED_UNITS = {0.0254: 0.03, 0.3048: 0.02, 0.1: 0.002}
+CAPTURED_UNITS = {0.0254: 0.03, 0.3048: 0.02, 0.1: 0.01}
 """The same, a ratio, of units in which only recordings of people are written. Chosen by hand:
-x2 for inches makes adults of children of 0.84 m in centimeters
-(`test_children_and_giants_stay_what_they_are`)."""
-SKELETON_UNITS = {ACCLAIM_UNIT: 0.08}
-"""The same, a ratio, of what only skeletons of adults are written in. By definition of the
-Acclaim format, and of the actors of CMU's and other libraries in it."""
-SCALED = 0.035
+x0.5 for inches makes children of adults of 2 m (`test_the_unit_of_an_adult_is_recognized`)."""
+UNITS_OF_JOINTS = MODELED_UNITS | CAPTURED_UNITS
+"""The same, a ratio, for tables of joints. By definition all units that programs model and
+record in."""
+UNITS_OF_SKELETONS = UNITS_OF_JOINTS | {ACCLAIM_UNIT: 0.08}
+"""The same, a ratio, for skeletons. Chosen by hand: BVH files made from Acclaim's, as those of
+CMU, are common, and only adults are in them."""
+UNITS_OF_MARKERS = {MILLIMETER: 0.7, 1.0: 0.2, CENTIMETER: 0.08, 0.0254: 0.002, 0.3048: 0.002}
+"""The same, a ratio, for markers. Chosen by hand: of 24 TRC files in
+docs/benchmarks/importing.md that state their unit, 21 have millimeters and 3 meters; x2 for
+inches makes adults of children of 0.8 m in centimeters
+(`test_who_squats_keeps_the_unit`)."""
+SCALED = 0.03
 """The same, a ratio, of a unit of its own, by which a body is scaled to an adult's size. Chosen
 by hand: x0.5 fails `test_units_of_no_program_give_an_adult_and_are_reported`, x2 makes adults
-of giants of 3.8 m."""
+of giants of 4.2 m."""
 SCALED_UNITS_M = (MILLIMETER, 2.0)
 """Range of such a unit, meters. By definition from the smallest usual unit to twice the
 largest: a person in a unit of 2 m has a height of 0.9."""
 DEFAULT = 0.6
 """Prior probability, a ratio, of the default unit of a format. Chosen by hand: 4.4 m, 2.5 times
 an adult's height, remain, and 5.7 m, an adult's in feet, do not."""
-ADULTS, CHILDREN, OTHERS = (0.9, 0.0, 0.1), (0.05, -0.43, 0.25), (0.08, 0.2, 0.6)
+ADULTS, CHILDREN = (0.9, 0.0, 0.1), (0.05, -0.43, 0.25)
 """Fraction of bodies, and mean and standard deviation of the logarithm of their size relative
-to an adult's, as ratios. Chosen by hand: lengths of nine makers' adults differ by 10 %,
-children have 0.4 to 1.0 of them, and games have giants rather than dwarfs."""
-NO_BODY = 1e-4
-"""Density, a ratio, of what is no body. It guards what is no person from any other unit than
-the likeliest (`test_no_unit_makes_a_man_of_an_ant`)."""
+to an adult's, as ratios. Chosen by hand: lengths of nine makers' adults differ by 10 %, and
+children have 0.4 to 1.0 of them."""
+OTHERS, OTHERS_SPREAD = 0.08, 0.4
+"""Fraction of animals, dolls and giants, and the mean absolute logarithm of their size relative
+to an adult's, as ratios. Chosen by hand: their density falls with |log size| as slowly as
+Laplace's, so that of units in which nothing has a usual size the nearest one is the likeliest.
+x0.5 for the spread makes adults of giants of 3.8 m, x2 dwarfs of rigs in units of 4 cm
+(`test_children_and_giants_stay_what_they_are`,
+`test_rigs_of_another_scale_get_the_size_of_an_adult`)."""
 RARE = 0.05
 """Prior, a ratio, below which a unit is reported. Chosen by hand: inches, 0.03, and rarer."""
 NEARLY_AS_LIKELY = 0.25
@@ -68,10 +79,10 @@ class UnitEstimate(NamedTuple):
 
 def estimate_unit(
     size: float,
+    units: Mapping[float, float] = UNITS_OF_SKELETONS,
     *,
     default: float | None = None,
     is_body: bool = True,
-    is_skeleton: bool = True,
 ) -> UnitEstimate:
     """Return the most probable unit of a body of a size.
 
@@ -82,20 +93,19 @@ def estimate_unit(
     ----------
     size : float
         Size of the body in units of the file, relative to that of an adult in meters.
+    units : mapping of float to float
+        Prior probability of each usual unit, in meters.
     default : float, meters, or None
         Default unit of the format.
     is_body : bool
         Whether the joints are known to be those of a person; only then the unit may be any.
-    is_skeleton : bool
-        Whether the file holds bones rather than points.
     """
     others = 1.0 if default is None else 1.0 - DEFAULT
-    known = MODELED_UNITS | CAPTURED_UNITS | (SKELETON_UNITS if is_skeleton else {})
-    priors = {unit: others * prior for unit, prior in known.items()}
+    priors = {unit: others * prior for unit, prior in units.items()}
     if default is not None:
         priors[default] = DEFAULT
     evidence = {
-        unit: prior * _density(size * unit, _groups_of(unit, default))
+        unit: prior * _density(log(size * unit), unit, default)
         for unit, prior in priors.items()
     }
     low, high = SCALED_UNITS_M
@@ -138,16 +148,13 @@ def describe_guessed_unit(unit: float, rival: float | None = None) -> str:
     )
 
 
-def _groups_of(unit: float, default: float | None) -> Sequence[tuple[float, float, float]]:
-    """Return whose bodies are written in a unit."""
-    if unit in MODELED_UNITS or unit == default:
-        return ADULTS, CHILDREN, OTHERS
-    return (ADULTS,) if unit in SKELETON_UNITS else (ADULTS, CHILDREN)
-
-
-def _density(size: float, groups: Sequence[tuple[float, float, float]]) -> float:
-    """Return the density of the logarithm of a size in groups of bodies."""
-    return NO_BODY + sum(
-        weight * exp(-0.5 * ((log(size) - mean) / spread) ** 2) / (spread * sqrt(2.0 * pi))
+def _density(log_size: float, unit: float, default: float | None) -> float:
+    """Return the density of the logarithm of the size of the bodies written in a unit."""
+    groups = (ADULTS,) if unit == ACCLAIM_UNIT else (ADULTS, CHILDREN)
+    of_people = sum(
+        weight * exp(-0.5 * ((log_size - mean) / spread) ** 2) / (spread * sqrt(2.0 * pi))
         for weight, mean, spread in groups
     )
+    if unit not in MODELED_UNITS and unit != default:
+        return of_people
+    return of_people + OTHERS * exp(-abs(log_size) / OTHERS_SPREAD) / (2.0 * OTHERS_SPREAD)

@@ -12,7 +12,7 @@ from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
 from ...progress import Progress, unwatched
 from ..containers import json_content, printable, read_bytes
-from ..conventions import Bodies, check_scale
+from ..conventions import Bodies, check_scale, meters_from_unit_name
 from ..point_bodies import coordinate_of_title, time_name
 from .json_bodies import is_frames_json, open_frames_json, stated_rates
 from .long_columns import is_frame_title, long_columns
@@ -51,6 +51,8 @@ NAMES = re.compile(
 """Member of the outermost object, or of one in it, with the names of joints."""
 FRAMES = re.compile(r"\[\s*\[\s*\[\s*-?\d")
 """Positions of joints in several frames."""
+UNIT_KEY = re.compile(r"(?i)(?:(?:length|position|coordinate|joint)s?_?)?units?")
+"""Member with the unit of length."""
 PART_OF_TITLE = re.compile(r"'([^']*)'")
 
 
@@ -87,7 +89,7 @@ def open_json_table(
     Rows may be objects with a value for each title, in a list or keyed by number; columns may
     be lists, or keyed by the number of their row; titles may be in a list of their own next to
     the rows. Names of joints may be next to an array of their positions, which has a row for
-    each frame or is flat.
+    each frame or is flat. A unit next to them, such as `"unit": "mm"`, counts.
 
     Raises
     ------
@@ -110,6 +112,7 @@ def open_json_table(
             f"{path} has no table of points. Export columns such as LeftHand_x, or the names of"
             " joints next to an array of the shape (frames, joints, 3)."
         )
+    scale = next(_stated_units(content), None) if scale is None else scale
     rate = min(stated_rates(content), default=None)
     comment = [] if rate is None else [f"# fps: {rate.rate:.10g}"]
     lines = [*comment, *map(_line, (table.titles, *table.rows))]
@@ -117,6 +120,17 @@ def open_json_table(
     return open_table(
         path, scale=scale, progress=progress, lines=[line.encode() for line in lines]
     )
+
+
+def _stated_units(value: Any) -> Iterator[float]:
+    """Yield the meters per unit in members of the outermost object, and of those in it."""
+    if not isinstance(value, Mapping):
+        return
+    for inner in (value, *(each for each in value.values() if isinstance(each, Mapping))):
+        for key, word in inner.items():
+            unit = meters_from_unit_name(word) if isinstance(word, str) else None
+            if unit is not None and UNIT_KEY.fullmatch(str(key)):
+                yield unit
 
 
 def _fits(titles: Sequence[str]) -> bool:

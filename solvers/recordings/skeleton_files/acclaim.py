@@ -3,6 +3,7 @@
 import re
 from collections import defaultdict
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ from ..conventions import (
     check_scale,
     file_conventions,
     rotations_z_up_from_y_up,
+    unit_of_skeleton,
     z_up_from_y_up,
 )
 from .acclaim_skeleton import AcclaimBone, AcclaimSkeleton, read_acclaim_skeleton
@@ -52,7 +54,8 @@ def read_acclaim(
     frame_rate : float, hertz
         AMC files do not store it. CMU and HDM05 were recorded at 120 Hz.
     scale : float, meters per unit of the files, or None
-        None: 0.0254 / `length` of the ASF file.
+        None: 0.0254 / `length` of the ASF file, unless the size of the body makes another unit
+        far more probable.
     progress : Progress
 
     Returns
@@ -199,8 +202,10 @@ def _build_motion(
 ) -> Motion:
     """Build a motion from the recorded channels, which are emptied to save memory."""
     n_frames = len(next(iter(recorded.values())))
-    scale = skeleton.unit if scale is None else scale
     names, parents, offsets = _joints(skeleton)
+    rest = Skeleton(names, parents, z_up_from_y_up(offsets))
+    if scale is None:
+        scale = unit_of_skeleton(rest, progress, stated=skeleton.stated_unit)
     rotations = np.zeros((n_frames, len(names), 4))
     rotations[..., 0] = 1.0
     root_positions = np.tile(skeleton.position, (n_frames, 1))
@@ -214,7 +219,7 @@ def _build_motion(
             for axis, letter in enumerate("xyz"):
                 root_positions[:, axis] = columns.get(f"t{letter}", root_positions[:, axis])
         progress((joint + 1) / len(skeleton.bones), "Reading")
-    rest = Skeleton(names, parents, scale * z_up_from_y_up(offsets))
+    rest = replace(rest, offsets=scale * rest.offsets)
     positions = scale * z_up_from_y_up(root_positions)
     return Motion(rest, rotations, positions, frame_rate, file_conventions("Y", unit=scale))
 

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...rotations import quaternion_from_euler
 from ..containers import read_bytes, shown
-from ..conventions import ADULT_REACH_M, estimate_unit, guess_unit, longest_bone_path
 
 INCH = 0.0254
 ROOT = "root"
@@ -43,8 +42,8 @@ class AcclaimSkeleton:
     """Rest position of the root, shape (3,)."""
     angle_unit: float
     """Radians per unit of an angle."""
-    unit: float
-    """Meters per unit of a length."""
+    stated_unit: float | None
+    """Meters per unit of a length; None if the factor of the file is not positive."""
 
 
 def read_acclaim_skeleton(path: Path | str) -> AcclaimSkeleton:
@@ -92,7 +91,7 @@ class _SkeletonFile:
                 self._refuse(f"a bone has no name or a duplicate name ({shown(name)!r})")
             bones[name] = self._bone(name, entries, angle_unit)
         ordered, parents = self._hierarchy(bones)
-        unit = self._unit(ordered, parents, units)
+        unit = self._stated_unit(units)
         return AcclaimSkeleton(tuple(ordered), tuple(parents), position, angle_unit, unit)
 
     def _entries(self) -> Iterator[dict[str, list[str]]]:
@@ -152,16 +151,10 @@ class _SkeletonFile:
             waiting.extend((child, len(ordered) - 1) for child in reversed(children))
         return ordered, parents
 
-    def _unit(
-        self, bones: list[AcclaimBone], parents: list[int], units: Mapping[str, list[str]]
-    ) -> float:
-        """Return meters per unit: inches divided by the file's factor, if that is plausible."""
-        vectors = np.array([bone.vector for bone in bones])
+    def _stated_unit(self, units: Mapping[str, list[str]]) -> float | None:
+        """Return meters per unit: inches divided by the file's factor, if that is possible."""
         factor = self._numbers(units.get("length", ["1"]), 1)[0]
-        reach = longest_bone_path(parents, vectors)
-        if factor > 0.0 and reach > 0.0:
-            return estimate_unit(reach / ADULT_REACH_M, default=INCH / factor).unit
-        return guess_unit(parents, vectors)
+        return INCH / factor if factor > 0.0 else None
 
     def _lines(self, section: str) -> Iterator[list[str]]:
         for number, words in self.sections.get(section, []):

@@ -1,6 +1,7 @@
 """Where a file of joints does not say its unit, the size of the body shows it."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from solvers.errors import MocapAssistError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.motion.humanoid import posture_joints
 from solvers.recordings import read_recording, write_joint_csv
+from solvers.recordings.conventions import stature, unit_of_skeleton
 from solvers.recordings.conventions.body_unit import convert_to_body_unit
 from solvers.recordings.conventions.tracked_joints import joint_recording
 from solvers.recordings.conventions.unit_estimate import estimate_unit
@@ -113,9 +115,41 @@ def test_joints_at_one_position_have_no_size(walk):
 
 
 def test_no_unit_makes_a_man_of_an_ant(walk):
+    """The nearest unit makes a mouse of it, and is reported."""
+    messages = KeptMessages()
     ant = walk.with_tracks(walk.tracks.with_positions(0.002 * walk.tracks.positions / 100.0))
 
-    assert convert_to_body_unit(ant, 0.001, KeptMessages()) is ant
+    assert stature(convert_to_body_unit(ant, 0.001, messages)) < 0.05
+    assert len(messages.units) == 1
+
+
+@pytest.mark.parametrize(
+    ("size", "unit"),
+    [
+        (0.13, 1.0), (0.08, 1.0), (0.1, 1.0), (0.01, 1.0), (1e-4, 1.0), (1e4, 0.001),
+        (1e6, 0.001), (5.0, 0.1),
+    ],
+)  # fmt: skip
+def test_the_nearest_unit_is_that_of_what_has_no_typical_size(size, unit):
+    """Before, a hand in meters was one of 2 mm, and 100 times a person 180 m tall."""
+    assert estimate_unit(size, is_body=False).unit == unit
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.2])
+def test_a_stated_unit_yields_to_a_body_alone_and_that_is_reported(scale):
+    messages, person = KeptMessages(), samples.walking_gait().skeleton
+    unit = 0.0254 / 0.45
+    person = replace(person, offsets=scale / unit * person.offsets)
+    n_joints = person.n_joints
+    names = tuple(f"knot{number}" for number in range(n_joints))
+    rope = replace(person, names=names, parents=(-1, *range(n_joints - 1)))
+
+    assert unit_of_skeleton(rope, messages, stated=unit) == unit
+    assert not messages.units
+    assert unit_of_skeleton(person, messages, stated=unit) == pytest.approx(
+        unit / scale, rel=0.15
+    )
+    assert len(messages.units) == (scale != 1.0)
 
 
 def test_our_own_table_counts_by_its_word_and_is_guessed_without(walk, tmp_path):

@@ -9,18 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....motion import Motion, Skeleton
-from ....progress import Progress, Remark
+from ....progress import Progress
 from ....rotations import inverse, multiply, quaternion_from_euler, rotate, rotation_between
 from ...conventions import (
-    ADULT_REACH_M,
-    CENTIMETER,
-    MIN_BODY_JOINTS,
-    describe_guessed_unit,
-    estimate_unit,
     file_conventions,
-    longest_bone_path,
-    offsets_of_body,
     rotations_z_up_from_y_up,
+    unit_of_skeleton,
     z_up_from_y_up,
 )
 from .hierarchy import BvhJoint
@@ -202,23 +196,10 @@ def motion_from_poses(
     names = tuple(joint.name for joint in joints)
     skeleton = Skeleton(names, parents, z_up_from_y_up(poses.offsets))
     if scale is None:
-        scale = _estimated_unit(skeleton, progress)
+        scale = unit_of_skeleton(skeleton, progress)
     skeleton = replace(skeleton, offsets=scale * skeleton.offsets)
     noted = replace(file_conventions("Y", unit=scale), offset_added=poses.offset_added)
     return Motion(skeleton, poses.rotations, scale * poses.root, frame_rate, noted)
-
-
-def _estimated_unit(skeleton: Skeleton, progress: Progress) -> float:
-    """Return the unit that fits the body, or otherwise all joints; report an unusual one."""
-    offsets = offsets_of_body(skeleton)
-    reach = longest_bone_path(skeleton.parents, offsets)
-    if skeleton.n_joints < MIN_BODY_JOINTS or not reach > 0.0:
-        return CENTIMETER
-    is_body = offsets is not skeleton.offsets
-    estimated = estimate_unit(reach / ADULT_REACH_M, is_body=is_body)
-    if estimated.has_low_confidence:
-        progress(1.0, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
-    return estimated.unit
 
 
 def _median_position(positions: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -64,7 +64,7 @@ def read_bvh(
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
-        None: estimated from the length of the bones (`axes.guess_unit`): centimeters for most
+        None: estimated from the length of the bones (`unit_of_skeleton`): centimeters for most
         files, 0.0254 / 0.45 for those made from CMU's library.
     up : "X", "Y", "Z", "-X", "-Y", "-Z" or None
         None estimates it from the body (`estimate_up_axis`): Y, as the format has it, unless

@@ -139,6 +139,23 @@ def test_an_array_next_to_names_has_these(read_any, walk, key, shape):
     assert_is(read_any(json.dumps(value)), walk)
 
 
+@pytest.mark.parametrize(
+    "unit", [{"unit": "cm"}, {"meta": {"units": "Centimeters"}}, {"length_unit": "cm"}]
+)
+def test_a_unit_next_to_names_counts(read_any, walk, unit):
+    """Before, such a giant was scaled to an adult."""
+    value = {"fps": RATE_HZ, "joint_names": NAMES, **unit, "data": (500.0 * walk).tolist()}
+
+    assert_is(read_any(json.dumps(value)), 5.0 * walk)
+    assert_is(read_any(json.dumps(value), scale=0.002), walk)
+
+
+def test_a_unit_of_time_is_none_of_length(read_any, walk):
+    value = {"fps": RATE_HZ, "joint_names": NAMES, "unit": "ms", "data": (1e3 * walk).tolist()}
+
+    assert_is(read_any(json.dumps(value)), walk)
+
+
 @pytest.mark.parametrize("inner", ["skeleton", "meta"])
 @pytest.mark.parametrize("key", ["positions", "frames", "motion"])
 def test_names_may_be_next_to_the_rate_in_another_member(read_any, walk, inner, key):

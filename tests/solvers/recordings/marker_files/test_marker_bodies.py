@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from solvers.motion import Tracks
+from solvers.progress import unwatched
 from solvers.recordings import read_recording
-from solvers.recordings.conventions import question_of_size
+from solvers.recordings.conventions import guess_unit_of_points, question_of_size
+from solvers.recordings.conventions.marker_bodies import stature_of_markers
 from solvers.recordings.conventions.points import other_standing_axis
 
 MARKERS = {
@@ -89,6 +91,45 @@ def test_size_of_a_person_in_any_pose_is_no_question():
 
     assert not question_of_size(Tracks(tuple(MARKERS), WALK, 100.0))
     assert not question_of_size(Tracks(tuple(MARKERS), crouching, 100.0))
+
+
+SQUAT = MARKERS | {
+    "LFHD": (0.1, -0.1, 0.8), "RFHD": (-0.1, -0.1, 0.8), "C7": (0, 0.05, 0.68),
+    "LSHO": (0.2, 0, 0.65), "RSHO": (-0.2, 0, 0.65), "LASI": (0.12, 0.15, 0.25),
+    "RASI": (-0.12, 0.15, 0.25), "LKNE": (0.15, -0.3, 0.5), "RKNE": (-0.15, -0.3, 0.5),
+}  # fmt: skip
+"""The same actor, who squats: the head is 0.8 m high."""
+
+
+@pytest.mark.parametrize("unit", [0.001, 0.01, 1.0])
+@pytest.mark.parametrize("size", [1.0, 0.8, 0.6, 0.45])
+def test_who_squats_keeps_the_unit(unit, size):
+    """Before, such adults in millimeters were ten times too large, and children inches."""
+    points = np.repeat(size / unit * np.array([*SQUAT.values()])[None], 3, axis=0)
+
+    assert guess_unit_of_points(points, [*SQUAT], unwatched) == unit
+    assert stature_of_markers([*SQUAT], unit * points) == pytest.approx(1.8 * size, rel=0.05)
+
+
+@pytest.mark.parametrize("unit", [0.001, 1.0])
+def test_who_squats_without_markers_on_the_legs_keeps_the_unit(unit):
+    names = [name for name in SQUAT if name[1:] not in {"KNE", "ASI"}]
+    points = np.repeat(np.array([SQUAT[name] for name in names])[None] / unit, 3, axis=0)
+
+    assert guess_unit_of_points(points, names, unwatched) == unit
+
+
+@pytest.mark.parametrize("size", [1.0, 0.6, 0.4])
+def test_a_dog_in_millimeters_is_no_horse(size, collected_messages):
+    messages, collect = collected_messages
+    dog = {
+        "Head": (0.45, 0, 0.55), "LFoot": (-0.3, 0.07, 0.02), "RFoot": (-0.3, -0.07, 0.02),
+        "LHip": (-0.25, 0.05, 0.4), "RHip": (-0.25, -0.05, 0.4), "Tail": (-0.45, 0, 0.45),
+    }  # fmt: skip
+    points = 1000.0 * size * np.repeat(np.array([*dog.values()])[None], 3, axis=0)
+
+    assert guess_unit_of_points(points, [*dog], collect) == 0.001
+    assert not messages
 
 
 def test_size_of_markers_of_real_files_is_a_person_s(recordings):

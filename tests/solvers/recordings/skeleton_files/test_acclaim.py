@@ -83,6 +83,15 @@ def test_bones_become_joints_where_they_start(read):
     assert_allclose(arm.skeleton.rest_positions, rest, atol=1e-12)
 
 
+@pytest.mark.parametrize("length", [1, 10, 1000])
+def test_a_prop_has_its_stated_size(read, length):
+    """Before, one of 8 cm became as tall as a man."""
+    arm = read(skeleton=SKELETON.replace("length 10\n", f"length {length}\n"))
+
+    assert_allclose(arm.skeleton.rest_positions[2, 0], length * UNIT)
+    assert arm.conventions.unit == UNIT
+
+
 def test_turns_are_about_the_axes_of_each_bone(read):
     """By hand: C = Rz(90) Rx(90) puts X of `upper` along Y, and Z of it along X."""
     arm = read(scale=UNIT)
