@@ -18,7 +18,7 @@ from .takes import Take, has_people, keyed_take, numbered_take, take_of, with_ra
 NAMES = ("name", "Name")
 TIME = "time"
 ROOT = "path of the body"
-"""Key of the positions of the body in all frames, whatever the file calls them."""
+"""Key of the member with the positions of the body in all frames, by their own key."""
 
 
 def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[JsonMember]:
@@ -85,7 +85,7 @@ def _of_positions(positions: Mapping[str, list[Any]], path: Path | str) -> Itera
     take = keyed_take(positions, path)
     yield from _by_number("", take, 0.0, path)
     if not take and (key := key_of_root(positions)):
-        yield JsonMember(ROOT, positions[key], 1.0)
+        yield JsonMember(ROOT, {key: positions[key]}, 1.0)
 
 
 def _with_own_names(
