@@ -52,7 +52,13 @@ from .floor import (
     put_on_floor,
     question_of_floor,
 )
-from .frame_numbers import FRAME_KEY, MAX_PEOPLE, rate_of_numbers, step_between
+from .frame_numbers import (
+    FRAME_KEY,
+    MAX_PEOPLE,
+    are_frame_numbers,
+    rate_of_numbers,
+    step_between,
+)
 from .points import (
     METERS,
     axes_of_points,
@@ -105,6 +111,7 @@ __all__ = [
     "MarkerSubject",
     "UpAxis",
     "UpAxisName",
+    "are_frame_numbers",
     "axes_of_points",
     "bodies_of_frames",
     "bodies_of_joints",

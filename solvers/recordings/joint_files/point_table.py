@@ -33,6 +33,7 @@ from ..point_bodies import (
     completed_times,
     coordinate_of_title,
     groups_by_suffix,
+    is_frame_title,
     names_of_positions,
     numbered_axes,
     over_midnight,
@@ -40,7 +41,7 @@ from ..point_bodies import (
     time_name,
     without_letter,
 )
-from .long_columns import is_frame_title, number_of_frame
+from .long_columns import number_of_frame
 from .points_recording import recording_of_points, refuse_other_points
 from .table_titles import (
     MAX_TITLE_LINES,

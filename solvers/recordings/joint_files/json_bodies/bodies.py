@@ -148,7 +148,7 @@ def roots_of(body: str, frames: list[BodiesFrame], progress: Progress) -> Array 
     if key is None:
         return None
     missing = np.full((4, 4), np.nan)
-    roots = np.stack([missing if root is None else root.transform for root in found])
+    roots: Array = np.stack([missing if root is None else root.transform for root in found])
     roots[:, :3, 3], limited = path_from_camera(key, roots[:, :3, 3])
     if limited:
         progress(0.1, limited)

@@ -261,9 +261,7 @@ def _roots_of(values: Mapping[str, list[Any]]) -> list[StatedRoot | None]:
     ]
 
 
-def _with_roots(
-    frames: list[BodiesFrame], roots: list[StatedRoot | None]
-) -> list[BodiesFrame]:
+def _with_roots(frames: list[BodiesFrame], roots: list[StatedRoot | None]) -> list[BodiesFrame]:
     """Return frames with the place of a person who is alone, if there is one for each."""
     if len(roots) != len(frames) or len({who for frame in frames for who in frame.bodies}) > 1:
         return frames
