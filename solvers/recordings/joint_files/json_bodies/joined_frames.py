@@ -92,8 +92,8 @@ def joined_frames(
     }
     bodies = {key: rows for key, rows in found.items() if not has_word(key, PART.fullmatch)}
     found = bodies or found
-    places = {key: rows for key, rows in found.items() if not _is_quantity(key)}
-    found = places or found
+    positions = {key: rows for key, rows in found.items() if not _is_quantity(key)}
+    found = positions or found
     longest = min(
         found, key=lambda key: (-_n_observed(found[key]), rank_of_array(key)), default=""
     )

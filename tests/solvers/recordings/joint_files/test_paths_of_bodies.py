@@ -71,7 +71,7 @@ def test_the_camera_of_a_cropped_picture_is_no_path(read_any, relative, walk, ne
 
 
 @pytest.mark.parametrize("nest", ["frames", "take"])
-def test_a_path_away_from_the_camera_is_judged_as_one(
+def test_a_path_away_from_the_camera_is_one_path(
     make_reader, collected_messages, walk, relative, nest
 ):
     """Before, frames on both sides of 25 m were judged each by itself: a jump of 25 m."""
