@@ -54,6 +54,7 @@ from .floor import (
 )
 from .frame_numbers import (
     FRAME_KEY,
+    IMAGE,
     MAX_PEOPLE,
     are_frame_numbers,
     rate_of_numbers,
@@ -98,6 +99,7 @@ __all__ = [
     "CENTIMETER",
     "DEFAULT_FRAME_RATE",
     "FRAME_KEY",
+    "IMAGE",
     "MAX_PEOPLE",
     "MAX_TIME_S",
     "METERS",

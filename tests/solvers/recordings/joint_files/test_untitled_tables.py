@@ -6,6 +6,7 @@ import pytest
 from solvers.errors import InvalidFileError
 from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics
 from solvers.motion.skeletons.point_layouts import LAYOUTS
+from solvers.recordings.conventions import are_frame_numbers
 from solvers.samples import walking_gait
 
 F, RATE_HZ = 40, 25.0
@@ -56,6 +57,35 @@ def test_numbers_of_frames_are_no_seconds(read_any, body):
     recording = read_any("\n".join(lines))
 
     assert (recording.n_frames, recording.frame_rate) == (F, 20.0)
+
+
+@pytest.mark.parametrize(("step", "rate"), [(1, 20.0), (2, 15.0), (5, 6.0), (20, 50.0)])
+def test_small_steps_are_those_of_frames(read_any, body, step, rate):
+    """Before, numbers two apart were milliseconds, 500 Hz. SMPL has 20 Hz by default."""
+    lines = [
+        f"{step * k} " + " ".join(f"{x:.5f}" for x in frame.flat)
+        for k, frame in enumerate(body)
+    ]
+
+    recording = read_any("\n".join(lines))
+
+    assert (recording.n_frames, recording.frame_rate) == (F, pytest.approx(rate))
+
+
+@pytest.mark.parametrize(
+    ("numbers", "are_frames"),
+    [
+        ([0, 2, 4, 6], True),
+        ([7, 8, 9, 30, 31], True),
+        ([0, 16, 33, 50, 66], False),
+        ([0, 1, 17, 33, 50], False),
+        ([0, 4, 8, 12, 17], False),
+        ([1577836800, 1577836801, 1577836802], False),
+        ([0.0, 0.5, 1.0], False),
+    ],
+)
+def test_milliseconds_and_seconds_are_no_numbers_of_frames(numbers, are_frames):
+    assert are_frame_numbers(numbers) == are_frames
 
 
 def test_numbers_of_no_body_are_refused(read_any, rng):
