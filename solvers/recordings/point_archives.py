@@ -11,15 +11,8 @@ from ..progress import Progress, unwatched
 from .containers import archive_names, read_archive_members, read_archive_words
 from .conventions import Bodies, check_scale, common_rate, path_from_camera
 from .numpy_files import Stated, open_points
-from .point_bodies import NAMES_OF_ROOT, name_of_root, transforms_at
+from .point_bodies import NAMES_OF_ROOT, POINT_MEMBERS, name_of_root, transforms_at
 
-POINT_MEMBERS = (
-    "positions", "joints", "joint_positions", "joints3d", "joints_3d", "keypoints3d",
-    "keypoints_3d", "kps3d", "pose3d", "pose_3d", "poses3d", "poses_3d", "points3d",
-    "points_3d", "pose_world_landmarks", "world_landmarks", "landmarks", "pred_xyz_jts", "xyz",
-    "points", "keypoints", "kpts", "reconstruction", "predictions", "arr_0",
-)  # fmt: skip
-"""Names of joints in archives, the clear ones first."""
 RATE_MEMBERS = ("fps", "frame_rate", "framerate", "mocap_frame_rate", "mocap_framerate")
 """Names of frames per second in archives."""
 NAME_MEMBERS = (

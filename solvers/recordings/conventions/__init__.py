@@ -52,7 +52,14 @@ from .floor import (
     put_on_floor,
     question_of_floor,
 )
-from .frame_numbers import FRAME_KEY, MAX_PEOPLE, rate_of_numbers, step_between
+from .frame_numbers import (
+    FRAME_KEY,
+    IMAGE,
+    MAX_PEOPLE,
+    are_frame_numbers,
+    rate_of_numbers,
+    step_between,
+)
 from .points import (
     METERS,
     axes_of_points,
@@ -92,6 +99,7 @@ __all__ = [
     "CENTIMETER",
     "DEFAULT_FRAME_RATE",
     "FRAME_KEY",
+    "IMAGE",
     "MAX_PEOPLE",
     "MAX_TIME_S",
     "METERS",
@@ -105,6 +113,7 @@ __all__ = [
     "MarkerSubject",
     "UpAxis",
     "UpAxisName",
+    "are_frame_numbers",
     "axes_of_points",
     "bodies_of_frames",
     "bodies_of_joints",

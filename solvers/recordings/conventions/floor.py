@@ -135,12 +135,13 @@ def _lowest(recording: Motion | Tracks | JointRecording) -> Array:
 def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
     """Whether height 0 is not a measured floor.
 
-    This holds for depth cameras and video models: the hips are the origin, and the feet hang
-    below. It also holds where an upright actor is far below height 0 in most frames.
+    This holds for depth cameras and video models, unless their format has a floor: the hips are
+    the origin, and the feet hang below. It also holds where an upright actor of a motion is far
+    below height 0 in most frames.
     """
-    if not conventions_of(recording).has_floor or isinstance(recording, JointRecording):
+    if not conventions_of(recording).has_floor:
         return True
-    if isinstance(recording, Tracks):
+    if not isinstance(recording, Motion):
         return False
     names = {name.lower() for name in recording.skeleton.names}
     if any(names.issuperset(family) for family in NO_FLOOR):

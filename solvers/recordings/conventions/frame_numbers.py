@@ -17,6 +17,12 @@ FRAME_KEY = re.compile(
 MAX_PEOPLE = 16
 """Number of people without names or identities in a frame, above which they are frames. It
 guards frames that are called `body_0000` and so on; a stream has as many people."""
+MAX_FRAME_STEP = 8.0
+"""Typical step between whole numbers from which they are milliseconds. By definition of the
+unit: a frame of 125 Hz lasts as long; files with every eighth frame are rare."""
+MAX_FRAME_NUMBER = 1e8
+"""Number of a frame from which it is a time of a clock. It guards seconds since 1970, 1.7e9;
+frames of 240 Hz reach it after five days."""
 MAX_ROUNDING = 1e-6
 """Difference of a ratio of numbers to a whole one. It bounds the rounding of numbers with
 fractions."""
@@ -32,6 +38,21 @@ def step_between(numbers: Sequence[float]) -> float:
     step = min(steps, default=1.0)
     errors = [abs(each / step - float(np.rint(each / step))) for each in steps]
     return step if all(error < MAX_ROUNDING for error in errors) else 0.0
+
+
+def are_frame_numbers(numbers: Sequence[float]) -> bool:
+    """Return whether numbers in order count frames; otherwise they are times in some unit.
+
+    They are whole ones, each a multiple of the smallest step away from the next, and mostly few
+    apart. Milliseconds have larger steps, which differ by rounding.
+    """
+    known = np.unique(numbers)
+    if not np.isfinite(known).all() or (known % 1.0).any():
+        return False
+    if len(known) < 2:
+        return True
+    is_small = np.median(np.diff(known)) < MAX_FRAME_STEP and known[-1] < MAX_FRAME_NUMBER
+    return bool(is_small) and step_between(known.tolist()) > 0.0
 
 
 def rate_of_numbers(numbers: Sequence[float], rate: float, progress: Progress) -> float:

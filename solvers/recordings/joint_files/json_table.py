@@ -4,25 +4,22 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import Any
 
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Tracks
 from ...progress import Progress, unwatched
 from ..containers import json_content, printable, read_bytes
 from ..conventions import Bodies, check_scale, meters_from_unit_name
-from ..point_bodies import coordinate_of_title, time_name
+from ..point_bodies import coordinate_of_title, is_frame_title, time_name
 from .json_bodies import is_frames_json, open_frames_json, stated_rates
-from .long_columns import is_frame_title, long_columns
+from .long_columns import long_columns
 from .long_table import open_long_table
 from .point_table import has_points, open_point_table
+from .table_rows import INDEX, TitledRows, named_arrays, with_index
 
 HEAD_BYTES = 4096
 """Bytes by which formats are detected, by definition those of `formats`."""
-MIN_NAMES = 8
-"""Number of names of joints. It guards lists of other words."""
 MAX_CELLS = 1 << 24
 """Cells of a table, above which half must be in the file. It bounds the memory of files whose
 rows have other titles each."""
@@ -30,7 +27,7 @@ STRING = re.compile(r'"((?:[^"\\]|\\.){0,200})"')
 KEY = re.compile(STRING.pattern + r"\s*:")
 RECORD = re.compile(
     r"\s*(?:\[\s*|\{[^{}]*\"\w+\"\s*:\s*\[\s*|\{\s*\"schema\".*?\"data\"\s*:\s*\[\s*"
-    r"|\{\s*\"\d+\"\s*:\s*)?\{([^{}\[\]]+)",
+    r"|\{\s*\"\d[^\"]*\"\s*:\s*)?\{([^{}\[\]]+)",
     re.DOTALL,
 )
 """Titles and values of the first row, where each row has them."""
@@ -42,6 +39,8 @@ COLUMN = re.compile(
     + r"|\[(?:\s*(?:-?\d[^,\[\]{}]*|null)\s*,){4})"
 )
 """Title of a column whose values are listed, or keyed by the number of their row."""
+STAMPS = re.compile(r"\s*\{\s*" + STRING.pattern + r"\s*:\s*\{\s*\"\d[^\"]*\"\s*:\s*[-\d\"n]")
+"""Title of the first column, where its values are keyed so; those of others are far away."""
 NAMES = re.compile(
     r"(?i)\s*\{(?:[^\[\]{}]|\{[^\[\]{}]*\}|\[[^\[\]{}]*\])*"
     r"(?:\{(?:[^\[\]{}]|\[[^\[\]{}]*\])*)?"
@@ -56,13 +55,6 @@ UNIT_KEY = re.compile(r"(?i)(?:(?:length|position|coordinate|joint)s?_?)?units?"
 PART_OF_TITLE = re.compile(r"'([^']*)'")
 
 
-class _Table(NamedTuple):
-    """Titles, and cells of each row."""
-
-    titles: list[str]
-    rows: Sequence[Sequence[Any]]
-
-
 def is_json_table(head: bytes) -> bool:
     """Return whether a file is a table in JSON that names points, from its first bytes."""
     if head.lstrip()[:1] not in {b"{", b"["}:
@@ -73,6 +65,8 @@ def is_json_table(head: bytes) -> bool:
         found = (STRING if pattern is SPLIT else KEY).findall(match[1]) if match else []
         if _fits([_title(each) for each in found]) or _fits(_joined(found)):
             return True
+    if (stamps := STAMPS.match(text)) and _is_stamp(_title(stamps[1])):
+        return True
     titles = [_title(each) for each in COLUMN.findall(text)]
     is_first = bool(titles) and text.lstrip().startswith(("{", '{"'))
     if is_first and any(map(_is_column, titles)):
@@ -112,6 +106,8 @@ def open_json_table(
             f"{path} has no table of points. Export columns such as LeftHand_x, or the names of"
             " joints next to an array of the shape (frames, joints, 3)."
         )
+    if table.remark is not None:
+        progress(0.1, table.remark)
     scale = next(_stated_units(content), None) if scale is None else scale
     rate = min(stated_rates(content), default=None)
     comment = [] if rate is None else [f"# fps: {rate.rate:.10g}"]
@@ -137,6 +133,10 @@ def _fits(titles: Sequence[str]) -> bool:
     return has_points(titles) or long_columns(titles) is not None
 
 
+def _is_stamp(title: str) -> bool:
+    return time_name(title) is not None or is_frame_title(title)
+
+
 def _is_column(title: str) -> bool:
     return coordinate_of_title(title) is not None
 
@@ -154,7 +154,7 @@ def _joined(words: Sequence[str]) -> list[str]:
     return [f"{name}_{axis}" for name, axis in zip(words[::2], words[1::2], strict=False)]
 
 
-def _tables(value: Any) -> Iterator[_Table]:
+def _tables(value: Any) -> Iterator[TitledRows]:
     """Yield what a value may be as a table."""
     if isinstance(value, list):
         yield from _of_records(value)
@@ -162,11 +162,12 @@ def _tables(value: Any) -> Iterator[_Table]:
         return
     lists = dict(_lists(value))
     if "columns" in lists and "data" in lists:
-        yield _Table([*map(_title, lists["columns"])], lists["data"])
+        titled = TitledRows([*map(_title, lists["columns"])], lists["data"])
+        yield with_index(titled, lists.get("index", ()))
     for listed in lists.values():
-        yield from _of_records(listed)
+        yield from _of_records(listed, title=_title_of_index(value))
     inner = (each for each in value.values() if isinstance(each, Mapping))
-    yield from _of_names([*_lists(value), *chain.from_iterable(map(_lists, inner))])
+    yield from named_arrays([*_lists(value), *chain.from_iterable(map(_lists, inner))])
     nested = {key: each for key, each in value.items() if isinstance(each, Mapping)}
     yield from _of_columns({key: dict(enumerate(each)) for key, each in lists.items()})
     yield from _of_columns(nested)
@@ -175,23 +176,32 @@ def _tables(value: Any) -> Iterator[_Table]:
         yield from _tables({key: inner for key, inner in each.items() if key not in nested})
 
 
-def _of_records(values: list[Any], index: Sequence[str] = ()) -> Iterator[_Table]:
+def _title_of_index(value: Mapping[str, Any]) -> str:
+    """Return the title of the index that the schema of pandas names."""
+    schema = value.get("schema")
+    keys = schema.get("primaryKey") if isinstance(schema, Mapping) else None
+    return str(keys[0]) if isinstance(keys, list) and len(keys) == 1 else INDEX
+
+
+def _of_records(
+    values: list[Any], index: Sequence[str] = (), title: str = INDEX
+) -> Iterator[TitledRows]:
     if not values or not all(isinstance(each, Mapping) for each in values):
         return
     titles = [*dict.fromkeys(key for each in values for key in each)]
     if _is_sparse(values, titles):
         return
     rows = [[each.get(title) for title in titles] for each in values]
-    yield _with_index(_Table([*map(_title, titles)], rows), index)
+    yield with_index(TitledRows([*map(_title, titles)], rows), index, title)
 
 
-def _of_columns(columns: Mapping[str, Mapping[Any, Any]]) -> Iterator[_Table]:
+def _of_columns(columns: Mapping[str, Mapping[Any, Any]]) -> Iterator[TitledRows]:
     """Yield columns of which each has its values by the keys of the rows."""
     index = [*dict.fromkeys(key for each in columns.values() for key in each)]
     if not columns or _is_sparse(columns.values(), index):
         return
     rows = [[each.get(key) for each in columns.values()] for key in index]
-    yield _with_index(_Table([*map(_title, columns)], rows), [*map(str, index)])
+    yield with_index(TitledRows([*map(_title, columns)], rows), index)
 
 
 def _is_sparse(values: Collection[Mapping[Any, Any]], keys: Sequence[Any]) -> bool:
@@ -200,51 +210,8 @@ def _is_sparse(values: Collection[Mapping[Any, Any]], keys: Sequence[Any]) -> bo
     return n_cells > MAX_CELLS and n_cells > 2 * sum(map(len, values))
 
 
-def _with_index(table: _Table, index: Sequence[str]) -> _Table:
-    """Return a table with a column of the times in the keys of its rows, if it has no other."""
-    has_time = any(time_name(each) or is_frame_title(each) for each in table.titles)
-    is_counted = all(key == str(count) for count, key in enumerate(index))
-    if has_time or is_counted or long_columns(table.titles):
-        return table
-    title = "frame" if all(map(str.isdigit, index)) else "time"
-    rows = [[key, *row] for key, row in zip(index, table.rows, strict=True)]
-    return _Table([title, *table.titles], rows)
-
-
 def _lists(value: Mapping[str, Any]) -> Iterator[tuple[str, list[Any]]]:
     return ((key, each) for key, each in value.items() if isinstance(each, list) and each)
-
-
-def _of_names(lists: Sequence[tuple[str, list[Any]]]) -> Iterator[_Table]:
-    """Yield arrays of positions with the names of their joints."""
-    for _, names in lists:
-        is_listed = len({*map(str, names)}) == len(names) >= MIN_NAMES
-        if not is_listed or not all(isinstance(each, str) for each in names):
-            continue
-        titles = [f"{_title(name)}_{axis}" for name in names for axis in "xyz"]
-        for _, values in lists:
-            rows = _rows_of(values, len(names))
-            times = next((each for key, each in lists if time_name(key)), None)
-            if rows is None:
-                continue
-            if times is not None and len(times) == len(rows):
-                timed = [[time, *row] for time, row in zip(times, rows, strict=True)]
-                yield _Table(["time", *titles], timed)
-            yield _Table(titles, rows)
-
-
-def _rows_of(values: list[Any], n_joints: int) -> list[Any] | None:
-    """Return the coordinates of each frame; None for other values."""
-    try:
-        array = np.array(values, dtype=np.float64)
-    except (ValueError, TypeError, OverflowError):
-        return None
-    if array.shape[1:] not in {(n_joints, 3), (3 * n_joints,), ()}:
-        return None
-    if array.size == 0 or array.size % (3 * n_joints):
-        return None
-    rows: list[Any] = array.reshape(-1, 3 * n_joints).tolist()
-    return rows
 
 
 def _line(cells: Iterable[Any]) -> str:

@@ -5,10 +5,16 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from ..containers import NUMBER, is_missing
-from ..point_bodies import TimeCells, TimeName, column_of_times, is_quantity, time_name
+from ..point_bodies import (
+    TimeCells,
+    TimeName,
+    column_of_times,
+    is_frame_title,
+    is_quantity,
+    time_name,
+)
 
 _NUMBER = r"(?:[_ ]?(?:id|index|idx|number|num|no|nr))"
-FRAME = re.compile(rf"(?:video[_ ]?)?(?:frame|image|img){_NUMBER}?s?")
 JOINT = re.compile(
     r"(?P<kind>(?:(?:body|skeleton|tracked)[_ ]?)?"
     r"(?:joint|landmark|key[_ ]?point|point|marker|bone)|body[_ ]?part|part|name"
@@ -76,7 +82,7 @@ def long_columns(
     """
     lower = [UNIT.sub("", title).strip().lower().replace(" ", "_") for title in titles]
     time = column_of_times(titles)
-    frame = next((at for at, title in enumerate(lower) if FRAME.fullmatch(title)), None)
+    frame = next((at for at, title in enumerate(lower) if is_frame_title(title)), None)
     joint = _joint_column(lower)
     axes = _axes(lower)
     if joint is None or not axes or (frame is None and time is None):
@@ -92,11 +98,6 @@ def long_columns(
         frame, time, times, joint, person, identity, axes, confidence,
         "landmark" in lower[joint], others,
     )  # fmt: skip
-
-
-def is_frame_title(title: str) -> bool:
-    """Return whether a column with this title has the numbers of frames."""
-    return FRAME.fullmatch(title.strip().lower().replace(" ", "_").strip("#_")) is not None
 
 
 def number_of_frame(cell: bytes) -> bytes:

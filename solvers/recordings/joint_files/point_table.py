@@ -15,6 +15,7 @@ from ..conventions import (
     DEFAULT_FRAME_RATE,
     Bodies,
     MarkerSubject,
+    are_frame_numbers,
     check_scale,
     meters_from_unit_name,
     observed_body,
@@ -33,6 +34,7 @@ from ..point_bodies import (
     completed_times,
     coordinate_of_title,
     groups_by_suffix,
+    is_frame_title,
     names_of_positions,
     numbered_axes,
     over_midnight,
@@ -40,7 +42,7 @@ from ..point_bodies import (
     time_name,
     without_letter,
 )
-from .long_columns import is_frame_title, number_of_frame
+from .long_columns import number_of_frame
 from .points_recording import recording_of_points, refuse_other_points
 from .table_titles import (
     MAX_TITLE_LINES,
@@ -139,7 +141,7 @@ def open_point_table(
         rows = rows[: columns.times.n_frames(rows[:, columns.time])]
     times = None if columns.time is None else _times(rows[:, columns.time], columns, progress)
     points = rows[:, columns.positions.astype(int)]
-    if times is None and header.rate is not None:
+    if times is None:
         times = _numbered_times(rows, columns, header.rate, progress)
     unit = columns.unit if scale is None else scale
     people = _people(columns.names, points, progress) if np.isfinite(points).any() else []
@@ -172,13 +174,23 @@ def _times(times: Array, columns: _Columns, progress: Progress) -> Array | None:
     return completed_times(over_midnight(times * second), progress)
 
 
-def _numbered_times(rows: Array, columns: _Columns, rate: float, progress: Progress) -> Array:
-    """Return the times of frames, seconds, by their numbers if these increase."""
+def _numbered_times(
+    rows: Array, columns: _Columns, rate: float | None, progress: Progress
+) -> Array | None:
+    """Return the times of frames, seconds, by their numbers if these increase.
+
+    Without a rate it is None, unless the numbers leave some out.
+    """
     counted = np.arange(len(rows), dtype=np.float64)
-    if columns.frame is None or len(rows) < 2:
-        return counted / rate
-    numbers = rows[:, columns.frame]
-    if not (np.diff(numbers) >= 1.0).all():
+    numbers = counted if columns.frame is None else rows[:, columns.frame]
+    is_increasing = len(rows) > 1 and bool((np.diff(numbers) >= 1.0).all())
+    if rate is None:
+        is_gapless = not is_increasing or bool((np.diff(numbers) == 1.0).all())
+        if is_gapless or not are_frame_numbers(numbers.tolist()):
+            return None
+        rate = DEFAULT_FRAME_RATE
+        progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
+    if not is_increasing:
         return counted / rate
     step = step_between(numbers.tolist()) or 1.0
     return np.asarray(

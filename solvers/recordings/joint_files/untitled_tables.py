@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from itertools import chain, product
 
-import numpy as np
-
 from ..containers import NUMBER, SPACE, find_separator, is_missing
+from ..conventions import are_frame_numbers
 from ..point_bodies import has_layout, is_increasing
 from .table_titles import MIN_POINTS, N_SAMPLED_LINES, TableTitles, cells_of_line
 
@@ -26,7 +25,7 @@ def numbered_titles(lines: Sequence[bytes]) -> TableTitles | None:
     for n_values, above in product((3, 4), stamps):
         n_joints, rest = divmod(width - len(above), n_values)
         is_counted = all(is_increasing(column, cells) for column in range(len(above)))
-        is_counted &= above != ("time",) or not _are_numbers_of_frames(cells)
+        is_counted &= above != ("time",) or not _are_numbered(cells)
         if rest == 0 and n_joints >= MIN_POINTS and has_layout(n_joints) and is_counted:
             axes = [
                 f"{joint}_{axis}" for joint in range(n_joints) for axis in "xyzc"[:n_values]
@@ -35,10 +34,11 @@ def numbered_titles(lines: Sequence[bytes]) -> TableTitles | None:
     return None
 
 
-def _are_numbers_of_frames(rows: Sequence[Sequence[str]]) -> bool:
-    """Return whether the first cells are whole numbers, most of them one apart."""
-    numbers = [float(row[0]) if row[0].isdigit() else np.nan for row in rows]
-    return bool(np.median(np.diff(numbers)) == 1.0) if len(numbers) > 1 else False
+def _are_numbered(rows: Sequence[Sequence[str]]) -> bool:
+    """Return whether the first cells are the numbers of frames."""
+    first = [row[0] for row in rows]
+    is_number = len(first) > 1 and all(map(str.isdigit, first))
+    return is_number and are_frame_numbers([*map(float, first)])
 
 
 def _is_numeric(cell: str) -> bool:

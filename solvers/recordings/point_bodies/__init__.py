@@ -1,5 +1,7 @@
 """Recognize the body in points of any program, by names, bones or the number of points."""
 
+from .array_names import POINT_MEMBERS, is_other_array, rank_of_array
+from .frame_titles import is_frame_title
 from .landmark_recording import as_fractions, recording_from_landmarks
 from .mediapipe_landmarks import (
     HIPS,
@@ -9,7 +11,7 @@ from .mediapipe_landmarks import (
     landmark_columns,
     with_computed_joints,
 )
-from .named_points import are_joints, body_of_named_points, missing_limbs
+from .named_points import are_joints, body_of_named_points, missing_limbs, n_known_names
 from .point_arrays import (
     body_of_points,
     points_of_array,
@@ -52,6 +54,7 @@ __all__ = [
     "LANDMARK_JOINTS",
     "NAMES_OF_ROOT",
     "N_POINTS",
+    "POINT_MEMBERS",
     "Coordinate",
     "TimeCells",
     "TimeName",
@@ -65,17 +68,21 @@ __all__ = [
     "groups_by_suffix",
     "has_layout",
     "in_room",
+    "is_frame_title",
     "is_increasing",
+    "is_other_array",
     "is_quantity",
     "is_world",
     "key_of_root",
     "landmark_columns",
     "missing_limbs",
+    "n_known_names",
     "name_of_root",
     "names_of_positions",
     "numbered_axes",
     "over_midnight",
     "points_of_array",
+    "rank_of_array",
     "read_body",
     "read_time",
     "recording_from_landmarks",

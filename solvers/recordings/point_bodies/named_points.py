@@ -124,6 +124,11 @@ def are_joints(names: Sequence[str]) -> bool:
     )
 
 
+def n_known_names(names: Sequence[str]) -> int:
+    """Return how many of these names are those of joints of a body."""
+    return max(len(_roles(names)), len(_keypoints(without_prefix(names))))
+
+
 def without_prefix(names: Sequence[str]) -> list[str]:
     """Return names without the words that all begin with, such as `body_`, but for a side."""
     first, last = min(names, default=""), max(names, default="")

@@ -9,7 +9,15 @@ from solvers.errors import InvalidFileError
 from solvers.motion import JointRecording, Sensor
 from solvers.motion.humanoid.names import roles_by_name
 from solvers.motion.skeletons.mediapipe import BODY_POINTS
-from solvers.recordings import read_freemocap, read_recording, read_ui_prmd, read_ui_prmd_pair
+from solvers.recordings import (
+    FloorPlacement,
+    read_as,
+    read_freemocap,
+    read_recording,
+    read_ui_prmd,
+    read_ui_prmd_pair,
+)
+from solvers.recordings.conventions import conventions_of
 
 NOSE, LEFT_WRIST, RIGHT_WRIST, ANKLES = 0, 15, 16, (27, 28)
 TRIPLE = [NOSE, LEFT_WRIST, RIGHT_WRIST]
@@ -50,6 +58,18 @@ def test_every_ui_prmd_take_stands_upright_with_left_on_the_left(recordings):
         to_left = default["LUpArm"] - default["RUpArm"]
         assert default["Head"][2] > default["Waist"][2] > default["LFoot"][2], path
         assert np.cross((0, 0, 1), forward) @ to_left > 0, path
+
+
+def test_the_measured_floor_of_ui_prmd_is_kept(write):
+    """Before, the lowest joints of a take were put on the floor: it was moved by 3 to 7 cm."""
+    kinect, markers = np.ones((40, 22, 3)), np.ones((40, 39, 3))
+    kinect[..., 2] = np.linspace(0.3, 1.8, 22)
+    path = write(npz(kinect=kinect, markers=markers, unit_m=1.0, frame_rate=30.0))
+
+    settled = read_as(path, floor=FloorPlacement.AUTO)
+
+    assert_allclose(settled.tracks.positions, kinect)
+    assert conventions_of(settled).has_floor
 
 
 def test_ui_prmd_at_the_origin_is_not_observed(write):

@@ -11,7 +11,7 @@ from .bodies import (
     point,
     stacked,
 )
-from .people import is_frames_json, people_of_frame
+from .people import is_frames_json, is_no_position, people_of_frame
 from .points import position_of
 from .pose_estimators import is_frame_json, open_frames_json
 from .stamps import stated_rates, time_of_frame
@@ -21,6 +21,7 @@ __all__ = [
     "BodyJoints",
     "is_frame_json",
     "is_frames_json",
+    "is_no_position",
     "json_frames",
     "listed",
     "name_of_body",

@@ -16,9 +16,19 @@ from ...conventions import (
     Bodies,
     bodies_of_frames,
     no_body_error,
+    path_from_camera,
     recorded_seconds,
 )
 from ...point_bodies import as_fractions
+
+
+class StatedRoot(NamedTuple):
+    """Where a person is in one frame, next to the joints."""
+
+    key: str
+    """Of the member that states it."""
+    transform: Array
+    """Shape (4, 4), which joints may be relative to."""
 
 
 class BodyJoints(NamedTuple):
@@ -30,8 +40,7 @@ class BodyJoints(NamedTuple):
     """Shape (n_joints,), NaN where the file has none."""
     names: tuple[str, ...] = ()
     """Of the joints, where they may be others in each frame; otherwise empty."""
-    root: Array | None = None
-    """Transform of the body, shape (4, 4), which joints may be relative to."""
+    root: StatedRoot | None = None
 
 
 class BodiesFrame(NamedTuple):
@@ -128,13 +137,22 @@ def stacked(body: str, frames: list[BodiesFrame]) -> tuple[Array, Array | None]:
     return positions, as_fractions(confidence, positions)
 
 
-def roots_of(body: str, frames: list[BodiesFrame]) -> Array | None:
-    """Return the transforms of a body, (n_frames, 4, 4), NaN where missing, or None."""
+def roots_of(body: str, frames: list[BodiesFrame], progress: Progress) -> Array | None:
+    """Return the transforms of a body, (n_frames, 4, 4), NaN where missing, or None.
+
+    What is known of a path that is relative to a camera follows from all frames
+    (`path_from_camera`); `progress` receives what is left out.
+    """
     found = [frame.bodies[body].root if body in frame.bodies else None for frame in frames]
-    if all(root is None for root in found):
+    key = next((root.key for root in found if root is not None), None)
+    if key is None:
         return None
     missing = np.full((4, 4), np.nan)
-    return np.asarray(np.stack([missing if root is None else root for root in found]))
+    roots: Array = np.stack([missing if root is None else root.transform for root in found])
+    roots[:, :3, 3], limited = path_from_camera(key, roots[:, :3, 3])
+    if limited:
+        progress(0.1, limited)
+    return roots
 
 
 def name_of_body(body: Mapping[str, Any], keys: tuple[str, ...], count: int) -> str:

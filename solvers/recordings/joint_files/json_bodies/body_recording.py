@@ -102,7 +102,7 @@ def recording_of_body(
         marks = np.dstack([points, visibility])[:, landmarks]
         return recording_from_landmarks(path, marks, times, rate, scale, progress)
     found = body_of_named_points(names, points) if is_named else None
-    roots = roots_of(body, frames)
+    roots = roots_of(body, frames, progress)
     if found is None:
         unnamed = body_of_points(path, points)
         if unnamed is not None:

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 from ....errors import InvalidFileError
 from ...containers import JsonMember
 from ...conventions import MAX_PEOPLE, step_between
-from ...point_bodies import time_name
+from ...point_bodies import is_other_array, rank_of_array, time_name
 from .bodies import BodiesFrame, BodyJoints
-from .people import PART, PEOPLE_KEYS, POINT_KEYS, has_word
+from .people import PART, PEOPLE_KEYS, POINT_KEYS, has_word, is_no_position
 from .stamps import NUMBER_KEYS
 
 MAX_MISSING_FRAMES = 100_000
@@ -78,9 +78,10 @@ def joined_frames(
     """Return the frames of all people of a file.
 
     Members with frames each are people, unless they are called as data of one person
-    (`WORDS_OF_DATA`): then the longest is taken. Of members with one frame each, those are the
-    frames, or people. People of one frame may have a row each (`_by_stamp`); frames that are
-    left out by their number are added without people.
+    (`WORDS_OF_DATA`): then the longest is taken, of those the best (`rank_of_array`). Those
+    called as other quantities, such as rotations, are left out next to others. Of members with
+    one frame each, those are the frames, or people. People of one frame may have a row each
+    (`_by_stamp`); frames that are left out by their number are added without people.
 
     Raises InvalidFileError if very many frames are left out.
     """
@@ -91,7 +92,11 @@ def joined_frames(
     }
     bodies = {key: rows for key, rows in found.items() if not has_word(key, PART.fullmatch)}
     found = bodies or found
-    longest = max(found, key=lambda key: _n_observed(found[key]), default="")
+    positions = {key: rows for key, rows in found.items() if not _is_quantity(key)}
+    found = positions or found
+    longest = min(
+        found, key=lambda key: (-_n_observed(found[key]), rank_of_array(key)), default=""
+    )
     if len(found.get(longest, ())) > 1:
         people = {
             key: rows for key, rows in found.items() if len(rows) > 1 and not _is_data(key)
@@ -103,6 +108,10 @@ def joined_frames(
     if n_numbered <= MAX_PEOPLE and all(map(NAME_OF_PERSON.fullmatch, found)):
         return _of_several(found, path)
     return _of_one([row for rows in found.values() for row in rows], path)
+
+
+def _is_quantity(key: str) -> bool:
+    return is_no_position(key) or is_other_array(key)
 
 
 def _is_data(key: str) -> bool:

@@ -10,6 +10,7 @@ from ...containers import JsonMember
 from ...conventions import FRAME_KEY
 from ...point_bodies import key_of_root
 from .bodies import name_of_body
+from .cameras import by_camera, with_cameras
 from .joined_frames import missing_before
 from .people import IDENTITY_KEYS, PEOPLE_KEYS, POINT_KEYS, is_no_position, is_position
 from .stamps import RATE_KEYS
@@ -18,7 +19,7 @@ from .takes import Take, has_people, keyed_take, numbered_take, take_of, with_ra
 NAMES = ("name", "Name")
 TIME = "time"
 ROOT = "path of the body"
-"""Key of the positions of the body in all frames, whatever the file calls them."""
+"""Key of the member with the positions of the body in all frames, by their own key."""
 
 
 def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[JsonMember]:
@@ -38,7 +39,7 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
     numbered: dict[str, Any] = {}
     groups: list[tuple[str, dict[str, Take]]] = []
     yielded = set()
-    for key, group in groupby(members, lambda member: member.key):
+    for key, group in groupby(with_cameras(members, path), lambda member: member.key):
         first, rest = _with_nulls(group)
         value = first[-1].value
         if key and value is not None and is_position(value):
@@ -58,7 +59,7 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
         if second is not None:
             yield second
         yield from rest
-    for camera, frames in _by_camera(numbered).items():
+    for camera, frames in by_camera(numbered).items():
         groups.append(("", _people_of(frames, path) or {camera: numbered_take(frames)}))
     yield from _of_positions(positions, path)
     takes = _with_own_names(groups, yielded)
@@ -68,24 +69,12 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
         yield from _by_number(name, take, start, path)
 
 
-def _by_camera(numbered: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return frames by what is before their numbers, if these repeat: several cameras."""
-    keys = {key: match for key in numbered if (match := FRAME_KEY.fullmatch(key))}
-    if len({float(match[1]) for match in keys.values()}) == len(keys):
-        return {"": dict(numbered)}
-    found: dict[str, dict[str, Any]] = {}
-    for key, match in keys.items():
-        camera = key[: match.start(1)].strip(" /\\_-.")
-        found.setdefault(camera, {})[key] = numbered[key]
-    return found
-
-
 def _of_positions(positions: Mapping[str, list[Any]], path: Path | str) -> Iterator[JsonMember]:
     """Yield the frames of joints by their positions, or else where the body is in them."""
     take = keyed_take(positions, path)
     yield from _by_number("", take, 0.0, path)
     if not take and (key := key_of_root(positions)):
-        yield JsonMember(ROOT, positions[key], 1.0)
+        yield JsonMember(ROOT, {key: positions[key]}, 1.0)
 
 
 def _with_own_names(

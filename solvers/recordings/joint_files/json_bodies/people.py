@@ -5,10 +5,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
 from typing import Any, NamedTuple
 
-from ....arrays import Array
-from ...conventions import path_from_camera
 from ...point_bodies import is_quantity, key_of_root
-from .bodies import name_of_body
+from .bodies import StatedRoot, name_of_body
 from .points import (
     LANDMARK_KEYS,
     MIN_JOINTS,
@@ -105,8 +103,7 @@ class JsonPerson(NamedTuple):
     points: Points
     is_identified: bool = True
     """Whether the file says who it is; otherwise it is a place in a list."""
-    root: Array | None = None
-    """Transform of the person, shape (4, 4), which joints may be relative to."""
+    root: StatedRoot | None = None
 
 
 def is_frames_json(head: bytes) -> bool:
@@ -150,13 +147,11 @@ def _people_of_scene(frame: Mapping[str, Any]) -> Iterator[JsonPerson]:
             yield from people_of_frame(inner)
 
 
-def _root_of(body: Mapping[str, Any]) -> Array | None:
-    """Return the transform of a person next to the joints; None if it is not stated."""
+def _root_of(body: Mapping[str, Any]) -> StatedRoot | None:
+    """Return where a person is, next to the joints; None if it is not stated."""
     key = key_of_root(map(str, body))
     transform = None if key is None else transform_of(body.get(key))
-    if key is not None and transform is not None:
-        transform[:3, 3] = path_from_camera(key, transform[:3, 3])[0]
-    return transform
+    return None if key is None or transform is None else StatedRoot(key, transform)
 
 
 def _listed_people(values: list[Any], key: str, identity: str) -> Iterator[JsonPerson]:

@@ -28,7 +28,7 @@ from ...point_bodies import (
     second_of_times,
     time_name,
 )
-from .bodies import BodiesFrame, BodyJoints, open_frames
+from .bodies import BodiesFrame, BodyJoints, StatedRoot, open_frames
 from .body_recording import in_columns, recording_of_body
 from .joined_frames import (
     NumberedFrame,
@@ -161,7 +161,7 @@ def _read_content(
     second: float | None = None
     names: list[str] = []
     times: list[float] = []
-    roots: list[Array | None] = []
+    roots: list[StatedRoot | None] = []
     n_several = 0
     for member in json_by_frame(without_header(members), path):
         value = member.value
@@ -172,7 +172,7 @@ def _read_content(
             times.append(time)
             continue
         if member.key == ROOT:
-            roots = [transform_of(position) for position in value]
+            roots = _roots_of(value)
             continue
         people = [*people_of_frame(value, member.key)]
         n_several += sum(not person.is_identified for person in people) > 1
@@ -252,8 +252,17 @@ def _timed(frames: list[BodiesFrame], times: list[float]) -> list[BodiesFrame]:
     return [frame._replace(time=time) for frame, time in zip(frames, times, strict=True)]
 
 
-def _with_roots(frames: list[BodiesFrame], roots: list[Array | None]) -> list[BodiesFrame]:
-    """Return frames with the transforms of a person who is alone, if there is one for each."""
+def _roots_of(values: Mapping[str, list[Any]]) -> list[StatedRoot | None]:
+    """Return where the body is in each frame, by the key of its positions."""
+    return [
+        None if (transform := transform_of(position)) is None else StatedRoot(key, transform)
+        for key, positions in values.items()
+        for position in positions
+    ]
+
+
+def _with_roots(frames: list[BodiesFrame], roots: list[StatedRoot | None]) -> list[BodiesFrame]:
+    """Return frames with the place of a person who is alone, if there is one for each."""
     if len(roots) != len(frames) or len({who for frame in frames for who in frame.bodies}) > 1:
         return frames
     return [

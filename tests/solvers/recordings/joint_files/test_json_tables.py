@@ -1,4 +1,4 @@
-"""Tables are read from JSON, and without titles, as those with titles in text are."""
+"""Tables are read from JSON as those with titles in text are."""
 
 import json
 
@@ -7,17 +7,9 @@ import pytest
 
 from solvers.errors import InvalidFileError
 from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics
-from solvers.motion.skeletons.point_layouts import LAYOUTS
 from solvers.samples import walking_gait
 
 F, RATE_HZ = 40, 25.0
-SMPL = (
-    "hips", "leftUpperLeg", "rightUpperLeg", "spine", "leftLowerLeg", "rightLowerLeg", "chest",
-    "leftFoot", "rightFoot", "upperChest", "leftToes", "rightToes", "neck", "leftShoulder",
-    "rightShoulder", "head", "leftUpperArm", "rightUpperArm", "leftLowerArm", "rightLowerArm",
-    "leftHand", "rightHand",
-)  # fmt: skip
-"""Roles in the order of SMPL."""
 ROLES = {
     "LeftArm": "leftUpperArm", "LeftForeArm": "leftLowerArm", "LeftHand": "leftHand",
     "LeftUpLeg": "leftUpperLeg", "LeftLeg": "leftLowerLeg", "LeftFoot": "leftFoot",
@@ -109,6 +101,108 @@ def test_times_in_the_index_are_times(read_any, walk, records):
     assert_is(read_any(json.dumps(columns)), walk)
 
 
+def as_index(records, keys, orient):
+    """Return records with an index in an orient of pandas."""
+    rows = [{k: v for k, v in each.items() if k != "time"} for each in records]
+    pairs = [*zip(keys, rows, strict=True)]
+    titles = [*rows[0]]
+    return {
+        "columns": lambda: {title: {key: row[title] for key, row in pairs} for title in titles},
+        "index": lambda: dict(pairs),
+        "split": lambda: {"columns": titles, "index": [key for key, _ in pairs],
+                          "data": [[*row.values()] for row in rows]},
+        "table": lambda: {"schema": {"fields": [{"name": "when"}], "primaryKey": ["when"]},
+                          "data": [{"when": key, **row} for key, row in pairs]},
+        "records": lambda: [{"index": key, **row} for key, row in pairs],
+    }[orient]()  # fmt: skip
+
+
+@pytest.mark.parametrize("orient", ["columns", "index", "split", "table", "records"])
+@pytest.mark.parametrize(
+    ("key", "rate"),
+    [
+        (lambda k: str(1577836800000 + int(40 * k)), RATE_HZ),
+        (lambda k: str(25 * k), 40.0),
+        (lambda k: f"2020-01-01T00:00:0{k / RATE_HZ:.3f}Z", RATE_HZ),
+        (lambda k: str(100 + k), 30.0),
+    ],
+    ids=["epoch", "ms", "date", "frames"],
+)
+def test_the_index_of_rows_is_a_time_or_a_number(read_any, walk, records, orient, key, rate):
+    """Before, whole milliseconds were numbers of frames, and some orients had no index."""
+    content = as_index(records, map(key, range(F)), orient)
+
+    assert_is(read_any(json.dumps(content)), walk, rate)
+
+
+@pytest.mark.parametrize("orient", ["columns", "index", "split"])
+def test_rows_are_in_the_order_of_their_index(read_any, walk, records, orient):
+    """Before, keys in the order of texts (0, 1, 10, 11) made the actor jump."""
+    order = sorted(range(F), key=str)
+    content = as_index([records[k] for k in order], map(str, order), orient)
+
+    assert_is(read_any(json.dumps(content)), walk, 30.0)
+
+
+def test_an_index_that_restarts_changes_nothing(read_any, walk, records):
+    content = as_index(records, [k % 20 for k in range(F)], "split")
+
+    assert_is(read_any(json.dumps(content)), walk, 30.0)
+
+
+def test_columns_of_a_table_with_a_line_for_each_joint(read_any, walk):
+    """Before, it was of an unknown format: the first column fills the begin of the file."""
+    rows = [(k, name, *p) for k, frame in enumerate(walk.tolist())
+            for name, p in zip(NAMES, frame, strict=True)]  # fmt: skip
+    columns = zip(("frame", "joint", *"xyz"), zip(*rows, strict=True), strict=True)
+    content = {title: dict(enumerate(cells)) for title, cells in columns}
+
+    assert_is(read_any(json.dumps(content)), walk, 30.0)
+
+
+@pytest.mark.parametrize(
+    ("other", "remark"),
+    [
+        ({"timestamps": [k / 60.0 for k in range(72)]}, ""),
+        ({"rest": [0.5] * 36}, ""),
+        ({"tPose": [[[0.5] * 3] * 12]}, ""),
+        ({"rotations": [[[0.5] * 3] * 12] * F}, ""),
+        ({"velocities": [[0.5] * 36] * F}, ""),
+        ({"root_offsets": [0.5] * 36}, ""),
+        ({"counts": [1] * 36}, ""),
+        ({"bone_names": [f"bone{k}" for k in range(12)]}, ""),
+        ({"local_positions": [[[0.5] * 3] * 12] * F}, "world_positions, and not from local_po"),
+        ({"landmarks": [[[0.5] * 3] * 12] * F}, "world_positions, and not from landmarks"),
+    ],
+    ids=lambda value: next(iter(value), "") if isinstance(value, dict) else "",
+)
+def test_other_arrays_next_to_names_are_no_positions(
+    make_reader, collected_messages, walk, other, remark
+):
+    """Before, the first array of a fitting size was taken, whatever its key."""
+    content = {"fps": RATE_HZ, "joint_names": NAMES, **other, "world_positions": walk.tolist()}
+    text = json.dumps(content, sort_keys=True)
+    messages, progress = collected_messages
+
+    assert_is(make_reader("take.json")(text, progress=progress), walk)
+
+    assert remark in next((each for each in messages if "Positions are read" in each), "")
+
+
+@pytest.mark.parametrize("other", ["rotations", "local_positions", "rest_pose"])
+def test_arrays_of_frames_are_chosen_by_their_keys(read_any, walk, other):
+    """With names at the end, the file is one of frames; before, the first array was taken."""
+    content = {"fps": RATE_HZ, other: (walk / 2.0).tolist(), "positions": walk.tolist()}
+
+    assert_is(read_any(json.dumps({**content, "joint_names": NAMES})), walk)
+
+
+def test_times_next_to_an_array_keep_their_unit(read_any, walk):
+    content = {"joint_names": NAMES, "time_us": [20000 * k for k in range(F)]}
+
+    assert_is(read_any(json.dumps({**content, "data": walk.tolist()})), walk, 50.0)
+
+
 def test_titles_of_two_levels_are_joined(read_any, walk, records):
     columns = [["time", ""], *([name, axis] for name in NAMES for axis in "xyz")]
     rows = [[*each.values()] for each in records]
@@ -186,49 +280,3 @@ def test_rows_with_other_titles_each_use_no_memory(read_any, monkeypatch):
 
     with pytest.raises(InvalidFileError, match="has no table of points"):
         read_any(json.dumps(columns))
-
-
-@pytest.mark.parametrize("above", [[], ["time"], ["frame", "time"]])
-@pytest.mark.parametrize("confidence", [False, True])
-def test_numbers_of_a_known_order_need_no_titles(read_any, above, confidence):
-    """Before, they were refused for the lack of titles."""
-    motion = walking_gait()
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    order = [roles[role] for role in SMPL]
-    body = forward_kinematics(motion).positions[:F, order]
-    if confidence:
-        body = np.concatenate([body, np.ones((*body.shape[:2], 1))], axis=-1)
-    stamps = {"frame": str, "time": lambda k: str(k / RATE_HZ)}
-    lines = [
-        ",".join([*(stamps[each](k) for each in above), *(f"{x:.5f}" for x in frame.flat)])
-        for k, frame in enumerate(body)
-    ]
-
-    recording = read_any("\n".join(lines))
-
-    assert isinstance(recording, JointRecording)
-    assert recording.frame_rate == (RATE_HZ if above else 20.0)
-    assert recording.names == LAYOUTS["SMPL"]
-    sizes = [np.ptp(each[..., 2]) for each in (recording.tracks.positions, body)]
-    assert sizes[0] == pytest.approx(sizes[1], abs=1e-3)
-
-
-def test_numbers_of_frames_are_no_seconds(read_any):
-    """As in UTKinect: without titles, the first cell counts the frames from any number."""
-    motion = walking_gait()
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    body = forward_kinematics(motion).positions[:F, [roles[role] for role in SMPL]]
-    lines = [
-        f"{250 + k} " + " ".join(f"{x:.5f}" for x in frame.flat) for k, frame in enumerate(body)
-    ]
-
-    recording = read_any("\n".join(lines))
-
-    assert (recording.n_frames, recording.frame_rate) == (F, 20.0)
-
-
-def test_numbers_of_no_body_are_refused(read_any, rng):
-    lines = [",".join(f"{x:.4f}" for x in row) for row in rng.normal(size=(20, 51))]
-
-    with pytest.raises(InvalidFileError, match=r"form no body in a known order.*LeftHand_x"):
-        read_any("\n".join(lines))

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.motion import find_humanoid_map, forward_kinematics, roles_by_name
+from solvers.recordings.conventions.camera_paths import CROPPED
 from solvers.samples import walking_gait
 
 F = 40
@@ -67,6 +68,26 @@ def test_the_camera_of_a_cropped_picture_is_no_path(read_any, relative, walk, ne
     content = json.dumps({"fps": 30, "frames": frames}) if nest == "json" else buffer.getvalue()
 
     check(read_any(content), relative)
+
+
+@pytest.mark.parametrize("nest", ["frames", "take"])
+def test_a_path_away_from_the_camera_is_one_path(
+    make_reader, collected_messages, walk, relative, nest
+):
+    """Before, frames on both sides of 25 m were judged each by itself: a jump of 25 m."""
+    path = walk[:, 0] + np.linspace((0.0, 0.0, 22.0), (0.0, 0.0, 29.0), F)
+    points, stated = relative.tolist(), path.tolist()
+    content = {
+        "frames": {"frames": [{"joints3d": p, "pred_cam_t": r}
+                              for p, r in zip(points, stated, strict=True)]},
+        "take": {"joints3d": points, "pred_cam_t": stated},
+    }  # fmt: skip
+    messages, progress = collected_messages
+    read = make_reader("take.json")
+
+    check(read(json.dumps({"fps": 30, **content[nest]}), progress=progress), relative)
+
+    assert CROPPED in messages
 
 
 def test_a_person_with_arrays_states_the_path(read_any, walk, relative):

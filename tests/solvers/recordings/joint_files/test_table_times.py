@@ -37,6 +37,29 @@ def test_frames_without_times_are_kept(read_any, known):
     assert_has_all_frames(recording)
 
 
+@pytest.mark.parametrize(
+    ("number", "rate", "n_frames"),
+    [
+        (lambda k: k, 30.0, F),
+        (lambda k: 2 * k, 15.0, F),
+        (lambda k: k + 10 * (k > 20), 30.0, F + 10),
+        (lambda k: k % 50, 30.0, F),
+        (lambda k: 20 * k, 30.0, F),
+    ],
+    ids=["all", "each second", "a gap", "restarting", "milliseconds"],
+)
+def test_numbers_of_frames_tell_which_are_there(
+    make_reader, collected_messages, number, rate, n_frames
+):
+    """Before, they counted only in files that state their rate."""
+    messages, progress = collected_messages
+    content = table({"frame": lambda k: str(number(k))})
+
+    assert_has_all_frames(make_reader("a.csv")(content, progress=progress), rate, n_frames)
+
+    assert "The file has no times; 30 Hz is assumed" in messages
+
+
 def test_one_time_is_no_rate(read_any):
     recording = read_any(table({"time": lambda k: seconds(k) if k == 3 else ""}))
 

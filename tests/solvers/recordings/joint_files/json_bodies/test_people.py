@@ -194,6 +194,33 @@ def test_pictures_of_several_cameras_are_takes_to_choose_from(tmp_path, two, key
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("key", "names"),
+    [
+        ("frame_{k}_cam_{c}", ("cam_0", "cam_1")),
+        ("cam_{c}_frame_{k}", ("cam_0", "cam_1")),
+        ("{k:06}/cam{c}.jpg", ("cam0", "cam1")),
+    ],
+)
+def test_numbered_cameras_are_takes_to_choose_from(tmp_path, two, key, names):
+    """Before, one body alternated between the cameras, or frames replaced each other."""
+    path = write(tmp_path, {key.format(c=c, k=k): two(c, k) for k in range(F) for c in (0, 1)})
+
+    bodies = list_bodies(path)
+
+    assert tuple((each.name, each.n_frames) for each in bodies) == tuple(
+        (name, F) for name in names
+    )
+
+
+def test_dates_of_frames_are_no_cameras(tmp_path, two):
+    key = "2024-01-01T00:{:02}:{:02}Z".format
+    path = write(tmp_path, {key(k // 20, k % 20): two(0, k) for k in range(F)})
+
+    assert list_bodies(path) == ()
+    assert read_recording(path).tracks.n_frames == F
+
+
 def write(folder, content):
     path = folder / "take.json"
     path.write_text(json.dumps(content))

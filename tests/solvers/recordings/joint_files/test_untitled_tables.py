@@ -1,0 +1,95 @@
+"""Tables of numbers without titles are read where these are a known order of joints."""
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidFileError
+from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics
+from solvers.motion.skeletons.point_layouts import LAYOUTS
+from solvers.recordings.conventions import are_frame_numbers
+from solvers.samples import walking_gait
+
+F, RATE_HZ = 40, 25.0
+SMPL = (
+    "hips", "leftUpperLeg", "rightUpperLeg", "spine", "leftLowerLeg", "rightLowerLeg", "chest",
+    "leftFoot", "rightFoot", "upperChest", "leftToes", "rightToes", "neck", "leftShoulder",
+    "rightShoulder", "head", "leftUpperArm", "rightUpperArm", "leftLowerArm", "rightLowerArm",
+    "leftHand", "rightHand",
+)  # fmt: skip
+"""Roles in the order of SMPL."""
+
+
+@pytest.fixture(scope="module")
+def body():
+    """Positions of the joints of SMPL, shape (F, 22, 3), meters."""
+    motion = walking_gait()
+    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    return forward_kinematics(motion).positions[:F, [roles[role] for role in SMPL]]
+
+
+@pytest.mark.parametrize("above", [[], ["time"], ["frame", "time"]])
+@pytest.mark.parametrize("confidence", [False, True])
+def test_numbers_of_a_known_order_need_no_titles(read_any, body, above, confidence):
+    """Before, they were refused for the lack of titles."""
+    if confidence:
+        body = np.concatenate([body, np.ones((*body.shape[:2], 1))], axis=-1)
+    stamps = {"frame": str, "time": lambda k: str(k / RATE_HZ)}
+    lines = [
+        ",".join([*(stamps[each](k) for each in above), *(f"{x:.5f}" for x in frame.flat)])
+        for k, frame in enumerate(body)
+    ]
+
+    recording = read_any("\n".join(lines))
+
+    assert isinstance(recording, JointRecording)
+    assert recording.frame_rate == (RATE_HZ if above else 20.0)
+    assert recording.names == LAYOUTS["SMPL"]
+    sizes = [np.ptp(each[..., 2]) for each in (recording.tracks.positions, body)]
+    assert sizes[0] == pytest.approx(sizes[1], abs=1e-3)
+
+
+def test_numbers_of_frames_are_no_seconds(read_any, body):
+    """As in UTKinect: without titles, the first cell counts the frames from any number."""
+    lines = [
+        f"{250 + k} " + " ".join(f"{x:.5f}" for x in frame.flat) for k, frame in enumerate(body)
+    ]
+
+    recording = read_any("\n".join(lines))
+
+    assert (recording.n_frames, recording.frame_rate) == (F, 20.0)
+
+
+@pytest.mark.parametrize(("step", "rate"), [(1, 20.0), (2, 15.0), (5, 6.0), (20, 50.0)])
+def test_small_steps_are_those_of_frames(read_any, body, step, rate):
+    """Before, numbers two apart were milliseconds, 500 Hz. SMPL has 20 Hz by default."""
+    lines = [
+        f"{step * k} " + " ".join(f"{x:.5f}" for x in frame.flat)
+        for k, frame in enumerate(body)
+    ]
+
+    recording = read_any("\n".join(lines))
+
+    assert (recording.n_frames, recording.frame_rate) == (F, pytest.approx(rate))
+
+
+@pytest.mark.parametrize(
+    ("numbers", "are_frames"),
+    [
+        ([0, 2, 4, 6], True),
+        ([7, 8, 9, 30, 31], True),
+        ([0, 16, 33, 50, 66], False),
+        ([0, 1, 17, 33, 50], False),
+        ([0, 4, 8, 12, 17], False),
+        ([1577836800, 1577836801, 1577836802], False),
+        ([0.0, 0.5, 1.0], False),
+    ],
+)
+def test_milliseconds_and_seconds_are_no_numbers_of_frames(numbers, are_frames):
+    assert are_frame_numbers(numbers) == are_frames
+
+
+def test_numbers_of_no_body_are_refused(read_any, rng):
+    lines = [",".join(f"{x:.4f}" for x in row) for row in rng.normal(size=(20, 51))]
+
+    with pytest.raises(InvalidFileError, match=r"form no body in a known order.*LeftHand_x"):
+        read_any("\n".join(lines))
