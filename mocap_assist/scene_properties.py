@@ -187,7 +187,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     crowd: bpy.props.PointerProperty(type=MOCAP_PG_crowd)
     variants: bpy.props.PointerProperty(type=MOCAP_PG_variants)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
-    checked: bpy.props.PointerProperty(
+    checked_action: bpy.props.PointerProperty(
         type=bpy.types.Action, name="Checked", description="Action whose issues are listed"
     )
     issues: bpy.props.CollectionProperty(type=MOCAP_PG_issue)

@@ -31,7 +31,7 @@ from .bone_channels import (
 )
 from .curve_modifiers import act_on_keys
 from .curves import Channel, write_values
-from .nla_strips import new_strip, remove_results
+from .nla_strips import keep, new_strip, play_in_place, remove_deltas, strip_of_result
 from .rotation_modes import channels_from_quaternions
 from .take import ArmatureTake, BoneChannels, BonePoses
 from .unchanged_samples import RecordedChannels, UnchangedSamples
@@ -183,7 +183,8 @@ def assign_result(
 ) -> None:
     """Let the armature play a result: as its action, or on an NLA track of its own.
 
-    NLA strips of earlier results of the same take are removed; the actions stay in the file.
+    Where an earlier result of the same take plays on a strip of our own, the new one plays
+    there. A delta layer of it is removed: it would be added. All other NLA strips stay.
 
     Raises
     ------
@@ -191,16 +192,21 @@ def assign_result(
         Nothing can be assigned to the armature; see `check_writable`.
     """
     check_writable(armature)
-    raw = history.raw_of(action, slot)
-    if raw and armature.animation_data is not None:
-        remove_results(armature.animation_data, raw)
-    if armature.animation_data is not None:
-        keep_replaced(armature.animation_data, (action, raw[0] if raw else None))
-    if output is Output.ACTION:
+    raw, animation = history.raw_of(action, slot), armature.animation_data
+    strip = None
+    if animation is not None:
+        keep_replaced(animation, (action, raw[0] if raw else None))
+    if raw and animation is not None:
+        remove_deltas(animation, raw[0])
+        strip = strip_of_result(armature, raw)
+    if output is Output.ACTION and strip is None:
         compat.assign(armature, action, slot)
         return
-    armature.animation_data.action = None
-    new_strip(armature.animation_data, (action, slot))
+    animation.action = None
+    if strip is None:
+        new_strip(animation, (action, slot))
+    else:
+        play_in_place(strip, (action, slot))
 
 
 def keep_replaced(
@@ -210,9 +216,8 @@ def keep_replaced(
 
     Those that are `known`, the recording and the result, stay anyway.
     """
-    replaced = animation.action
-    if replaced is not None and replaced not in known and replaced.library is None:
-        replaced.use_fake_user = True
+    if animation.action not in known:
+        keep(animation.action)
 
 
 def check_writable(armature: bpy.types.Object) -> None:
@@ -222,6 +227,11 @@ def check_writable(armature: bpy.types.Object) -> None:
             f"{armature.name} is linked from {armature.library.name}. Make a library override"
             " of it, so that the result can be assigned."
         )
+    check_not_tweaked(armature)
+
+
+def check_not_tweaked(armature: bpy.types.Object) -> None:
+    """Raise InvalidMotionError where Tweak Mode locks the action of an armature."""
     if armature.animation_data is not None and armature.animation_data.use_tweak_mode:
         raise InvalidMotionError(
             f"{armature.name} is in tweak mode, which locks its action. Leave it in the NLA"

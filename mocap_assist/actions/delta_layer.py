@@ -20,7 +20,13 @@ from ..scene import history
 from .armature_write import NUMBERED, check_writable, identify_played, keep_replaced
 from .bone_channels import Curves, animated_curves, curves_of, sampled
 from .curves import deselect, write_first
-from .nla_strips import assign_to_strip, delta_tracks, new_strip, remove_deltas
+from .nla_strips import (
+    delta_tracks,
+    new_strip,
+    play_in_place,
+    put_at_own_frames,
+    remove_deltas,
+)
 from .rotation_modes import quaternions_from_channels
 from .unchanged_samples import MIN_CHANGE
 
@@ -32,11 +38,6 @@ N_CHANNELS = {
     "rotation_axis_angle": 4,
 }
 """Properties of a bone that a result may change, and how many channels each has."""
-TIMING = (
-    "action_frame_start", "action_frame_end", "scale", "repeat", "use_reverse",
-    "frame_start_raw", "frame_end_raw",
-)  # fmt: skip
-"""Properties of a strip that place its action in the scene, in the order to set them."""
 
 
 @Sliced
@@ -120,7 +121,7 @@ def lay_delta(armature: bpy.types.Object, base: Source, delta: Source) -> None:
     earlier = delta_tracks(animation, base[0])
     is_pair = [len(pair) for pair in earlier] == [2]
     if is_pair and all(len(track.strips) == 1 for track in earlier[0]):
-        _play_again(earlier[0], base, delta)
+        _play_again(earlier[0], delta)
     else:
         dialed = [strip.influence for *_, track in earlier for strip in track.strips]
         remove_deltas(animation, base[0])
@@ -134,7 +135,7 @@ def lay_delta(armature: bpy.types.Object, base: Source, delta: Source) -> None:
     animation.action = None
 
 
-def _play_again(pair: Sequence[bpy.types.NlaTrack], base: Source, delta: Source) -> None:
+def _play_again(pair: Sequence[bpy.types.NlaTrack], delta: Source) -> None:
     """Let the upper one of two tracks with a strip each play a new delta.
 
     Both strips stay where the animator moved and scaled them. A delta of other frames would
@@ -143,17 +144,8 @@ def _play_again(pair: Sequence[bpy.types.NlaTrack], base: Source, delta: Source)
     for track in pair:
         track.mute = track.strips[0].mute = False
     below, strip = (track.strips[0] for track in pair)
-    pair[1].name = delta[0].name
-    if tuple(strip.action.frame_range) == tuple(delta[0].frame_range):
-        timing = [getattr(strip, name) for name in TIMING]
-        strip.action, strip.name = delta[0], delta[0].name
-        strip.action_slot = delta[1]
-        for name, value in zip(TIMING, timing, strict=True):
-            setattr(strip, name, value)
-        return
-    for each, source in ((below, base), (strip, delta)):
-        each.scale = each.repeat = 1.0
-        assign_to_strip(each, source)
+    if not play_in_place(strip, delta):
+        put_at_own_frames(below)
 
 
 def _free_influence(strip: bpy.types.NlaStrip, value: float) -> None:

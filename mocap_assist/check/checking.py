@@ -74,7 +74,7 @@ def list_issues(
     shown = scene.mocap_assist
     shown.issues.clear()
     shown.active_issue = 0
-    shown.checked = played_source(subject)[0]
+    shown.checked_action = played_source(subject)[0]
     shown.report = report
     for issue in issues:
         item = shown.issues.add()

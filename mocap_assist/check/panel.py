@@ -82,7 +82,9 @@ class CheckPanel(PanelMixin):
         _draw_figures(layout, context)
         if shown.issues:
             _draw_issues(layout, context)
-        elif shown.checked and not is_stale(shown.checked, selected_subject(context)):
+        elif shown.checked_action and not is_stale(
+            shown.checked_action, selected_subject(context)
+        ):
             draw_sentence(layout, context, "No issues found.", icon="CHECKMARK")
         _draw_markers(layout, context.scene)
         draw_strip_switch(layout, context)
@@ -119,14 +121,14 @@ def _draw_issues(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     if 0 <= shown.active_issue < len(shown.issues):
         draw_sentence(layout, context, shown.issues[shown.active_issue].sentence)
     subject = selected_subject(context)
-    if subject is not None and is_stale(shown.checked, subject):
-        draw_sentence(layout, context, _stale_text(shown.checked), icon="INFO")
+    if subject is not None and is_stale(shown.checked_action, subject):
+        draw_sentence(layout, context, _stale_text(shown.checked_action), icon="INFO")
 
 
 def _stale_text(checked: bpy.types.Action | None) -> str:
     """Return a sentence about issues that are not of the played action."""
     if checked is None:
-        return "The checked action was deleted. Run Check again."
+        return "Results are for another action. Run Check again."
     return translated(STALE).format(action=checked.name)
 
 

@@ -1,11 +1,12 @@
 """Let an armature or markers play the recorded action for a while, and then the result again.
 
 The recorded action is really assigned, so meshes, constraints and children follow it. Where the
-result plays on an NLA strip that was moved or scaled, the recorded action gets such a strip on
-a track above. What was played before returns on every ending: also before a file is saved or
+result plays on NLA strips that were moved, scaled or cut, the recorded action gets such strips
+on a track above. What was played before returns on every ending: also before a file is saved or
 loaded, before undo, and before a render.
 """
 
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -13,15 +14,15 @@ import bpy
 from bpy.app import handlers
 
 from ...solvers.errors import InvalidMotionError
-from ..actions.delta_layer import TIMING
-from ..actions.nla_strips import new_strip
+from ..actions.armature_write import check_not_tweaked
+from ..actions.nla_strips import TIMING
 from ..blender import compat
 from ..blender.block_references import BlockReference, SourceReference
 from ..runtime.selection import animated_objects, selected_subject
 from ..runtime.watch import why_busy
 from ..scene import history
-from ..scene.played_time import PlayedTime, played_time
-from .reverting import why_not_revert
+from ..scene.played_time import PlayedTime, played_strips, played_times
+from .reverting import why_no_raw
 
 POSE = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
 """Values of an object or a bone that only the recorded action may animate."""
@@ -43,11 +44,20 @@ class _Shown(NamedTuple):
 
 
 _shown: list[_Shown] = []
+at_end: list[Callable[[], None]] = []
+"""Called after the result plays again."""
 
 
 def why_not_show_raw(context: bpy.types.Context) -> str:
     """Return why the recorded action cannot be shown, or an empty text."""
-    return why_busy() or why_not_revert(context)
+    if reason := why_busy() or why_no_raw(context):
+        return reason
+    try:
+        for player in animated_objects(selected_subject(context)):
+            check_not_tweaked(player)
+    except InvalidMotionError as error:
+        return str(error)
+    return ""
 
 
 def show_raw(context: bpy.types.Context) -> str:
@@ -72,9 +82,13 @@ def is_shown() -> bool:
 @handlers.persistent
 def restore(*_: object) -> None:
     """Assign again what was played before; a second call has no effect."""
+    if not _shown:
+        return
     while _shown:
         with suppress(InvalidMotionError):  # deleted meanwhile
             _restore(_shown.pop())
+    for listener in at_end:
+        listener()
 
 
 def _remember(player: bpy.types.Object, raw: compat.Source) -> _Shown:
@@ -93,16 +107,20 @@ def _remember(player: bpy.types.Object, raw: compat.Source) -> _Shown:
 
 def _play(player: bpy.types.Object, raw: compat.Source) -> str:
     """Play the recorded action in the time of the result; return the name of a new track."""
-    strip = history.result_player(player)
-    if played_time(player)[:2] == PlayedTime()[:2] or not isinstance(strip, bpy.types.NlaStrip):
+    if all(each[:2] == PlayedTime()[:2] for each in played_times(player)):
         compat.assign(player, *raw)
         return ""
-    animation = player.animation_data
+    animation, (action, slot) = player.animation_data, raw
     animation.action = None
-    same = new_strip(animation, raw)
-    for name in TIMING:
-        setattr(same, name, getattr(strip, name))
-    return str(animation.nla_tracks[-1].name)
+    strips = played_strips(player)
+    track = animation.nla_tracks.new()
+    track.name = action.name
+    for strip in strips:
+        same = track.strips.new(action.name, int(strip.frame_start), action)
+        same.action_slot = slot
+        for name in TIMING:
+            setattr(same, name, getattr(strip, name))
+    return str(track.name)
 
 
 def _copied(value: Any) -> Any:

@@ -3,13 +3,14 @@
 import bpy
 
 from ...solvers.errors import MocapAssistError
-from ..runtime import after_result
+from ..runtime import after_result, watch
 from ..runtime.selection import selected_subject
 from ..runtime.solver_operator import SolverOperator
+from . import raw_view
 from .checking import is_stale
 
 _awaited: list[str] = []
-"""Name of the scene that the next quiet check is for."""
+"""Name of the scene that the next quiet check is for, until a check has ended there."""
 
 
 class CheckOperator(SolverOperator):
@@ -30,6 +31,7 @@ class CheckOperator(SolverOperator):
         return super().modal(context, event)
 
     def _finish(self, message: str) -> set[str]:
+        _awaited.clear()
         return {"FINISHED"} if self.is_quiet else super()._finish(message)
 
     def _give_up(self, error: MocapAssistError | MemoryError) -> set[str]:
@@ -38,15 +40,31 @@ class CheckOperator(SolverOperator):
 
 def renew_later(scene: bpy.types.Scene) -> None:
     """Check again once Blender is idle, where Check was pressed in this scene before."""
-    if not scene.mocap_assist.checked or bpy.app.background:
+    if not scene.mocap_assist.report or bpy.app.background:
         return
     _awaited[:] = [scene.name]
+    _renew_when_idle()
+
+
+def renew_awaited() -> None:
+    """Take up a quiet check that was ended by a press, or met the recorded action."""
+    if _awaited and not watch.is_quiet_on():
+        _renew_when_idle()
+
+
+def _renew_when_idle() -> None:
     if not bpy.app.timers.is_registered(renew):
         bpy.app.timers.register(renew, first_interval=0.0)
 
 
 def renew() -> None:
-    """Press Check quietly in a window of the scene; no press where another solve runs."""
+    """Press Check quietly in a window of the scene.
+
+    While another solve runs or the recorded action is shown there is no press; `renew_awaited`
+    is called after both.
+    """
+    if raw_view.is_shown():
+        return
     check = bpy.ops.mocap_assist.measure_quality
     windows = [
         each for each in bpy.context.window_manager.windows if each.scene.name in _awaited
@@ -62,18 +80,24 @@ def renew() -> None:
 def _is_outdated(scene: bpy.types.Scene) -> bool:
     """Whether the list is of another action than the one that is played.
 
-    A result of Fix brings its list along, and one for another rig changes nothing here.
+    A result of Fix brings its list along, and one for another rig changes nothing here. A scene
+    of another file, in which Check was never pressed, may have the name of the awaited one.
     """
-    return is_stale(scene.mocap_assist.checked, selected_subject(bpy.context))
+    shown = scene.mocap_assist
+    return bool(shown.report) and is_stale(shown.checked_action, selected_subject(bpy.context))
 
 
 def register() -> None:
     """Check again after each result from now on."""
     after_result.listeners.append(renew_later)
+    watch.at_end.append(renew_awaited)
+    raw_view.at_end.append(renew_awaited)
 
 
 def unregister() -> None:
     """Stop checking after results."""
     after_result.listeners.remove(renew_later)
+    watch.at_end.remove(renew_awaited)
+    raw_view.at_end.remove(renew_awaited)
     if bpy.app.timers.is_registered(renew):
         bpy.app.timers.unregister(renew)

@@ -4,7 +4,7 @@ import bpy
 
 from ...solvers.errors import InvalidMotionError
 from ..actions.armature_write import check_writable, keep_replaced
-from ..actions.nla_strips import remove_results
+from ..actions.nla_strips import own_tracks, remove_deltas, remove_tracks
 from ..blender import compat
 from ..blender.compat import Source
 from ..runtime.selection import (
@@ -18,13 +18,23 @@ from ..scene import history
 
 def why_not_revert(context: bpy.types.Context) -> str:
     """Return why the selection cannot be reverted, or an empty text."""
+    if reason := why_no_raw(context):
+        return reason
+    try:
+        for player in animated_objects(selected_subject(context)):
+            check_writable(player)
+    except InvalidMotionError as error:
+        return str(error)
+    return ""
+
+
+def why_no_raw(context: bpy.types.Context) -> str:
+    """Return why the selection plays no result of a recorded action, or an empty text."""
     subject = selected_subject(context)
     if subject is None:
         return "Select an animated armature or marker set."
     try:
         if played_result(subject) is not None:
-            for player in animated_objects(subject):
-                check_writable(player)
             return ""
         action, _ = played_source(subject)
     except InvalidMotionError as error:
@@ -47,11 +57,15 @@ def revert(subject: bpy.types.Object) -> str:
             message = message or (
                 f"{subject.name} plays {raw[0].name} again; {played[0].name} is kept."
             )
+    if message and played_result(subject) is not None:
+        return " ".join([message, "Other NLA strips stay and play results."])
     return message
 
 
 def _revert(player: bpy.types.Object, raw: Source) -> None:
-    """Assign the recorded action and slot; remove NLA strips of its results."""
-    keep_replaced(player.animation_data, raw[:1])
-    remove_results(player.animation_data, raw)
+    """Assign the recorded action and slot; remove our own NLA tracks of its results."""
+    animation = player.animation_data
+    keep_replaced(animation, raw[:1])
+    remove_deltas(animation, raw[0])
+    remove_tracks(animation, own_tracks(animation, raw))
     compat.assign(player, *raw)

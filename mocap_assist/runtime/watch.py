@@ -25,6 +25,8 @@ figures more exact than the estimate."""
 BUSY = "Another solve is running. Wait until it is done, or press Esc in its window."
 
 _on: list["Watch"] = []
+at_end: list[Callable[[], None]] = []
+"""Called after each solve that was requested, whatever its outcome."""
 
 
 class Watch:
@@ -102,6 +104,8 @@ class Watch:
         if not self.is_quiet:
             context.window_manager.mocap_assist_job.running = False
             context.workspace.status_text_set(None)
+            for listener in at_end:
+                listener()
         redraw(context)
 
     def abandon(self, context: bpy.types.Context) -> None:
@@ -141,6 +145,11 @@ def time_left(fraction: float, elapsed_s: float) -> str:
 def why_busy() -> str:
     """Return why no other solve can start, or an empty text."""
     return BUSY if any(not each.is_quiet for each in _on) else ""
+
+
+def is_quiet_on() -> bool:
+    """Whether a solve runs that was not requested."""
+    return any(each.is_quiet for each in _on)
 
 
 register, unregister = ends_with_file(_on, "mocap_assist_job")

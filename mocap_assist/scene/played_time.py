@@ -68,22 +68,29 @@ def played_time(player: bpy.types.Object, frame: float = -inf) -> PlayedTime:
 
 
 def played_times(player: bpy.types.Object) -> tuple[PlayedTime, ...]:
-    """Return the times of the strips of a track that play the result, from first to last.
+    """Return the times of the strips that play the result, from first to last.
 
-    A strip whose time is animated counts as one that is not. In Tweak Mode it is the tweaked
-    strip, whatever that plays; an assigned action has its own frames.
+    A strip whose time is animated counts as one that is not. An assigned action has its own
+    frames.
+    """
+    return tuple(map(_time_of_strip, played_strips(player))) or (PlayedTime(),)
+
+
+def played_strips(player: bpy.types.Object) -> tuple[bpy.types.NlaStrip, ...]:
+    """Return the strips of a track that play the result, from first to last.
+
+    In Tweak Mode it is the tweaked strip, whatever that plays; none play an assigned action.
     """
     animation = player.animation_data
     found = result_player(player)
     if animation is not None and animation.use_tweak_mode and found in {None, animation}:
         found = _tweaked(animation)
-        return (PlayedTime(),) if found is None else (_time_of_strip(found),)
+        return () if found is None else (found,)
     if not isinstance(found, bpy.types.NlaStrip):
-        return (PlayedTime(),)
+        return ()
     tracks = (each.strips.values() for each in animation.nla_tracks)
     track = next(strips for strips in tracks if found in strips)
-    same = (each for each in track if each.action == found.action and not each.mute)
-    return tuple(map(_time_of_strip, same))
+    return tuple(each for each in track if each.action == found.action and not each.mute)
 
 
 def _tweaked(animation: bpy.types.AnimData) -> bpy.types.NlaStrip | None:

@@ -25,7 +25,7 @@ def list_low_confidence(
     shown = scene.mocap_assist
     shown.issues.clear()
     shown.active_issue = 0
-    shown.checked, shown.report = action, report
+    shown.checked_action, shown.report = action, report
     for interval in ranges[:MAX_LISTED]:
         item = shown.issues.add()
         item.name, item.kind = interval.joint, "low confidence"

@@ -277,7 +277,7 @@ def steps():
     bgui.shot("2-cleaned.png")
     yield from until_done()
     yield from settle(2)
-    assert bpy.context.scene.mocap_assist.checked.name == "walk.clean", "not renewed"
+    assert bpy.context.scene.mocap_assist.checked_action.name == "walk.clean", "not renewed"
     bgui.shot("3-checked.png")
     yield from drag_on_the_strip()
     yield from see_raw_curves(armature)

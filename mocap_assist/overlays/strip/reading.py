@@ -109,7 +109,7 @@ def strip_of(context: bpy.types.Context) -> Strip | None:
     if source is None:
         return None
     shown = context.scene.mocap_assist
-    is_checked = shown.checked == source[0]
+    is_checked = shown.checked_action == source[0]
     block = _block(armature, source)
     time = played_time(armature, context.scene.frame_current_final)
     bones = _selected(armature)

@@ -74,7 +74,7 @@ def test_issues_left_are_those_that_check_lists(sample, fix, blank):
     listed = blank.context.scene.mocap_assist
     left = [(issue.name, issue.start, issue.sentence) for issue in listed.issues]
     assert len(left) == card["after"]["issues"] > 10
-    assert listed.checked == sample.animation_data.action
+    assert listed.checked_action == sample.animation_data.action
 
     assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
 

@@ -127,6 +127,7 @@ def test_second_clean_keeps_the_strips_where_they_were_moved(noisy, clean, load)
 
 
 def test_delta_without_its_base_is_replaced_with_its_influence(noisy, clean):
+    """A delta that the animator laid on a track stays."""
     clean(result_as="DELTA_LAYER")
     tracks, raw = noisy.animation_data.nla_tracks, noisy.animation_data.nla_tracks[0]
     action, slot = raw.strips[0].action, raw.strips[0].action_slot
@@ -141,7 +142,7 @@ def test_delta_without_its_base_is_replaced_with_its_influence(noisy, clean):
     clean(result_as="DELTA_LAYER", strength=0.5)
 
     played = [(t.strips[0].action.name, t.strips[0].influence) for t in tracks]
-    assert played == [("walk", 1.0), ("walk.delta.001", 0.25)]
+    assert played == [("walk.delta", 0.25), ("walk", 1.0), ("walk.delta.001", 0.25)]
 
 
 def delete_last_bone(blank, armature):

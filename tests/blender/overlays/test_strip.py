@@ -157,7 +157,7 @@ def test_issues_are_those_that_check_listed_for_this_action(blank, reading, acto
     strip = shown(reading.strip_of(blank.context))
     assert sum(map(len, strip.values())) == len(issues) - 1
 
-    blank.context.scene.mocap_assist.checked = blank.data.actions.new("another action")
+    blank.context.scene.mocap_assist.checked_action = blank.data.actions.new("another action")
     assert reading.strip_of(blank.context) is None
 
 

@@ -45,6 +45,22 @@ def test_settings_are_read_under_their_former_names(opened):
     assert scene.track.actor_mask == "CUT"
 
 
+def test_name_of_the_checked_action_becomes_a_pointer(load, blank, tmp_path):
+    stored = blank.context.scene.mocap_assist
+    blank.data.actions.new("walk").use_fake_user = True
+    stored.report = "Jitter 1 cm"
+    properties = load("mocap_assist.blender.compat").stored_properties
+    properties(stored)["checked"] = "walk"
+    path = str(tmp_path / "older.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+
+    bpy.ops.wm.open_mainfile(filepath=path)
+
+    stored = bpy.context.scene.mocap_assist
+    assert stored.checked_action == bpy.data.actions["walk"]
+    assert "checked" not in properties(stored)
+
+
 def test_a_former_value_is_read_once(opened, tmp_path):
     scene = opened(FORMER)
     scene.find.property_unset("n_neighbors")

@@ -89,7 +89,7 @@ def test_issues_are_shown_where_the_strip_plays_them(blank, draw, result):
     scene = blank.context.scene
     issue = scene.mocap_assist.issues.add()
     issue.name, issue.start, issue.stop, issue.kind = "LeftArm", 20.0, 22.0, "gap"
-    scene.mocap_assist.checked = blank.data.actions["walk"]
+    scene.mocap_assist.checked_action = blank.data.actions["walk"]
 
     blank.ops.mocap_assist.jump_to_issue(index=0)
     assert scene.frame_current == 120
@@ -192,6 +192,32 @@ def test_held_key_shows_the_recorded_action_in_the_time_of_the_strip(blank, load
     scene.frame_set(117)
 
     assert_allclose(bone.location, played, atol=1e-5)
+    assert len(result.animation_data.nla_tracks) == 1
+
+
+def test_held_key_shows_the_recorded_action_on_each_strip_of_a_cut_result(blank, load, result):
+    raw_view, scene = load("mocap_assist.check.raw_view"), blank.context.scene
+    bone = result.pose.bones[0]
+    recorded = {}
+    for frame in (17, 40):
+        scene.frame_set(frame)
+        recorded[frame] = bone.location.copy()
+    first = lay_strip(result, action_frame_end=30.0)
+    (track,) = result.animation_data.nla_tracks
+    second = track.strips.new("second half", 131, first.action)
+    second.action_slot, second.action_frame_start = first.action_slot, 31.0
+    second.frame_start_ui = 131.0
+
+    raw_view.show_raw(blank.context)
+
+    shown = {}
+    for frame, scene_frame in ((17, 17), (40, 140)):
+        scene.frame_set(scene_frame)
+        shown[frame] = bone.location.copy()
+    raw_view.restore()
+    assert recorded[17] != recorded[40]
+    assert_allclose(shown[17], recorded[17], atol=1e-5)
+    assert_allclose(shown[40], recorded[40], atol=1e-5)
     assert len(result.animation_data.nla_tracks) == 1
 
 

@@ -126,7 +126,7 @@ def test_confidence_and_residual_are_updated_and_issues_are_listed(tracked, blan
     assert len(residual.keyframe_points) == 16
     assert all(0.0 < key.co[1] < 0.06 for key in residual.keyframe_points)
     assert bag.fcurves.find(f'pose.bones["{ARM}"]["mocap_reliability"]') is not None
-    assert blank.context.scene.mocap_assist.checked == action
+    assert blank.context.scene.mocap_assist.checked_action == action
 
 
 def test_retrack_gives_a_reason_when_refused(tracked, points, blank):

@@ -60,7 +60,7 @@ def test_residual_confidence_and_origin_are_stored_and_clean_accepts_them(points
     assert 0.0 < armature["mocap_residual"] < 0.05
     paths = {curve.data_path for curve in bag.fcurves}
     assert 'pose.bones["leftLowerArm"]["mocap_reliability"]' in paths
-    assert blank.context.scene.mocap_assist.checked == action
+    assert blank.context.scene.mocap_assist.checked_action == action
     assert points.name in blank.data.objects and len(blank.data.armatures) == 1
 
     assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}  # raw to Clean

@@ -1,11 +1,9 @@
-"""A jump shows the issue as the switches choose; results are checked again."""
+"""A jump shows the issue as the switches choose."""
 
-from contextlib import nullcontext
 from types import SimpleNamespace
 
 import pytest
 from mathutils import Matrix, Vector
-from modal_events import event, nothing_is_left
 
 
 @pytest.fixture
@@ -130,136 +128,9 @@ def test_jump_shows_the_bone_in_the_scene(blank, switches, issue, actor, load, m
     assert len(points) == 1
 
 
-def test_results_are_checked_again_where_check_was_pressed_before(
-    blank, actor, load, monkeypatch
-):
-    renewing, timers = load("mocap_assist.check.renewing"), []
-    app = SimpleNamespace(background=False, timers=Timers(timers))
-    monkeypatch.setattr(renewing, "bpy", SimpleNamespace(app=app))
-    blank.ops.mocap_assist.denoise()
-    assert not timers
-
-    blank.ops.mocap_assist.measure_quality()
-    assert not timers  # a check makes no result
-    blank.ops.mocap_assist.denoise(strength=0.5)
-
-    assert timers == [renewing.renew]
-
-
-def test_results_are_checked_again_in_a_window_of_their_scene(blank, load, monkeypatch):
-    renewing, pressed = load("mocap_assist.check.renewing"), []
-    scenes = [SimpleNamespace(name=name) for name in ("Other", "Ours")]
-    view = SimpleNamespace(type="VIEW_3D", regions=[SimpleNamespace(type="WINDOW")])
-    screen = SimpleNamespace(areas=[view])
-    windows = [SimpleNamespace(scene=scene, screen=screen) for scene in scenes]
-    context = SimpleNamespace(
-        window_manager=SimpleNamespace(windows=windows),
-        temp_override=lambda window, **_: nullcontext(pressed.append(window)),
-    )
-    check = SimpleNamespace(poll=lambda: False)
-    ops = SimpleNamespace(mocap_assist=SimpleNamespace(measure_quality=check))
-    monkeypatch.setattr(renewing, "bpy", SimpleNamespace(context=context, ops=ops))
-    monkeypatch.setattr(renewing, "_awaited", ["Ours"])
-
-    renewing.renew()
-
-    assert pressed == windows[1:]
-
-
-def test_a_list_of_what_is_played_is_not_renewed(blank, actor, load, monkeypatch):
-    """A result of Fix brings its list along; a check would only lock all buttons."""
-    renewing, pressed = load("mocap_assist.check.renewing"), []
-    scene = blank.context.scene
-    view = SimpleNamespace(type="VIEW_3D", regions=[SimpleNamespace(type="WINDOW")])
-    window = SimpleNamespace(scene=scene, screen=SimpleNamespace(areas=[view]))
-    context = SimpleNamespace(
-        window_manager=SimpleNamespace(windows=[window]),
-        view_layer=blank.context.view_layer,
-        temp_override=lambda **_: nullcontext(),
-    )
-    check = PressedCheck(pressed)
-    ops = SimpleNamespace(mocap_assist=SimpleNamespace(measure_quality=check))
-    monkeypatch.setattr(renewing, "_awaited", [scene.name])
-    for press in (blank.ops.mocap_assist.measure_quality, blank.ops.mocap_assist.denoise):
-        press()
-        with monkeypatch.context() as patch:
-            patch.setattr(renewing, "bpy", SimpleNamespace(context=context, ops=ops))
-            renewing.renew()
-
-    assert pressed == [{"is_quiet": True}]  # after Clean
-
-
-class PressedCheck:
-    def __init__(self, pressed):
-        self.pressed = pressed
-
-    def poll(self):
-        return True
-
-    def __call__(self, mode, **settings):
-        self.pressed.append(settings)
-
-
-def test_only_a_check_that_was_asked_for_takes_the_window(actor, load, make_button, window):
-    settings = load("solvers.denoising")
-    kind = load("mocap_assist.check.button_settings").CheckBundle
-    bundle = kind(settings.QualitySettings(), settings.IssueSettings())
-    button = make_button("measure_quality", bundle)
-    button.is_quiet = False
-    assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
-    assert button.modal(window.context, event("A", "PRESS")) == {"RUNNING_MODAL"}
-
-    button.is_quiet = True
-    for key in ("A", "ESC"):
-        assert button.modal(window.context, event(key, "PRESS")) == {"PASS_THROUGH"}
-    button.is_quiet = False
-    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
-
-
-def test_quiet_check_makes_way_for_a_press(actor, blank, load, make_button, window):
-    """Buttons were gray, and the message of the result was gone, until a check had ended."""
-    settings = load("solvers.denoising")
-    kind = load("mocap_assist.check.button_settings").CheckBundle
-    check = kind(settings.QualitySettings(), settings.IssueSettings())
-    quiet = make_button("measure_quality", check)
-    quiet.is_quiet = True
-    assert quiet.invoke(window.context, None) == {"RUNNING_MODAL"}
-    assert window.status == [] and not window.job.running
-    assert blank.ops.mocap_assist.denoise.poll()
-
-    pressed = make_button("measure_quality", check)
-    pressed.is_quiet = False
-    assert pressed.invoke(window.context, None) == {"RUNNING_MODAL"}
-
-    assert quiet.modal(window.context, event("TIMER")) == {"CANCELLED"}
-    assert window.job.running and len(window.timers) == 1
-    assert pressed.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
-    assert nothing_is_left(window)
-
-
-class Timers:
-    def __init__(self, registered):
-        self.registered = registered
-
-    def is_registered(self, function):
-        return function in self.registered
-
-    def register(self, function, first_interval):
-        self.registered.append(function)
-
-
-def test_quiet_check_leaves_the_status_bar(blank, actor, capsys):
-    assert blank.ops.mocap_assist.measure_quality(is_quiet=True) == {"FINISHED"}
-    assert "ound" not in capsys.readouterr().out
-    assert blank.context.scene.mocap_assist.checked
-
-    blank.ops.mocap_assist.measure_quality()
-    assert "ound" in capsys.readouterr().out
-
-
 @pytest.mark.usefixtures("all_panels")
 def test_list_and_strip_name_the_kind_of_an_issue(blank, draw, actor, issue, load):
-    blank.context.scene.mocap_assist.checked = actor.animation_data.action
+    blank.context.scene.mocap_assist.checked_action = actor.animation_data.action
 
     assert {"mocap_assist_issue_view", "mocap_assist_issue_range"} <= set(
         draw("MOCAP_PT_check")
@@ -270,11 +141,11 @@ def test_list_and_strip_name_the_kind_of_an_issue(blank, draw, actor, issue, loa
 
 def test_panel_says_that_a_checked_take_has_no_issues(blank, draw, actor):
     assert "No issues found." not in draw("MOCAP_PT_check")
-    blank.context.scene.mocap_assist.checked = actor.animation_data.action
+    blank.context.scene.mocap_assist.checked_action = actor.animation_data.action
 
     assert "No issues found." in draw("MOCAP_PT_check")
 
-    blank.context.scene.mocap_assist.checked = blank.data.actions.new("another action")
+    blank.context.scene.mocap_assist.checked_action = blank.data.actions.new("another action")
     assert "No issues found." not in draw("MOCAP_PT_check")
 
 
@@ -284,13 +155,13 @@ def test_list_follows_a_renamed_action_and_names_a_deleted_one(blank, draw, acto
         return " ".join(draw("MOCAP_PT_check"))
 
     scene, raw = blank.context.scene, actor.animation_data.action
-    scene.mocap_assist.checked = raw
+    scene.mocap_assist.checked_action = raw
     raw.name = "renamed by the animator"
     assert "Run Check again." not in shown()
 
     other = blank.data.actions.new("another action")
-    scene.mocap_assist.checked = other
+    scene.mocap_assist.checked_action = other
     assert 'Results are for "another action". Run Check again.' in shown()
 
     blank.data.actions.remove(other)
-    assert "The checked action was deleted. Run Check again." in shown()
+    assert "Results are for another action. Run Check again." in shown()
