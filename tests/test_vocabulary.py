@@ -107,7 +107,6 @@ def parsed(folder: str) -> tuple[tuple[Path, ast.Module], ...]:
     paths = sorted((ROOT / folder).rglob("*.py"))
     gc.disable()  # it would search millions of nodes again and again
     trees = tuple((path, ast.parse(path.read_text(encoding="utf-8"))) for path in paths)
-    gc.freeze()
     gc.enable()
     return trees
 
