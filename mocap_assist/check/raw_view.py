@@ -22,7 +22,7 @@ from ..runtime.selection import animated_objects, selected_subject
 from ..runtime.watch import why_busy
 from ..scene import history
 from ..scene.played_time import PlayedTime, played_strips, played_times
-from .reverting import why_no_raw
+from .reverting import why_not_play_raw
 
 POSE = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
 """Values of an object or a bone that only the recorded action may animate."""
@@ -50,14 +50,7 @@ at_end: list[Callable[[], None]] = []
 
 def why_not_show_raw(context: bpy.types.Context) -> str:
     """Return why the recorded action cannot be shown, or an empty text."""
-    if reason := why_busy() or why_no_raw(context):
-        return reason
-    try:
-        for player in animated_objects(selected_subject(context)):
-            check_not_tweaked(player)
-    except InvalidMotionError as error:
-        return str(error)
-    return ""
+    return why_busy() or why_not_play_raw(context, check_not_tweaked)
 
 
 def show_raw(context: bpy.types.Context) -> str:

@@ -1,5 +1,7 @@
 """Revert from a result to the recorded action."""
 
+from collections.abc import Callable
+
 import bpy
 
 from ...solvers.errors import InvalidMotionError
@@ -18,11 +20,18 @@ from ..scene import history
 
 def why_not_revert(context: bpy.types.Context) -> str:
     """Return why the selection cannot be reverted, or an empty text."""
+    return why_not_play_raw(context, check_writable)
+
+
+def why_not_play_raw(
+    context: bpy.types.Context, check: Callable[[bpy.types.Object], None]
+) -> str:
+    """Return why there is no recorded action, or what a check raises, or an empty text."""
     if reason := why_no_raw(context):
         return reason
     try:
         for player in animated_objects(selected_subject(context)):
-            check_writable(player)
+            check(player)
     except InvalidMotionError as error:
         return str(error)
     return ""

@@ -137,7 +137,10 @@ def denoise(
     )
     message = f"{result.prior_used} {describe_edge_poses(edge_poses)}".strip()
     result = replace(result, recording=complete, confidence=confidence, prior_used=message)
-    return _blend_held(recording, result, held, settings)
+    possible = recording
+    if limits is not None and isinstance(recording, Motion) and held.any():
+        possible = clamp_to_limits(recording, limits)
+    return _blend_held(possible, result, held, settings)
 
 
 def _find_held_and_cuts(

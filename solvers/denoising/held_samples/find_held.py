@@ -21,7 +21,7 @@ MIN_JITTER_RAD = 6e-5
 """Lowest jitter of a recording, radians; most have 9e-5 to 4e-3. It guards animation that was
 keyed by hand, whose curves are smooth (`test_anticipation_between_keys_is_not_held`)."""
 MIN_PARTS = 2
-"""Number of parts from which on it is no chance that they repeat in the same frames. Chosen by
+"""Number of parts that repeat in the same frames only if they were lost together. Chosen by
 hand: 2 are an arm whose hand has no keys."""
 MIN_GROUP_RATIO, MIN_RATIO = 0.5, 1.5
 """Jump after the repeats of several and of single parts, as a ratio to the step after it, and
@@ -38,7 +38,7 @@ which this value is wrong too. Chosen by hand: an arm that a tracker puts into i
 MIN_QUANTA = 5.0
 """Largest jump after the repeats in smallest steps of a joint, a ratio. It guards joints that
 are rounded (`test_fingers_of_a_glove_in_coarse_steps_are_not_held`)."""
-MAX_REPEATED_FRACTION = 0.75
+MAX_REPEATED_FRACTION = 0.7
 """Fraction of repeated samples above which a joint counts as still. It guards joints that move
 in steps (`test_poses_on_steps_are_not_held`)."""
 MIN_DIRECTION, MAX_SPEED_RATIO = 0.1, 1.6

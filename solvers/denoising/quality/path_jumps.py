@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...motion import Motion, Tracks
-from ...motion.skeletons import shot_ranges
+from ...motion.skeletons import MIN_SHOT_S, shot_ranges
 
 N_NEIGHBORS = 3
 """Steps on each side whose median predicts a step. Chosen by hand: 3 at 30 Hz are 0.1 s, in
@@ -14,8 +14,6 @@ MIN_JUMP_M = 0.05
 """Smallest jump, meters. Chosen by hand: 5 cm at 120 Hz are 6 m/s."""
 MAX_ACCELERATION = 100.0
 """Largest acceleration of a body, m/s^2. Chosen by hand: ten times gravity, as in a landing."""
-RETURN_S = 0.25
-"""Seconds within which a jump back makes a spike of it. By definition the shortest shot."""
 
 
 class PathJump(NamedTuple):
@@ -35,7 +33,7 @@ def find_path_jumps(recording: Motion | Tracks, cuts: tuple[int, ...]) -> tuple[
     if isinstance(recording, Tracks):
         return ()
     limit = max(MIN_JUMP_M, MAX_ACCELERATION / recording.frame_rate**2)
-    brief = max(round(RETURN_S * recording.frame_rate), 1)
+    brief = max(round(MIN_SHOT_S * recording.frame_rate), 1)
     jumps = []
     for start, stop in shot_ranges(recording, cuts):
         steps = np.diff(recording.root_positions[start:stop], axis=0)

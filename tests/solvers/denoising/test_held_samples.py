@@ -166,7 +166,7 @@ def test_anticipation_between_keys_is_not_held(arm):
     assert find_held_samples(noisy(hold(keyed, slice(22, 36), arm), 0.0)).sum() == 0
 
 
-@pytest.mark.parametrize("n", [5, 8])
+@pytest.mark.parametrize("n", [4, 8])
 def test_poses_on_steps_are_not_held(walk, n):
     assert not find_held_samples(repeat(walk, n)).any()
 

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from solvers.denoising import DenoiseMethod, DenoiseSettings, denoise
+from solvers.denoising import (
+    DenoiseMethod,
+    DenoiseSettings,
+    denoise,
+    learn_joint_limits,
+    limit_excess,
+)
 from solvers.motion import Motion
 from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
@@ -60,3 +66,17 @@ def test_strength_blends_what_was_held(walk, arm):
 def test_published_method_takes_repeats_as_they_are(walk, arm):
     settings = DenoiseSettings(method=DenoiseMethod.PUBLISHED)
     assert not denoise(hold(walk, LOST, arm), settings=settings).held.any()
+
+
+def test_limits_apply_to_what_was_held_at_any_strength(walk, arm):
+    limits = learn_joint_limits([walk])
+    rotations = walk.rotations.copy()
+    rotations[LOST, arm[:2]] = [1.0, 0.0, 0.0, 0.0]
+    held = walk.with_poses(rotations)
+    beyond = limit_excess(held, limits)[LOST].max()
+
+    result = denoise(held, limits=limits, settings=DenoiseSettings(strength=0.3))
+
+    assert result.held[LOST, arm[0]].all()
+    assert beyond > np.radians(10.0)
+    assert limit_excess(result.recording, limits)[LOST].max() < 0.3 * beyond
