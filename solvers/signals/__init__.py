@@ -14,7 +14,7 @@ from .noise import (
 )
 from .second_differences import lower_block_bands, second_difference_bands
 from .smoothstep import smoothstep
-from .spikes import find_runs, fit_lowess
+from .spikes import find_runs, fit_lowess, merge_runs
 from .two_states import TwoStateFilter, two_state_probabilities
 
 __all__ = [
@@ -31,6 +31,7 @@ __all__ = [
     "find_runs",
     "fit_lowess",
     "lower_block_bands",
+    "merge_runs",
     "remove_outliers",
     "second_difference_bands",
     "shrink_noise",

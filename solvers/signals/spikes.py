@@ -82,6 +82,17 @@ def find_runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
+def merge_runs(runs: list[tuple[int, int]], max_gap: int) -> list[tuple[int, int]]:
+    """Join runs that are at most `max_gap` frames apart."""
+    merged: list[tuple[int, int]] = []
+    for start, stop in runs:
+        if merged and start - merged[-1][1] <= max_gap:
+            merged[-1] = (merged[-1][0], stop)
+        else:
+            merged.append((start, stop))
+    return merged
+
+
 def fit_lowess(signal: Array, half_window: int, min_scale: float) -> LowessFit:
     """Fit a robust local quadratic to a signal and return the residuals.
 

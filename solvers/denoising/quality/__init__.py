@@ -1,8 +1,9 @@
 """Measure the quality of a take: jitter, spikes, gaps, foot slide, bone-length drift."""
 
+from .issue import Issue
 from .measure import Quality, QualitySettings, measure_quality
 from .report import compare_quality
-from .worst_issues import Issue, IssueSettings, find_worst_issues
+from .worst_issues import IssueSettings, find_worst_issues
 
 __all__ = [
     "Issue",

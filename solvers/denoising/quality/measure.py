@@ -63,6 +63,8 @@ class Quality:
     ----------
     names : tuple of str
         The joints of the motion or the points of the tracks.
+    parents : tuple of int
+        Index of each joint's parent, -1 for the root; empty for tracks.
     n_frames, frame_rate : int, hertz
     jitter : shape (n_joints,), m/s^3
         Mean absolute third difference of the world position; NaN unless four consecutive
@@ -87,6 +89,7 @@ class Quality:
     """
 
     names: tuple[str, ...]
+    parents: tuple[int, ...]
     n_frames: int
     frame_rate: float
     jitter: Array
@@ -203,15 +206,17 @@ def measure_quality(
         names, poses = recording.skeleton.names, forward_kinematics(recording)
         positions, feet = poses.positions, sole_paths(recording, poses, humanoid_map)
         bones: tuple[BoneDrift, ...] = ()
+        parents = tuple(int(parent) for parent in recording.skeleton.parents)
     else:
         names, positions = recording.names, recording.positions
         feet = foot_paths(recording, humanoid_map)
-        bones = measure_bone_drifts(recording)
+        bones, parents = measure_bone_drifts(recording), ()
     held = find_held_samples(recording)
     seen = hide_held_samples(recording, held)
     cuts = find_shot_boundaries(seen)
     quality = Quality(
         names=names,
+        parents=parents,
         n_frames=recording.n_frames,
         frame_rate=recording.frame_rate,
         jitter=measure_jitter(positions, recording.frame_rate, cuts),

@@ -9,13 +9,13 @@ import numpy as np
 from ...motion import Motion, Tracks
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
-from ...signals import find_runs
+from ...signals import find_runs, merge_runs
+from .gap_issues import gap_issues
+from .issue import Issue
 from .joint_signals import Signal
 from .measure import Quality, measure_quality
 from .path_jumps import MIN_JUMP_M
 
-LONG_GAP_S = 0.25
-"""Seconds that an animator can still bridge by eye: severity 1, by definition."""
 CUT_SEVERITY = 10.0
 """Severity of a cut, chosen by hand: joined recordings should be split before any other edit.
 It decides the order of a list only."""
@@ -83,21 +83,6 @@ class IssueSettings(Settings):
     )
 
 
-@dataclass(frozen=True)
-class Issue:
-    """One fault of one joint."""
-
-    joint: str
-    start_frame: int
-    stop_frame: int
-    """The first frame after the fault."""
-    kind: str
-    """"spike", "gap", "jitter", "foot slide", "limit" or "cut"."""
-    severity: float
-    """1 just deserves a look. Severities of all kinds are comparable."""
-    sentence: str
-
-
 def find_worst_issues(
     recording: Motion | Tracks,
     quality: Quality | None = None,
@@ -134,7 +119,7 @@ def find_worst_issues(
     issues = [
         *_spikes(quality, pause),
         *_path_jumps(quality),
-        *_gaps(quality, pause),
+        *gap_issues(quality, pause),
         *_jitter(quality, settings, pause),
         *_slides(quality, settings),
         *_beyond_limits(quality, pause),
@@ -147,7 +132,7 @@ def find_worst_issues(
 
 def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
     for signal in quality.signals:
-        for start, stop in _merged(find_runs(signal.spikes), pause):
+        for start, stop in merge_runs(find_runs(signal.spikes), pause):
             height = float(
                 np.nanmax(np.where(signal.spikes, signal.deviation, 0.0)[start:stop])
             )
@@ -175,30 +160,6 @@ def _path_jumps(quality: Quality) -> Iterator[Issue]:
         yield Issue(name, frame - 1, frame + 1, "spike", distance / MIN_JUMP_M, sentence)
 
 
-def _gaps(quality: Quality, pause: int) -> Iterator[Issue]:
-    body = np.zeros(quality.n_frames, dtype=np.bool_)
-    if quality.body_held is not None:
-        body = quality.body_held
-    for start, stop in _merged(find_runs(body), pause):
-        seconds = float(body[start:stop].sum()) / quality.frame_rate
-        sentence = f"The entire body repeats a pose for {seconds:.2f} s before it moves on."
-        yield Issue(quality.names[0], start, stop, "gap", seconds / LONG_GAP_S, sentence)
-    for signal in quality.signals:
-        for start, stop in find_runs(signal.gaps & ~signal.held):
-            seconds = (stop - start) / quality.frame_rate
-            all_missing = stop - start == quality.n_frames
-            sentence = (
-                f"{signal.joint} is never observed."
-                if all_missing
-                else f"{signal.joint} is missing for {seconds:.2f} s."
-            )
-            yield Issue(signal.joint, start, stop, "gap", seconds / LONG_GAP_S, sentence)
-        for start, stop in find_runs(signal.held & ~body):
-            seconds = (stop - start) / quality.frame_rate
-            sentence = f"{signal.joint} stands still for {seconds:.2f} s and then jumps."
-            yield Issue(signal.joint, start, stop, "gap", seconds / LONG_GAP_S, sentence)
-
-
 def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[Issue]:
     for is_rotation, min_noise in (
         (True, settings.min_rotation_jitter),
@@ -210,7 +171,7 @@ def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[I
         typical_noise = float(np.median([signal.local_noise for signal in signals]))
         threshold = max(settings.shake_ratio * typical_noise, min_noise)
         for signal in signals:
-            for start, stop in _merged(find_runs(signal.local_noise > threshold), pause):
+            for start, stop in merge_runs(find_runs(signal.local_noise > threshold), pause):
                 level = float(signal.local_noise[start:stop].max())
                 amount = _amount(signal, level) + _relative_to_typical_noise(
                     level, typical_noise
@@ -243,7 +204,7 @@ def _beyond_limits(quality: Quality, pause: int) -> Iterator[Issue]:
     if quality.limit_excess is None:
         return
     for name, excess in zip(quality.names, quality.limit_excess.T, strict=True):
-        for start, stop in _merged(find_runs(excess > SEVERE_EXCESS / 5), pause):
+        for start, stop in merge_runs(find_runs(excess > SEVERE_EXCESS / 5), pause):
             angle = float(excess[start:stop].max())
             sentence = f"{name} turns {np.degrees(angle):.0f}° beyond its limits."
             yield Issue(name, start, stop, "limit", angle / SEVERE_EXCESS, sentence)
@@ -255,17 +216,6 @@ def _cuts(quality: Quality) -> Iterator[Issue]:
             "The entire body jumps: the take is cut here, or it begins with a separate pose."
         )
         yield Issue(quality.names[0], frame - 1, frame + 1, "cut", CUT_SEVERITY, sentence)
-
-
-def _merged(intervals: list[tuple[int, int]], pause: int) -> list[tuple[int, int]]:
-    """Join intervals that are at most `pause` frames apart."""
-    merged: list[tuple[int, int]] = []
-    for start, stop in intervals:
-        if merged and start - merged[-1][1] <= pause:
-            merged[-1] = (merged[-1][0], stop)
-        else:
-            merged.append((start, stop))
-    return merged
 
 
 def _amount(signal: Signal, value: float) -> str:

@@ -254,7 +254,7 @@ def test_check_lists_the_arm_that_stands_still_and_the_body(walk, arm):
     lost = hold(walk, LOST, arm)
     issues = find_worst_issues(lost, measure_quality(lost))
     sentences = {each.joint: each.sentence for each in issues if each.kind == "gap"}
-    assert sentences["RightArm"] == "RightArm stands still for 0.53 s and then jumps."
+    assert sentences["RightArm"] == "RightArm and 2 more stand still for 0.53 s and then jump."
     frames = np.arange(walk.n_frames)
     frames[30:34] = 29
     (gap,) = (each for each in find_worst_issues(in_frames(walk, frames)) if each.kind == "gap")

@@ -5,7 +5,7 @@ import pytest
 
 from solvers.denoising.quality.measure import measure_quality
 from solvers.denoising.quality.worst_issues import IssueSettings, find_worst_issues
-from solvers.motion import Motion
+from solvers.motion import Motion, Tracks, forward_kinematics
 from solvers.recordings.skeleton_files import read_bvh
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 
@@ -63,6 +63,48 @@ def test_longer_gap_is_worse(swinging_leg):
         ("ankle", "gap"),
     ]
     assert issues[0].sentence == "knee is missing for 0.67 s."
+
+
+def test_limb_that_is_lost_together_is_one_issue(swinging_leg):
+    rotations = swinging_leg.rotations.copy()
+    rotations[50:90, 1:] = np.nan
+    rotations[100:105, 2] = np.nan
+
+    issues = find_worst_issues(swinging_leg.with_poses(rotations))
+
+    assert [issue.sentence for issue in issues] == [
+        "knee and 1 more are missing for 0.67 s.",
+        "ankle is missing for 0.08 s.",
+    ]
+
+
+def test_limbs_lost_at_the_same_time_are_listed_each(recordings):
+    walk = read_bvh(recordings / "mocap" / "cmu_walk" / "07_01.bvh").slice(1, 120)
+    rotations = walk.rotations.copy()
+    for arm in ("LeftForeArm", "RightForeArm"):
+        rotations[50:90, walk.skeleton.names.index(arm)] = np.nan
+
+    gaps = [
+        each for each in find_worst_issues(walk.with_poses(rotations)) if each.kind == "gap"
+    ]
+
+    assert {each.sentence for each in gaps} == {
+        "LeftForeArm is missing for 0.33 s.",
+        "RightForeArm is missing for 0.33 s.",
+    }
+
+
+def test_points_are_listed_each_unless_all_are_lost(swinging_leg):
+    positions = np.array(forward_kinematics(swinging_leg).positions)
+    positions[20:30, 1:] = np.nan
+    positions[50:70] = np.nan
+    names = swinging_leg.skeleton.names
+
+    issues = find_worst_issues(Tracks(names, positions, swinging_leg.frame_rate))
+
+    gaps = [each.sentence for each in issues if each.kind == "gap"]
+    assert gaps[0] == f"{names[0]} and {len(names) - 1} more are missing for 0.33 s."
+    assert sorted(gaps[1:]) == sorted(f"{name} is missing for 0.17 s." for name in names[1:])
 
 
 def test_jitter_of_one_joint_is_listed(swinging_leg, rng):

@@ -1,0 +1,18 @@
+"""One fault of a take, as an animator reads it."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Issue:
+    """One fault of one joint."""
+
+    joint: str
+    start_frame: int
+    stop_frame: int
+    """The first frame after the fault."""
+    kind: str
+    """"spike", "gap", "jitter", "foot slide", "limit" or "cut"."""
+    severity: float
+    """1 just deserves a look. Severities of all kinds are comparable."""
+    sentence: str
