@@ -198,7 +198,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
     ),
     "order or weight of a list that is read by people": (
         "denoising/quality/worst_issues.CUT_SEVERITY",
-        "denoising/quality/worst_issues.LONG_GAP_S",
+        "denoising/quality/gap_issues.LONG_GAP_S",
     ),
     "decides a sentence of a report only": (
         "denoising/window_estimates/channel_groups.POOR_FIT_FRACTION",
