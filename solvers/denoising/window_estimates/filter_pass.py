@@ -6,7 +6,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..window_priors import Windows
-from .filters import Filter
+from .filters import Filter, sum_covariances
 
 MAX_BLOCK_WINDOWS = 512
 """Windows processed at a time: this bounds the memory, however long the take."""
@@ -57,8 +57,8 @@ def filter_windows(
             coefficients[:, :n_slow] = slow.reshape(-1, n_slow, n_channels)
             coefficients[:, n_slow:] *= window_filter.gains.fast
             windows.add(result.total, windows.frames_from_coefficients(coefficients), starts)
-        if with_moments:
-            window_filter.add_covariance(result.slow_moment)
+    if with_moments:
+        result.slow_moment += sum_covariances(filters)
     n_windows = sum(len(window_filter.pattern.starts) for window_filter in filters)
     result.slow_moment /= n_windows
     result.fast_power /= n_windows

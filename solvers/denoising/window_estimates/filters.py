@@ -1,10 +1,11 @@
 """Filters for the windows of a take, complete or with gaps."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ..window_priors import Windows
@@ -47,17 +48,32 @@ class Filter:
     gaps: GapSolution | None
     """None for complete windows."""
 
-    def add_covariance(self, total: Array) -> None:
-        """Add the posterior covariance of the slow coefficients of these windows to a sum."""
-        scale = np.tile(self.gains.noise, len(total) // len(self.gains.noise))
-        n_windows = len(self.pattern.starts)
-        covariance = self.gains.slow * scale
-        covariance *= n_windows * scale[:, None]
+
+def sum_covariances(filters: list[Filter]) -> Array:
+    """Return the sum of the posterior covariances of the slow coefficients of all windows."""
+    total = np.zeros_like(filters[0].gains.slow)
+    for gains in {id(each.gains): each.gains for each in filters}.values():
+        with_gains = [each for each in filters if each.gains is gains]
+        covariance = gains.slow * sum(len(each.pattern.starts) for each in with_gains)
+        for indices, added in _sum_at_gaps(with_gains):
+            covariance[np.ix_(indices, indices)] += added
+        scale = np.tile(gains.noise, len(total) // len(gains.noise))
+        covariance *= scale
+        covariance *= scale[:, None]
         total += covariance
-        if self.gaps:
-            indices = self.pattern.indices
-            added = self.gaps.added_covariance * np.outer(scale[indices], scale[indices])
-            total[np.ix_(indices, indices)] += n_windows * added
+    return total
+
+
+def _sum_at_gaps(filters: list[Filter]) -> Iterator[tuple[NDArray[np.intp], Array]]:
+    """Yield the covariance that gaps add, summed over windows with the same gap channels."""
+    groups: dict[bytes, list[Filter]] = {}
+    for each in filters:
+        groups.setdefault(each.pattern.channels.tobytes(), []).append(each)
+    for group in groups.values():
+        solutions = [(len(each.pattern.starts), each.gaps) for each in group if each.gaps]
+        if solutions:
+            added = sum(n_windows * gaps.added_covariance() for n_windows, gaps in solutions)
+            yield group[0].pattern.indices, np.asarray(added)
 
 
 def build_filters(
@@ -116,9 +132,8 @@ def compute_variance(
                 window_filter.pattern.channels,
                 window_filter.gains.noise[window_filter.pattern.channels],
             )
-            variance[:, gaps] += _window_variance(
-                window_filter.gaps.added_covariance, noise, windows
-            )
+            basis = windows.dct_basis(window_filter.gaps.factor.shape[1])
+            variance[:, gaps] += window_filter.gaps.added_variance(basis) * noise**2
         windows.add(total, variance, window_filter.pattern.starts)
         per_sample = window_filter.gains.noise**2 * windows.density
         windows.add(leverage, variance / per_sample, window_filter.pattern.starts)

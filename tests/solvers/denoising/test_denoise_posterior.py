@@ -10,6 +10,7 @@ from solvers.denoising.window_estimates.filters import (
     build_filters,
     compute_gains,
     compute_variance,
+    sum_covariances,
     sum_window_weights,
 )
 from solvers.denoising.window_estimates.gap_patterns import (
@@ -49,8 +50,7 @@ def test_window_with_gaps_equals_the_conditional_gaussian(rng):
     actual_variance, leverage = compute_variance(filters, windows, noisy)
     assert_allclose(actual_variance[:, 1:], variance[:, 1:], atol=1e-9)
     assert_allclose(leverage[:, 1:], variance[:, 1:] / noise[1:] ** 2, atol=1e-9)
-    covariance = np.zeros_like(slow)
-    filters[0].add_covariance(covariance)
+    covariance = sum_covariances(filters)
     assert_allclose(frame_variance(windows, covariance)[:, 1:], variance[:, 1:], atol=1e-9)
 
 
