@@ -43,6 +43,9 @@ BURST_PRIOR_PSEUDOCOUNT = 1e9
 """The number of samples, one of them the start of a burst, which only its shape makes
 suspicious. Chosen by hand on the development takes of the first press: with 1e6 nine runs of
 clean takes are taken for errors, with 1e9 one; of 446 true bursts 3 % are lost."""
+FIXED_PSEUDOCOUNT = 1e12
+"""Number of samples of the prior of a rate that is given. By definition: far more than a take
+has, so that the errors in it do not change the rate."""
 MIN_STEP = 10.0
 """Degrees or centimeters: an error that begins or ends with a smaller step is left to the
 smoothers. Chosen by hand; `make sensitivity` varies it."""
@@ -135,12 +138,13 @@ def find_bursts(noisy: Array, frame_rate: float, mixture: MotionMixture) -> NDAr
     despiked = scipy.ndimage.median_filter(complete, (3, 1), mode="nearest")
     noisy = np.where(np.abs(noisy - despiked) > MIN_STEP, np.nan, noisy)
     found = _select(
-        noisy, np.zeros(noisy.shape, dtype=np.bool_), despiked, frame_rate, mixture, False,
+        noisy, np.zeros(noisy.shape, dtype=np.bool_), despiked, frame_rate, mixture,
+        (SPIKE_RATE, BURST_RATE), False,
         lambda joint: _between_steps(despiked[:, joint], max_frames),
     )  # fmt: skip
     # An error in its window makes the movement near it unlikely, too.
     return _select(
-        noisy, found, despiked, frame_rate, mixture, False,
+        noisy, found, despiked, frame_rate, mixture, (SPIKE_RATE, BURST_RATE), False,
         lambda joint: _suspected_runs(found[:, joint]),
     )  # fmt: skip
 
@@ -151,6 +155,7 @@ def confirm_outliers(
     complete: Array,
     frame_rate: float,
     mixture: MotionMixture,
+    rate: float | None = None,
 ) -> NDArray[np.bool_]:
     """Return the suspected outliers that are no movement, shape (n_frames, n_channels).
 
@@ -163,9 +168,13 @@ def confirm_outliers(
         An estimate without them, without NaN.
     frame_rate : float, Hz
     mixture : MotionMixture
+    rate : float, optional
+        Errors per sample; estimated from the take if not given.
     """
+    fixed = None if rate is None else _RatePrior(rate * FIXED_PSEUDOCOUNT, FIXED_PSEUDOCOUNT)
     return _select(
-        noisy, suspected, complete, frame_rate, mixture, True,
+        noisy, suspected, complete, frame_rate, mixture,
+        (fixed or SPIKE_RATE, fixed or RUN_RATE), True,
         lambda joint: _suspected_runs(suspected[:, joint]),
     )  # fmt: skip
 
@@ -176,6 +185,7 @@ def _select(
     complete: Array,
     frame_rate: float,
     mixture: MotionMixture,
+    rates: tuple[_RatePrior, _RatePrior],
     are_suspected: bool,
     candidates: Callable[[slice], list[_Run]],
 ) -> NDArray[np.bool_]:
@@ -193,6 +203,9 @@ def _select(
     tests = list[_Test]()
     for first in range(0, noisy.shape[1], 3):
         joint = slice(first, first + 3)
+        runs = candidates(joint)
+        if not runs:
+            continue
         is_observed = observed[:, joint]
         is_valid = is_observed & ~suspected[:, joint]
         samples = np.where(is_observed, noisy[:, joint], complete[:, joint])
@@ -202,19 +215,20 @@ def _select(
             PredictiveDensity(centered, noise[joint], windows, each, axes)
             for each in (mixture, with_rare_movement(mixture))
         )
-        for run in candidates(joint):
+        for run in runs:
             is_tested = np.zeros_like(is_observed)
             is_tested[run.frames, run.channels] = is_observed[run.frames, run.channels]
             n_tested = np.count_nonzero(is_tested) if are_suspected else None
             of_kind = predictive if run.is_spike else predictive_of_runs
             density = of_kind.of_run(*run, is_valid | is_tested)
             tests.append(_Test(run, first, density, n_tested))
-    run_rate = RUN_RATE if are_suspected else BURST_RATE
-    return _likeliest(tests, observed, run_rate)[:n_frames]
+    return _likeliest(tests, observed, rates)[:n_frames]
 
 
 def _likeliest(
-    tests: Sequence[_Test], observed: NDArray[np.bool_], run_rate: _RatePrior
+    tests: Sequence[_Test],
+    observed: NDArray[np.bool_],
+    rates: tuple[_RatePrior, _RatePrior],
 ) -> NDArray[np.bool_]:
     """Return the samples of the likeliest runs that do not overlap.
 
@@ -222,15 +236,15 @@ def _likeliest(
     ----------
     tests : sequence of _Test
     observed : shape (n_frames, n_channels)
-    run_rate : _RatePrior
-        Of errors of several frames.
+    rates : two _RatePrior
+        Of spikes, and of errors of several frames.
     """
     is_spike = np.array([test.run.is_spike for test in tests], dtype=np.bool_)
     gains, found = np.array([test.max_gain for test in tests]), np.zeros_like(observed)
     # Most runs cannot be likely enough, whatever the exact gains of the others are.
-    for index in np.flatnonzero(_log_odds(gains, is_spike, observed, run_rate) > 0.0):
+    for index in np.flatnonzero(_log_odds(gains, is_spike, observed, rates) > 0.0):
         gains[index] = tests[index].gain
-    log_odds = _log_odds(gains, is_spike, observed, run_rate)
+    log_odds = _log_odds(gains, is_spike, observed, rates)
     for index in np.argsort(-log_odds):
         frames, tested = tests[index].run
         channels = tests[index].first_channel + np.flatnonzero(tested)
@@ -240,11 +254,14 @@ def _likeliest(
 
 
 def _log_odds(
-    gains: Array, is_spike: NDArray[np.bool_], observed: NDArray[np.bool_], run_rate: _RatePrior
+    gains: Array,
+    is_spike: NDArray[np.bool_],
+    observed: NDArray[np.bool_],
+    rates: tuple[_RatePrior, _RatePrior],
 ) -> Array:
     """Return the logarithm of the odds of each test: spikes and runs have their own rates."""
     log_odds, n_samples = gains.copy(), int(np.count_nonzero(observed))
-    for rate, of_kind in ((SPIKE_RATE, is_spike), (run_rate, ~is_spike)):
+    for rate, of_kind in zip(rates, (is_spike, ~is_spike), strict=True):
         log_odds[of_kind] += rate.log_rate(gains[of_kind], n_samples)
     return log_odds
 

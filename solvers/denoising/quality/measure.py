@@ -17,6 +17,7 @@ from ...settings import Settings, setting
 from ..held_samples import body_is_held, find_held_samples, hide_held_samples
 from ..limits import limit_excess
 from .bone_drift import BoneDrift, measure_bone_drifts
+from .confirm_spikes import confirm_spikes
 from .figures import quality_figures
 from .foot_slide import FootPoints, FootSlide, foot_paths, measure_foot_slide, sole_paths
 from .jitter import measure_jitter
@@ -173,7 +174,8 @@ def measure_quality(
 
     The take itself sets the scale of noise and spikes. A robust smooth trajectory is fitted to
     each joint's rotation (or point's position). The fast jitter about it is the noise. A spike
-    is a short jump of several times that noise that is also visible to the eye.
+    is a short jump of several times that noise that is also visible to the eye and, in a
+    motion, no movement for Clean (`confirm_spikes`).
 
     Parameters
     ----------
@@ -214,13 +216,16 @@ def measure_quality(
     held = find_held_samples(recording)
     seen = hide_held_samples(recording, held)
     cuts = find_shot_boundaries(seen)
+    signals = extract_signals(seen, held, rule, within(progress, 0.0, 0.8), cuts)
+    if isinstance(seen, Motion):
+        signals = confirm_spikes(seen, signals, cuts)
     quality = Quality(
         names=names,
         parents=parents,
         n_frames=recording.n_frames,
         frame_rate=recording.frame_rate,
         jitter=measure_jitter(positions, recording.frame_rate, cuts),
-        signals=extract_signals(seen, held, rule, within(progress, 0.0, 0.8), cuts),
+        signals=signals,
         feet=_foot_slides(recording, feet, contacts, humanoid_map, cuts),
         bones=bones,
         limit_excess=_excess(recording, limits, humanoid_map),

@@ -73,7 +73,7 @@ GUARDS: dict[str, Guard] = {
     ),
     "denoising/quality/bone_drift.MIN_NAMED_BONES": Guard(
         1,
-        "denoising/test_quality.py::test_markers_are_connected_by_their_distances_though_two_have_names_of_a_body",
+        "denoising/quality/test_quality.py::test_markers_are_connected_by_their_distances_though_two_have_names_of_a_body",
     ),
     "denoising/marker_gaps/fill_markers.MIN_TRAINING_FRAMES": Guard(
         1,
