@@ -62,9 +62,7 @@ def resample(recording: Recording, frame_rate: float) -> Recording:
     return _resampled(recording, times, frame_rate, frame_rate / recording.frame_rate)
 
 
-def sample_at(
-    recording: Recording, times: NDArray[np.float64], frame_rate: float
-) -> Recording:
+def sample_at(recording: Recording, times: NDArray[np.float64], frame_rate: float) -> Recording:
     """Return the recording at these times, interpolated as by `resample`.
 
     Parameters
