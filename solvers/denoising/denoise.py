@@ -12,7 +12,7 @@ from ..progress import Progress, unwatched, within
 from .baked_takes import describe_baking, find_baking, recorded_samples, restore_rate
 from .denoise_segment import denoise_segment, joint_strengths
 from .denoise_settings import DEFAULT_SETTINGS, DenoiseMethod, DenoiseSettings
-from .denoised import Denoised, join_segments, unchanged
+from .denoised import Denoised, between_samples, join_segments, unchanged
 from .edge_poses import (
     describe_edge_poses,
     find_edge_poses,
@@ -103,14 +103,15 @@ def denoise(
         return _denoise_take(recording, bases, limits, settings, progress)
     samples = recorded_samples(recording, baking)
     result = _denoise_take(samples, bases, limits, settings.at_full_strength(), progress)
+    restored = restore_rate(recording, result.recording, result.cuts, baking)
     message = f"{describe_baking(recording, baking)} {result.prior_used}"
-    result = restore_rate(recording, replace(result, prior_used=message), baking)
+    result = between_samples(result, recording, baking.neighbors(recording.n_frames))
     observed = observed_mask(recording)
     if isinstance(recording, Motion):
         has_root = np.isfinite(recording.root_positions).all(axis=1)
         observed = np.column_stack([observed, has_root])
-    cleaned = _blend(recording, result.recording, observed, limits, settings)
-    return replace(result, recording=cleaned)
+    cleaned = _blend(recording, restored, observed, limits, settings)
+    return replace(result, recording=cleaned, prior_used=message)
 
 
 def _denoise_take(

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...motion import Motion, Tracks
-from ..trajectories import part_trajectories
+from ..held_samples import part_trajectories
 
 RATIOS = (
     (5, 1), (4, 1), (3, 1), (5, 2), (12, 5), (2, 1), (5, 3), (3, 2), (4, 3), (5, 4), (6, 5),
@@ -47,6 +47,12 @@ class Baking(NamedTuple):
         times: Array = (np.arange(n_frames) * self.n_samples + self.phase) / self.n_frames
         return times
 
+    def neighbors(self, n_frames: int) -> tuple[Integers, Integers, Array]:
+        """Return the samples before and after each frame, and the weight of the second."""
+        times = self.times(n_frames)
+        low = np.floor(times).astype(np.intp)
+        return low, np.ceil(times).astype(np.intp), times - low
+
     def weights(self, n_frames: int) -> Array:
         """Return the weight of each sample in each frame, shape (n_frames, n_samples)."""
         times = self.times(n_frames)
@@ -67,11 +73,10 @@ def find_baking(recording: Motion | Tracks) -> Baking | None:
         residuals = [
             _median(_residuals(curves, each, MAX_SCANNED_BLOCKS)) for each in candidates
         ]
-        order = np.argsort(residuals)
-        least, second = (residuals[index] for index in order[:2])
+        least, second = sorted(residuals)[:2]
         if least < min(MAX_RESIDUAL, MAX_RATIO * second):
-            best, *others = (candidates[index] for index in order)
-            if _explains(curves, best, others):
+            best = candidates.pop(residuals.index(least))
+            if _explains(curves, best, candidates):
                 return best
     return None
 

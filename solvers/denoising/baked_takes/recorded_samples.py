@@ -17,7 +17,6 @@ from ...rotations import (
     unroll,
 )
 from ...signals import fill_gaps
-from ..denoised import Denoised
 from .find_baking import Baking
 
 MIXTURE_WEIGHT = 1e-6
@@ -41,31 +40,23 @@ def recorded_samples(recording: Motion | Tracks, baking: Baking) -> Motion | Tra
     return Motion(recording.skeleton, _rotations_of(recording, baking), roots, rate)
 
 
-def restore_rate(recording: Motion | Tracks, result: Denoised, baking: Baking) -> Denoised:
-    """Return the result of the samples for each frame of the recording.
+def restore_rate(
+    recording: Motion | Tracks,
+    samples: Motion | Tracks,
+    cuts: tuple[int, ...],
+    baking: Baking,
+) -> Motion | Tracks:
+    """Return the cleaned samples, which have these cuts, at the frames of the recording.
 
     Between two samples it follows a cubic. Frames between two shots keep what was recorded.
     """
-    times = baking.times(recording.n_frames)
-    low, high = np.floor(times).astype(int), np.ceil(times).astype(int)
-    cleaned = recording
-    for start, stop in shot_ranges(result.recording, result.cuts):
+    low, high, weight = baking.neighbors(recording.n_frames)
+    for start, stop in shot_ranges(samples, cuts):
         frames = np.flatnonzero((low >= start) & (high < stop))
-        shot = result.recording.slice(start, stop)
-        cleaned = _with_frames(
-            cleaned, frames, sample_at(shot, times[frames] - start, recording.frame_rate)
-        )
-    weight = (times - low)[:, None]
-    return Denoised(
-        cleaned,
-        result.outliers[low] | result.outliers[high],
-        result.held[low] | result.held[high],
-        (1.0 - weight) * result.confidence[low] + weight * result.confidence[high],
-        result.iterations,
-        result.converged,
-        result.prior_used,
-        tuple(int(np.argmax(low >= cut)) for cut in result.cuts),
-    )
+        times = low[frames] - start + weight[frames]
+        shot = sample_at(samples.slice(start, stop), times, recording.frame_rate)
+        recording = _with_frames(recording, frames, shot)
+    return recording
 
 
 def describe_baking(recording: Motion | Tracks, baking: Baking) -> str:
@@ -80,10 +71,9 @@ def describe_baking(recording: Motion | Tracks, baking: Baking) -> str:
 def _rotations_of(recording: Motion, baking: Baking) -> Array:
     """Return the rotations of which those of the recording are mixtures (slerp)."""
     rotations = normalize(_samples_of(unroll(recording.rotations), baking))
-    times = baking.times(recording.n_frames)
-    low, high = np.floor(times).astype(int), np.ceil(times).astype(int)
+    low, high, weight = baking.neighbors(recording.n_frames)
     for _ in range(N_CORRECTIONS):
-        mixed = slerp(rotations[low], rotations[high], (times - low)[:, None])
+        mixed = slerp(rotations[low], rotations[high], weight[:, None])
         left = rotation_vector_from_quaternion(multiply(inverse(mixed), recording.rotations))
         # Missing samples stay so, and correct no others.
         correction = _samples_of(np.nan_to_num(left), baking)
@@ -99,9 +89,8 @@ def _samples_of(values: Array, baking: Baking) -> Array:
     values : shape (n_frames, n_parts, n)
     """
     missing = ~np.isfinite(values).all(axis=2)
-    times = baking.times(len(values))
-    low, weight = np.floor(times).astype(int), times - np.floor(times)
-    high, n_samples = np.ceil(times).astype(int), int(np.ceil(times[-1])) + 1
+    low, high, weight = baking.neighbors(len(values))
+    n_samples = int(high[-1]) + 1
     complete = np.nan_to_num(fill_gaps(values)).reshape(len(values), -1)
     # The normal equations are tridiagonal: a frame is a mixture of two neighboring samples.
     diagonal, beside = np.zeros(n_samples), np.zeros(n_samples)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Flags
 from ...motion import Motion, Tracks
 from ...motion.skeletons import find_shot_boundaries
-from ..trajectories import part_trajectories
+from .trajectories import part_trajectories
 
 MAX_REPEAT_RAD = 1e-5
 """Largest step of a repeated sample, radians. It bounds the rounding of single precision: 1e-7

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..arrays import Array
-from ..motion import Motion, Tracks
-from ..rotations import unroll
+from ...arrays import Array
+from ...motion import Motion, Tracks
+from ...rotations import unroll
 
 METERS_PER_RADIAN = 0.3
 """Displacement in meters that counts like a rotation by one radian. Chosen by hand: 0.3 m is
