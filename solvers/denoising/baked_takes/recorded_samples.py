@@ -102,7 +102,7 @@ def _samples_of(values: Array, baking: Baking) -> Array:
         np.add.at(right, sample, (trust * share)[:, None] * complete)
         np.logical_or.at(is_missing, sample, missing)
     np.add.at(beside, high, trust * weight * (1.0 - weight))
-    samples = solveh_banded(np.stack([beside, diagonal]), right)
+    samples: Array = solveh_banded(np.stack([beside, diagonal]), right)
     samples = samples.reshape(n_samples, *values.shape[1:])
     samples[is_missing] = np.nan
     return samples

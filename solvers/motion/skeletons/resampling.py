@@ -62,7 +62,9 @@ def resample(recording: Recording, frame_rate: float) -> Recording:
     return _resampled(recording, times, frame_rate, frame_rate / recording.frame_rate)
 
 
-def sample_at(recording: Recording, times: NDArray[np.float64], frame_rate: float) -> Recording:
+def sample_at(
+    recording: Motion | Tracks, times: NDArray[np.float64], frame_rate: float
+) -> Motion | Tracks:
     """Return the recording at these times, interpolated as by `resample`.
 
     Parameters
@@ -72,6 +74,8 @@ def sample_at(recording: Recording, times: NDArray[np.float64], frame_rate: floa
     frame_rate : float, hertz
         That of the result.
     """
+    if isinstance(recording, Motion):
+        return _resampled(recording, times, frame_rate, 1.0)
     return _resampled(recording, times, frame_rate, 1.0)
 
 
