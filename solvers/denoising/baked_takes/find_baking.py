@@ -13,7 +13,7 @@ from ..held_samples import part_trajectories
 RATIOS = (
     (5, 1), (4, 1), (3, 1), (5, 2), (12, 5), (2, 1), (5, 3), (3, 2), (4, 3), (5, 4), (6, 5),
 )  # fmt: skip
-"""Frames of the take, and samples that were recorded in the same time; fewest samples first.
+"""Frames of the take, and samples that were recorded in the same time; the lowest rates first.
 By definition: the ratios of 24, 25, 30, 50, 60, 90 and 120 Hz up to five."""
 BLOCK_FRAMES = 30
 """Smallest number of frames that are explained at a time. It bounds the run time."""
