@@ -7,6 +7,7 @@ from .hide_held import (
     hide_held_samples,
     restore_held_samples,
 )
+from .trajectories import part_trajectories
 
 __all__ = [
     "body_is_held",
@@ -14,5 +15,6 @@ __all__ = [
     "find_held_samples",
     "held_joints",
     "hide_held_samples",
+    "part_trajectories",
     "restore_held_samples",
 ]

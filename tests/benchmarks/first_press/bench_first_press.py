@@ -3,6 +3,7 @@ r"""Clean as it is pressed first, without examples, next to the filters an anima
     make bench-first-press                      # the scored takes: some minutes
     make bench-first-press ARGUMENTS=--quick    # six development takes at 30 Hz: a minute
     make bench-first-press ARGUMENTS=--development   # all development takes
+    make bench-first-press ARGUMENTS=--detections    # only what is found before the estimate
     make bench-first-press ARGUMENTS="--docs --pictures"   # also writes the document
 
 Which takes are for development is fixed in takes.py, what is corrupted in conditions.py, what
@@ -20,6 +21,7 @@ from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import number, table
 from .calibration import Calibration
 from .conditions import CONDITIONS, Case
+from .detections import detections
 from .draw_worst import draw_worst
 from .filters import METHODS, OURS, PEERS, PUBLISHED
 from .measures import Figures, measure
@@ -133,11 +135,18 @@ def main() -> None:
         for name in METHODS
         if not (chosen.quick and name == PUBLISHED) and (not chosen.only or name in chosen.only)
     ]
+    report = Report(chosen.docs, DOCUMENT)
+    started = perf_counter()
+    if not chosen.quick:
+        found = detections()
+        report.part("detections", [found], perf_counter() - started)
+    if chosen.detections:
+        return
     started = perf_counter()
     scores = run(takes, methods)
     drawn = _draw(scores, takes) if chosen.pictures else []
     seconds = perf_counter() - started
-    Report(chosen.docs, DOCUMENT).part("first press", [*scores.tables(), *drawn], seconds)
+    report.part("first press", [*scores.tables(), *drawn], seconds)
     print(f"{seconds:.0f} s")
 
 
@@ -182,6 +191,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="six development takes")
     parser.add_argument("--development", action="store_true", help="development takes")
     parser.add_argument("--only", nargs="+", default=[], help="names of methods")
+    parser.add_argument("--detections", action="store_true", help="only what is found first")
     parser.add_argument("--docs", action="store_true", help=f"rewrite {DOCUMENT.name}")
     parser.add_argument("--pictures", action="store_true", help="draw the worst takes")
     return parser.parse_args()

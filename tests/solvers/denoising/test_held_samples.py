@@ -228,6 +228,15 @@ def test_pose_that_fills_up_a_joined_take_is_not_held(
     assert 60 + n_repeats in denoise(filled_up).cuts
 
 
+def test_body_that_jumps_into_its_rest_pose_and_back_is_held(walk):
+    """Both jumps look like cuts; between them the movement goes on."""
+    rotations, frames = walk.rotations.copy(), slice(40, 49)
+    rotations[frames] = [1.0, 0.0, 0.0, 0.0]
+    lost = walk.with_poses(rotations)
+    assert find_held_samples(lost)[frames, moving(walk)].all()
+    assert denoise(lost).cuts == ()
+
+
 def test_dropped_frames_are_no_cut(walk):
     """The body jumps after four repeats, as it does between two joined takes."""
     result = denoise(without_four_frames(walk))

@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
+from solvers.denoising import denoise
 from solvers.denoising.motion_model import load_motion_mixture
 from solvers.denoising.outliers import PredictiveDensity, confirm_outliers, find_bursts
 from solvers.denoising.outliers.predictive_density import NEW_MOVEMENT_RATE
 from solvers.denoising.window_priors import Windows
+from solvers.motion import Motion
+from solvers.samples import GaitSettings, walking_gait
 
 MIXTURE = load_motion_mixture()
 
@@ -22,6 +25,16 @@ def walk_like(rate: float, rng: np.random.Generator) -> np.ndarray:
 @pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 120.0])
 def test_kick_is_no_error(rate, rng):
     assert not find_bursts(walk_like(rate, rng), rate, MIXTURE).any()
+
+
+@pytest.mark.parametrize("rate", [60.0, 120.0])
+def test_hips_that_are_put_elsewhere_for_a_moment_return(rate, rng):
+    walk = walking_gait(GaitSettings(duration=2.0, frame_rate=rate))
+    roots = walk.root_positions + rng.normal(scale=0.001, size=walk.root_positions.shape)
+    roots[round(0.9 * rate) : round(1.1 * rate)] += [0.8, 0.5, 0.3]
+    cleaned = denoise(walk.with_poses(root_positions=roots)).recording
+    assert isinstance(cleaned, Motion)
+    assert np.abs(cleaned.root_positions - walk.root_positions).max() < 0.03
 
 
 @pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 120.0])
