@@ -115,8 +115,9 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
         note_other_builds(tasks, screen)
         run_all = partial(_work_on_tasks, arguments=arguments)
         for finished in until_released(tasks, run_all, screen):
-            text = finished.outcome.text if finished.outcome else finished.failure
-            sys.stdout.write(escaped(f"{finished.task.source}: {text}") + "\n")
+            done = finished.outcome
+            text = f"{finished.task.source}: {done.text}" if done else finished.failure
+            sys.stdout.write(f"{escaped(text)}\n")
             sys.stdout.flush()
             failed += finished.outcome.failures if finished.outcome else [finished.failure]
             check_output_folder(folder)
