@@ -8,7 +8,6 @@ from ..errors import InvalidMotionError
 from ..rotations import normalize, unroll
 from .curves import HEIGHT_COLUMN, MotionCurves, sample_curves, sample_linearly
 
-
 MAX_POSES = 1 << 26
 """Rotations of joints in a variant. It bounds the memory for damaged models, to 2 GB."""
 

@@ -56,7 +56,8 @@ def test_command_reports_an_unwritable_file(dancer, command, tmp_path):
 
     status, _, err = command("denoise", "--output", str(tmp_path / "x.blend"))
 
-    assert status == 2 and "x.blend was not saved: " in err and "MB are free on its disk." in err
+    assert status == 2
+    assert "x.blend was not saved: " in err and "MB are free on its disk." in err
 
 
 def test_picture_that_cannot_be_drawn_is_reported(dancer, command, monkeypatch, tmp_path):
