@@ -28,9 +28,7 @@ LAYOUT = ArchiveLayout(
         "usual": quaternions("joints"),
         "root": numbers("examples", "moments", N_ROOT_CHANNELS),
         "joints": numbers("examples", "moments", "joints", 3),
-        "haste": numbers(
-            "examples", "moments", minimum=-MAX_LOG_RATE, maximum=MAX_LOG_RATE
-        ),
+        "haste": numbers("examples", "moments", minimum=-MAX_LOG_RATE, maximum=MAX_LOG_RATE),
         "footing": numbers("examples", "moments", 2, finite=False),
         "carrier": quaternions("moments", "joints", or_empty=True),
         "warning": words(),
