@@ -74,10 +74,11 @@ def escaped(text: str) -> str:
     r"""Return text with each character that UTF-8 cannot encode written as `\udcff`.
 
     Python keeps bytes of file names that are not valid UTF-8 as such characters. Control
-    characters are escaped, too: otherwise a name could imitate a separate line.
+    characters are escaped, too: otherwise a name could imitate a separate line, or another
+    name by letters that run backward.
     """
     plain = text.encode("utf-8", "backslashreplace").decode("utf-8")
-    return re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]", _code, plain)
+    return re.sub(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]", _code, plain)
 
 
 def _code(letter: re.Match[str]) -> str:

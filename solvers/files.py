@@ -97,6 +97,18 @@ def open_regular(path: Path | str) -> BinaryIO:
         raise
 
 
+def read_regular(path: Path | str, max_bytes: int) -> bytes:
+    """Return the content of a small regular file.
+
+    Raises OSError for others, as `open_regular` does, and for a larger file.
+    """
+    with open_regular(path) as file:
+        content = file.read(max_bytes + 1)
+    if len(content) > max_bytes:
+        raise OSError(errno.EFBIG, "it is too large", str(path))
+    return content
+
+
 @contextmanager
 def write_atomically(path: Path | str) -> Iterator[Path]:
     """Yield a temporary path next to `path`; on success, move it to `path`.

@@ -29,6 +29,9 @@ precision 1e-7, times the root of a million frames."""
 MAX_NUMBER = 2.0**53
 """Largest size of a learned number, a ratio of the largest in a file to 1. By definition of
 double precision: next to larger ones, 1 is rounded away, and their products may overflow."""
+MAX_LENGTH_ERROR = 1e-6
+"""Ratio by which the length of a unit quaternion may differ from 1. By definition of single
+precision 1e-7, times the root of a product of a hundred."""
 READABLE = (*DAMAGE, RuntimeError)
 """Errors of zipfile and numpy on damaged archives; RuntimeError on encrypted ones."""
 
@@ -86,6 +89,8 @@ class Values:
     least_eigenvalue : float, optional
         For symmetric matrices in the last two axes, which may be covariances: the smallest
         valid eigenvalue, as a fraction of the largest element. None: no matrices.
+    unit_length : bool
+        Whether the last axis holds unit vectors, such as quaternions.
     """
 
     kinds: str
@@ -96,11 +101,17 @@ class Values:
     optional: bool = False
     or_empty: bool = False
     least_eigenvalue: float | None = None
+    unit_length: bool = False
 
 
 def numbers(*shape: int | str, **more: Any) -> Values:
     """Return the description of numbers of any kind."""
     return Values("fiub", shape, **more)
+
+
+def quaternions(*shape: int | str, **more: Any) -> Values:
+    """Return the description of unit quaternions; their axis of 4 comes after the shape."""
+    return numbers(*shape, 4, unit_length=True, **more)
 
 
 def integers(*shape: int | str, **more: Any) -> Values:
@@ -254,10 +265,18 @@ def _check_values(name: str, array: NDArray[Any], values: Values) -> None:
     too_small = values.minimum > -np.inf and (array < values.minimum).any()
     if too_small or (values.maximum < np.inf and (array > values.maximum).any()):
         raise DamagedMemberError(f"{name} has numbers out of range")
+    if values.unit_length and array.size and not are_unit_vectors(array):
+        raise DamagedMemberError(f"{name} has a rotation that is not a unit quaternion")
     if values.least_eigenvalue is not None and not are_covariances(
         array.astype(np.float64), values.least_eigenvalue
     ):
         raise DamagedMemberError(f"{name} holds a matrix that is not a covariance")
+
+
+def are_unit_vectors(vectors: NDArray[Any]) -> bool:
+    """Return whether the vectors (..., n) have a length of 1."""
+    lengths = np.linalg.norm(vectors.astype(np.float64), axis=-1)
+    return bool((np.abs(lengths - 1.0) < MAX_LENGTH_ERROR).all())
 
 
 def are_covariances(matrices: NDArray[np.float64], least_eigenvalue: float) -> bool:

@@ -80,7 +80,7 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     figures = {"objects": [each.name for each in made], "said": messages, "failed": failed}
     report_figures(arguments, figures, messages)
     if arguments.picture is not None and made:
-        draw_result(bpy.context.scene, made[0], arguments.picture)
+        draw_result(bpy.context.scene, made[0], arguments.picture, screen)
     if failed:
         raise InvalidFileError(" ".join(failed))
 

@@ -157,7 +157,7 @@ def _work(arguments: argparse.Namespace, screen: Screen) -> None:
         made = bpy.data.objects.get(excluded_armature, subjects[0])
         if shows_depth(made):
             made = bpy.context.view_layer.objects.active  # the armature that was tracked
-        draw_result(bpy.context.scene, made, arguments.picture)
+        draw_result(bpy.context.scene, made, arguments.picture, screen)
 
 
 def _subjects(

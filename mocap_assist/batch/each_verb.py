@@ -115,8 +115,7 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
         note_other_builds(tasks, screen)
         run_all = partial(_work_on_tasks, arguments=arguments)
         for finished in until_released(tasks, run_all, screen):
-            text = finished.outcome.text if finished.outcome else finished.failure
-            sys.stdout.write(escaped(f"{finished.task.source}: {text}") + "\n")
+            sys.stdout.write(f"{_describe(finished)}\n")
             sys.stdout.flush()
             failed += finished.outcome.failures if finished.outcome else [finished.failure]
             check_output_folder(folder)
@@ -128,6 +127,12 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
         raise InvalidFileError(f"{len(failed)} of {len(tasks)} files failed. {failed[0]}")
     if faults:
         raise InvalidFileError(faults[0])
+
+
+def _describe(finished: FinishedTask) -> str:
+    """Return the line on a finished file; a failure names the file itself."""
+    done = finished.outcome
+    return escaped(f"{finished.task.source}: {done.text}" if done else finished.failure)
 
 
 def _named_files(words: Sequence[str]) -> list[Path]:

@@ -62,6 +62,6 @@ def perform_import(arguments: argparse.Namespace, screen: Screen) -> None:
     }
     report_figures(arguments, figures, imported.messages)
     if arguments.picture is not None and imported.made:
-        draw_result(bpy.context.scene, imported.made[0], arguments.picture)
+        draw_result(bpy.context.scene, imported.made[0], arguments.picture, screen)
     if imported.failed:
         raise InvalidFileError(" ".join(imported.failed))

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import bpy
 
+from ...solvers.command_line.batches import Screen
 from ...solvers.errors import MocapAssistError
+from ...solvers.files import unwritable
 from ...solvers.motion import Motion, Tracks
 from ...solvers.pictures import StickFigureSettings, draw_stick_figures
 from ..actions.armature_read import read_take
@@ -15,10 +17,12 @@ from ..scene import history
 SIZE = StickFigureSettings(n_figures=9, height=150)
 
 
-def draw_result(scene: bpy.types.Scene, subject: bpy.types.Object, path: Path) -> None:
+def draw_result(
+    scene: bpy.types.Scene, subject: bpy.types.Object, path: Path, screen: Screen
+) -> None:
     """Draw the motion of an armature or markers, over its raw motion if known.
 
-    A failed drawing leaves no picture, and is not an error.
+    A failed drawing is reported on `screen`, is not an error, and keeps an existing file.
     """
     try:
         figures = {"result": _played_motion(scene, subject)}
@@ -29,8 +33,10 @@ def draw_result(scene: bpy.types.Scene, subject: bpy.types.Object, path: Path) -
         # Without the folders above: a batch's output folder that vanished stays away.
         path.parent.mkdir(exist_ok=True)
         draw_stick_figures(figures, SIZE).save(path)
-    except (MocapAssistError, OSError):
-        path.unlink(missing_ok=True)
+    except MocapAssistError as error:
+        screen.write_line(str(error))
+    except OSError as error:
+        screen.write_line(str(unwritable(path, error)))
 
 
 def _played_motion(scene: bpy.types.Scene, subject: bpy.types.Object) -> Motion | Tracks:

@@ -5,6 +5,7 @@ import json
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from shutil import disk_usage
 
 import bpy
 
@@ -52,12 +53,19 @@ def check_folder(path: Path) -> Path:
 
 
 def save(target: Path) -> None:
-    """Save the open file; Blender writes it atomically."""
+    """Save the open file; Blender writes it atomically.
+
+    On a disk that becomes full, Blender reports an arbitrary reason, such as "Success". So the
+    error states also the free space.
+    """
     try:
         bpy.ops.wm.save_as_mainfile(filepath=str(target), check_existing=False)
     except RuntimeError as error:
-        reason = str(error).strip().removeprefix("Error: ")
-        raise InvalidFileError(f"{target} was not saved: {reason}") from error
+        reason = str(error).strip().removeprefix("Error: ").removesuffix(".")
+        free = disk_usage(target.parent).free / 1e6
+        raise InvalidFileError(
+            f"{target} was not saved: {reason}. {free:.1f} MB are free on its disk."
+        ) from error
 
 
 def report_figures(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..archives import ArchiveLayout
 from ..errors import InvalidMotionError, InvalidSettingError
 from ..motion import Motion, Skeleton
-from ..npz_members import integers, numbers, words
+from ..npz_members import MAX_BYTES, integers, numbers, quaternions, words
 from ..progress import Progress, unwatched, within
 from ..rotations import IDENTITY
 from ..settings import Settings, setting
@@ -21,6 +21,8 @@ from .rotation_channels import RotationChannels
 
 MAX_FRAMES = 10_000_000
 """Limit of a file: more than a day at 100 Hz."""
+BYTES_PER_POSE = 32
+"""Of a quaternion in double precision, by definition."""
 LAYOUT = ArchiveLayout(
     "keys of a motion",
     1,
@@ -33,7 +35,7 @@ LAYOUT = ArchiveLayout(
         "rotations": numbers("values"),
         "turning": numbers("values"),
         "orders": words("joints"),
-        "axes": numbers("joints", 4),
+        "axes": quaternions("joints"),
         "places": numbers("places", 3),
         "moving": numbers("places", 3),
         "length": numbers(3),
@@ -106,12 +108,20 @@ class SparseMotion:
         LAYOUT.write(path, arrays)
 
     def dense(self) -> Motion:
-        """Return the motion with a pose at every frame, as F-Curves evaluate it."""
+        """Return the motion with a pose at every frame, as F-Curves evaluate it.
+
+        Raises
+        ------
+        InvalidMotionError
+            At a frame the quaternion of a joint is zero, so that it is no rotation.
+        """
         frames = np.arange(self.n_frames)
         rotations = np.tile(IDENTITY, (self.n_frames, self.skeleton.n_joints, 1))
         for joint, (curve, each) in enumerate(zip(self.rotations, self.channels, strict=True)):
             if len(curve.frames):
                 rotations[:, joint] = each.to_rotations(curve.at(frames))
+        if not np.isfinite(rotations).all():
+            raise InvalidMotionError("A joint has keys that are no rotations. Unbake again.")
         return Motion(self.skeleton, rotations, self.root.at(frames), self.frame_rate)
 
 
@@ -149,7 +159,8 @@ def _motion_from_arrays(arrays: dict[str, NDArray[Any]]) -> SparseMotion:
         or arrays["counts"][:-1] @ widths != len(arrays["rotations"])
     ):
         raise InvalidMotionError("The keys do not fit the joints.")
-    if not 0 < n_frames <= MAX_FRAMES or frame_rate <= 0.0 or not counts[-1]:
+    max_frames = min(MAX_FRAMES, MAX_BYTES // (BYTES_PER_POSE * skeleton.n_joints))
+    if not 0 < n_frames <= max_frames or frame_rate <= 0.0 or not counts[-1]:
         raise InvalidMotionError("The motion length is invalid.")
     frames = np.split(arrays["frames"], np.cumsum(counts)[:-1])
     if any((np.diff(keys) <= 0).any() for keys in frames):

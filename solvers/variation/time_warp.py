@@ -4,8 +4,12 @@ import numpy as np
 import scipy
 
 from ..arrays import Array
+from ..errors import InvalidMotionError
 from ..rotations import normalize, unroll
 from .curves import HEIGHT_COLUMN, MotionCurves, sample_curves, sample_linearly
+
+MAX_POSES = 1 << 26
+"""Rotations of joints in a variant. It bounds the memory for damaged models, to 2 GB."""
 
 
 def apply_time_warp(curves: MotionCurves, durations: Array) -> MotionCurves:
@@ -15,9 +19,19 @@ def apply_time_warp(curves: MotionCurves, durations: Array) -> MotionCurves:
     ----------
     curves : MotionCurves
     durations : shape (n_samples,), frames
+
+    Raises
+    ------
+    InvalidMotionError
+        The samples last too long.
     """
     steps = (durations[1:] + durations[:-1]) / 2.0
     ends = np.concatenate([[0.0], np.cumsum(steps)])
+    if not ends[-1] * curves.joints.shape[1] <= MAX_POSES:
+        raise InvalidMotionError(
+            f"A variant would have {ends[-1]:.3g} frames; learn the model again from its clips,"
+            " or vary timing less."
+        )
     n_frames = max(round(ends[-1]), 1) + 1
     ends *= (n_frames - 1) / ends[-1]
     samples = scipy.interpolate.PchipInterpolator(ends, np.arange(len(ends)))(

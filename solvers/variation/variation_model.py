@@ -8,13 +8,16 @@ import numpy as np
 from ..archives import ArchiveLayout
 from ..arrays import Array
 from ..motion import Skeleton
-from ..npz_members import integers, numbers, words
+from ..npz_members import integers, numbers, quaternions, words
 from .curves import N_ROOT_CHANNELS
 from .mixing_kernel import MixingKernel
 from .published import StepwiseModel
 
 MIN_FRAME_RATE_HZ, MAX_FRAME_RATE_HZ = 1e-3, 1e6
 """Bounds of a plausible frame rate. They guard against damaged files."""
+MAX_LOG_RATE = 14.0
+"""Logarithm of the most frames of an example per sample, a million. It guards against damaged
+files (`test_values_within_range_are_refused_or_used`)."""
 LAYOUT = ArchiveLayout(
     "a variation model",
     2,
@@ -22,12 +25,12 @@ LAYOUT = ArchiveLayout(
         "names": words("joints"),
         "parents": integers("joints", minimum=-1),
         "offsets": numbers("joints", 3),
-        "usual": numbers("joints", 4),
+        "usual": quaternions("joints"),
         "root": numbers("examples", "moments", N_ROOT_CHANNELS),
         "joints": numbers("examples", "moments", "joints", 3),
-        "haste": numbers("examples", "moments"),
+        "haste": numbers("examples", "moments", minimum=-MAX_LOG_RATE, maximum=MAX_LOG_RATE),
         "footing": numbers("examples", "moments", 2, finite=False),
-        "carrier": numbers("moments", "joints", 4, or_empty=True),
+        "carrier": quaternions("moments", "joints", or_empty=True),
         "warning": words(),
         "numbers": numbers(5),
         "stepwise": StepwiseModel.SAVED,

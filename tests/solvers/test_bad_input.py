@@ -1,9 +1,10 @@
-"""Takes with no, or almost no, observed samples."""
+"""Takes with no, or almost no, observed samples, and with very many points."""
 
 import numpy as np
 import pytest
 
 from solvers.denoising import denoise, learn_filter_bases
+from solvers.denoising.quality import bone_drift
 from solvers.errors import InvalidMotionError
 from solvers.motion import Tracks
 from solvers.samples import GaitSettings, walking_gait
@@ -33,3 +34,16 @@ def test_examples_without_movement_are_refused():
             learn_filter_bases([example])
     with pytest.raises(InvalidMotionError, match="No example is as long as the window"):
         learn_filter_bases([walk.slice(0, 1)])
+
+
+def test_bones_of_very_many_points_are_not_searched(rng, monkeypatch):
+    tested = []
+    monkeypatch.setattr(bone_drift, "_cost", lambda lengths: tested.append(1) or (1.0, True))
+    for n_points in (bone_drift.MAX_POINTS, bone_drift.MAX_POINTS + 1):
+        names = tuple(f"M{number}" for number in range(n_points))
+        found = bone_drift.measure_bone_drifts(
+            Tracks(names, rng.normal(size=(2, n_points, 3)), 30.0)
+        )
+
+        assert len(found) == (n_points - 1 if n_points <= bone_drift.MAX_POINTS else 0)
+    assert len(tested) == 300 * 299 // 2

@@ -78,3 +78,4 @@ def test_a_sentence_is_valid_unicode_when_the_name_of_the_file_is_not():
     assert isinstance(failure, Failure)
     assert failure.sentence.encode().startswith(rb"caf\udce9.bvh: this is a bug")
     assert escaped("ü") == "ü"
+    assert escaped("walk\u202ehvb.exe \u2066") == "walk\\u202ehvb.exe \\u2066"

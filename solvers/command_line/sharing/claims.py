@@ -15,7 +15,7 @@ from secrets import token_hex
 from threading import Event, Thread
 from typing import Any, NamedTuple
 
-from ...files import unwritable
+from ...files import read_regular, unwritable
 from ...json_text import parse_json
 from ...processes import host_name, is_running, this_machine
 
@@ -27,6 +27,9 @@ ABANDONED_AFTER_S = 300.0
 was on another machine that has stopped."""
 PART = re.compile(r"\.[0-9a-f]{16}\.claim\.part|[0-9a-f]{16}\.time")
 """Names of the files of a moment that a claim needs; only a killed process leaves any."""
+MAX_BYTES = 10_000
+"""Bytes of a claim; a host and two numbers have a hundred. It bounds the memory for damaged
+files."""
 UNKNOWN_HOST = "another process"
 Claims = dict[Path, dict[str, Any]]
 """Files of claims by number, with their content."""
@@ -153,7 +156,7 @@ def _created_empty(file: Path, content: str) -> bool:
 def _content(file: Path) -> dict[str, Any] | None:
     """Return the content of a claim; None if it does not exist, empty while it is written."""
     try:
-        found = parse_json(file.read_bytes())
+        found = parse_json(read_regular(file, MAX_BYTES))
     except FileNotFoundError:
         return None
     except (OSError, ValueError):

@@ -9,7 +9,7 @@ from secrets import token_hex
 from typing import Any
 
 from ...faults import Failure, attempt
-from ...files import remove_leftovers, write_atomically
+from ...files import read_regular, remove_leftovers, write_atomically
 from ...json_text import parse_json
 from ...processes import host_name
 from .claims import is_held, remove_abandoned_parts
@@ -21,6 +21,9 @@ FORMER_RECORD = "mocap_assist.json"
 """The one record of all outputs that earlier versions wrote; still read."""
 MAX_NAME_LETTERS = 40
 """Letters of an output's name in that of its record. It bounds the length of file names."""
+MAX_BYTES = 64_000_000
+"""Bytes of a file of records. It bounds the memory for damaged files; a former record of a
+thousand outputs has two million."""
 N_DIGITS = 16
 """Hexadecimal digits of a hash that tell records of equal names apart. It guards against equal
 hashes: of a million outputs, two share one with a chance of 1 in 30 million."""
@@ -100,7 +103,7 @@ class Records:
     def former(self) -> Iterator[Record]:
         """Yield the records in the single file of earlier versions."""
         try:
-            notes = parse_json((self.folder / FORMER_RECORD).read_bytes())
+            notes = parse_json(read_regular(self.folder / FORMER_RECORD, MAX_BYTES))
         except (OSError, ValueError):
             return
         for output, note in notes.items() if isinstance(notes, Mapping) else ():
@@ -138,7 +141,7 @@ def _read(file: Path, output: str | None = None) -> Record | None:
 
 
 def _parsed(file: Path) -> Record:
-    content = parse_json(file.read_bytes())
+    content = parse_json(read_regular(file, MAX_BYTES))
     record = Record(**{each.name: content[each.name] for each in fields(Record)})
     texts = [record.verb, record.output, record.error, record.host, record.identifier]
     lists = [*record.inputs, *record.remarks]

@@ -13,6 +13,9 @@ from ...motion.humanoid import roles_by_name
 MAX_SAMPLED_FRAMES = 1000
 """Frames used to decide which points are rigidly connected; the drift uses all frames. It
 bounds the run time of long takes."""
+MAX_POINTS = 300
+"""Points without names of joints that are tested in pairs. It bounds the run time: 45,000 pairs
+take some ten seconds, and a thousand points took minutes."""
 LENGTH_COST = 0.01
 """Cost per meter: of two equally constant connections the shorter one is preferred. Chosen by
 hand; `make sensitivity` varies it."""
@@ -45,10 +48,12 @@ def measure_bone_drifts(tracks: Tracks) -> tuple[BoneDrift, ...]:
     Points named like the joints of a body are connected like its limbs and its neck. Other
     points, such as markers, are connected by the minimum spanning tree of how much their
     distances vary (Kirk, O'Brien and Forsyth 2005, doi:10.1109/CVPR.2005.326). Only connections
-    with a nearly constant length are kept. Points without a common observed frame are not
-    connected.
+    with a nearly constant length are kept. Points without a common observed frame, and more
+    than `MAX_POINTS` of them, are not connected.
     """
-    pairs = _bones_from_names(tracks.names) or _bones_from_distances(tracks)
+    pairs = _bones_from_names(tracks.names)
+    if not pairs and tracks.n_points <= MAX_POINTS:
+        pairs = _bones_from_distances(tracks)
     drifts = [_drift(tracks, first, second) for first, second in pairs]
     return tuple(drift for drift in drifts if drift is not None)
 

@@ -11,7 +11,14 @@ from ...archives import ArchiveLayout
 from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion, Tracks
-from ...npz_members import are_covariances, flags, integers, numbers, words
+from ...npz_members import (
+    are_covariances,
+    are_unit_vectors,
+    flags,
+    integers,
+    numbers,
+    words,
+)
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
 from ..channels import BODY_POSITION, ExampleChannels, Moments
@@ -34,9 +41,6 @@ MIN_RATE_HZ, MAX_RATE_HZ, MAX_WINDOW_S = 5.0, 240.0, 3.0
 MIN_EIGENVALUE_RATIO = -1e-9
 """Fraction of the largest element of a covariance. By definition the rounding of a sum of many
 windows in double precision."""
-MAX_LENGTH_ERROR = 1e-6
-"""Ratio by which the length of a unit quaternion may differ from 1. By definition of double
-precision."""
 LAYOUT = ArchiveLayout(
     "filter bases",
     3,
@@ -179,8 +183,7 @@ def _fault(bases: FilterBases) -> str:
 
 def _are_rotations(references: Array) -> bool:
     """Return whether these are the three unit quaternions of each joint."""
-    lengths = np.linalg.norm(references.reshape(len(references), -1, 4), axis=-1)
-    return bool((np.abs(lengths - 1.0) < MAX_LENGTH_ERROR).all())
+    return are_unit_vectors(references.reshape(len(references), -1, 4))
 
 
 def learn_filter_bases(

@@ -21,14 +21,15 @@ from .tables import (
     SIDES,
 )
 
-MAX_LENGTH_M = 100.0
-"""Maximum length or radius of a body part. It guards against damaged files."""
+MIN_LENGTH_M, MAX_LENGTH_M = 1e-3, 100.0
+"""Bounds of the length or radius of a body part. They guard against damaged files
+(`test_body_of_no_size_is_refused`)."""
 LAYOUT = ArchiveLayout(
     "body model",
     1,
     {
-        "lengths": numbers(len(LENGTHS), minimum=0.0, maximum=MAX_LENGTH_M),
-        "radii": numbers(len(CAPSULES), 2, minimum=0.0, maximum=MAX_LENGTH_M),
+        "lengths": numbers(len(LENGTHS), minimum=MIN_LENGTH_M, maximum=MAX_LENGTH_M),
+        "radii": numbers(len(CAPSULES), 2, minimum=MIN_LENGTH_M, maximum=MAX_LENGTH_M),
         "length_names": words("lengths"),
         "capsule_names": words("capsules"),
     },

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...rotations import quaternion_from_euler
-from ..containers import read_bytes, shown
+from ..containers import check_n_joints, read_bytes, shown
 
 INCH = 0.0254
 ROOT = "root"
@@ -52,7 +52,7 @@ def read_acclaim_skeleton(path: Path | str) -> AcclaimSkeleton:
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, or not an Acclaim skeleton.
+        The file is missing, damaged, has too many bones, or is not an Acclaim skeleton.
     """
     return _SkeletonFile(path).skeleton()
 
@@ -78,6 +78,8 @@ class _SkeletonFile:
                 )
 
     def skeleton(self) -> AcclaimSkeleton:
+        n_bones = sum(words[0].lower() == "end" for words in self._lines(":bonedata"))
+        check_n_joints(self.path, n_bones)
         units = {words[0].lower(): words[1:] for words in self._lines(":units")}
         in_degrees = units.get("angle", ["deg"])[:1] != ["rad"]
         angle_unit = np.pi / 180.0 if in_degrees else 1.0

@@ -11,7 +11,14 @@ from ...errors import InvalidFileError
 from ...motion import Motion, Skeleton
 from ...progress import Progress, unwatched
 from ...rotations import IDENTITY, inverse, multiply, normalize, rotate, slerp, unroll
-from ..containers import GlbFile, UniqueNames, printable, vector
+from ..containers import (
+    GlbFile,
+    UniqueNames,
+    check_n_joints,
+    check_n_poses,
+    printable,
+    vector,
+)
 from ..conventions import check_scale, rotations_z_up_from_y_up, z_up_from_y_up
 
 EXTENSION = "VRMC_vrm_animation"
@@ -70,7 +77,7 @@ def read_vrma(
     Raises
     ------
     InvalidFileError
-        The file is damaged, or has no hips or no animation.
+        The file is damaged or too large, or has no hips or no animation.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -86,6 +93,7 @@ def read_vrma(
     bones = _bones(file, len(nodes))
     names, order, parents = _tree(file, nodes, bones)
     times, rate = _sample_times(file, nodes, order)
+    check_n_poses(path, len(times), len(order))
     progress(0.5, "Reading")
     unit = 1.0 if scale is None else scale
     rest = np.array([_world_rest(nodes, node)[1] for node in order])
@@ -129,6 +137,7 @@ def _bones(file: GlbFile, n_nodes: int) -> dict[int, str]:
 def _nodes(file: GlbFile) -> list[_Node]:
     """Return all nodes with the keys of the first animation."""
     listed = file.items("nodes")
+    check_n_joints(file.path, len(listed))
     parents = [-1] * len(listed)
     for index, node in enumerate(listed):
         children = node.get("children", [])
@@ -137,6 +146,7 @@ def _nodes(file: GlbFile) -> list[_Node]:
                 raise file.damaged()
             parents[child] = index
     keys: list[dict[str, _Channel]] = [{} for _ in listed]
+    n_keys = 0
     for animation in file.items("animations")[:1]:
         for channel in _objects(animation.get("channels")):
             target = channel.get("target")
@@ -146,6 +156,8 @@ def _nodes(file: GlbFile) -> list[_Node]:
             if isinstance(moved, int) and 0 <= moved < len(keys) and kind in _SIZES:
                 samplers = _objects(animation.get("samplers"))
                 keys[moved][kind] = _channel(file, samplers, channel.get("sampler"), kind)
+                n_keys += len(keys[moved][kind].times)
+                check_n_poses(file.path, n_keys, 1)  # Channels may share their numbers.
     return [
         _Node(
             parents[index],

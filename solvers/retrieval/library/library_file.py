@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ...errors import InvalidFileError
+from ...files import is_missing, real_path
 from ..index import (
     IndexBlock,
     Vocabulary,
@@ -44,7 +45,8 @@ def create_database() -> sqlite3.Connection:
 def create_file(path: Path) -> None:
     """Create an empty library in a missing or empty file; leave other files unchanged.
 
-    If two processes do so at the same time, only one creates the tables.
+    If two processes do so at the same time, only one creates the tables. A file that this call
+    made and could not fill, such as on a full disk, is removed.
 
     Raises
     ------
@@ -52,6 +54,7 @@ def create_file(path: Path) -> None:
         The name has no suffix of a library; the folder is missing or not writable.
     """
     refuse_other_suffix(path)
+    is_new = is_missing(path)
     with readable_errors(path):
         database = _connect(path)
         try:
@@ -61,6 +64,9 @@ def create_file(path: Path) -> None:
                         _lay_out(database)
         finally:
             database.close()
+            made = real_path(path)
+            if is_new and made.exists() and not made.stat().st_size:
+                made.unlink()
 
 
 def refuse_other_suffix(path: Path) -> None:

@@ -1,5 +1,6 @@
 """`blender FILE --command mocap_assist ...`: the buttons without a window."""
 
+import errno
 import json
 
 import pytest
@@ -55,7 +56,23 @@ def test_command_reports_an_unwritable_file(dancer, command, tmp_path):
 
     status, _, err = command("denoise", "--output", str(tmp_path / "x.blend"))
 
-    assert status == 2 and "x.blend was not saved" in err
+    assert status == 2
+    assert "x.blend was not saved: " in err and "MB are free on its disk." in err
+
+
+def test_picture_that_cannot_be_drawn_is_reported(dancer, command, monkeypatch, tmp_path):
+    picture = tmp_path / "x.png"
+    picture.write_bytes(b"a picture of somebody")
+
+    def fill_disk(*_, **__):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("PIL.Image.Image.save", fill_disk)
+
+    status, _, err = command("quality", "--picture", picture)
+
+    assert (status, err) == (0, f"{picture} cannot be written: the disk is full.\n")
+    assert picture.read_bytes() == b"a picture of somebody"
 
 
 def test_quality_command_measures(bad_arm, command):

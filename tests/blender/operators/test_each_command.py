@@ -45,6 +45,7 @@ def test_each_command_imports_cleans_and_resumes(blank, command, takes, tmp_path
 
     assert status == 2
     assert "1 of 3 files failed" in err and "bad.bvh" in err
+    assert out.count("bad.bvh") == 1
     made = {path.relative_to(raw).as_posix() for path in raw.rglob("*.blend")}
     assert made == {"one.blend", "second/two.blend"}
     report = json.loads((raw / "report.json").read_text())

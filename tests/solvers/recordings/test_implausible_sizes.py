@@ -31,13 +31,18 @@ def refused(tmp_path):
     return read
 
 
-def test_too_many_joints_are_refused(refused):
+def test_too_many_joints_are_refused(refused, tmp_path):
     n_joints = size_limits.MAX_JOINTS + 1
     bodies = "".join(map(ROOT.format, range(n_joints)))
     bvh = f"HIERARCHY\n{bodies}MOTION\nFrames: 1\nFrame Time: 0.1\n"
     table = LINES + "".join(f"0,j{joint},1,2,3\n" for joint in range(n_joints))
 
+    bones = "begin\nend\n" * n_joints
+    skeleton = f":root\n:bonedata\n{bones}:hierarchy\n"
+
     assert "10,001 joints; 10,000 can be read" in refused(bvh)
+    (tmp_path / "take.asf").write_text(skeleton)
+    assert "10,001 joints; 10,000 can be read" in refused(RECORDING, "take.amc")
     assert "10,001 joints; 10,000 can be read" in refused(table)
 
 

@@ -19,6 +19,7 @@ from solvers.retrieval import (
     open_clip_library,
 )
 from solvers.retrieval.library import index_clips, library_file
+from solvers.retrieval.library.schema import create_tables
 
 ODD = {
     "a\r\nb": r"'a\r\nb' has control characters",
@@ -154,6 +155,24 @@ def test_full_disk_is_reported_and_the_library_unchanged(tmp_path):
         library._database.execute("PRAGMA max_page_count = 100000")
         library.add(more)
         assert len(library.entries) == 10
+
+
+@pytest.mark.parametrize("existed", [False, True])
+def test_full_disk_leaves_no_empty_library(tmp_path, monkeypatch, existed):
+    path = tmp_path / "a.clips"
+    if existed:
+        path.touch()
+
+    def one_page(database: sqlite3.Connection) -> None:
+        database.execute("PRAGMA max_page_count = 1")
+        create_tables(database)
+
+    monkeypatch.setattr(library_file, "create_tables", one_page)
+
+    with pytest.raises(InvalidFileError, match="the disk is full"):
+        open_clip_library(path)
+
+    assert path.exists() == existed
 
 
 def test_solver_error_is_not_reported_as_damage(tmp_path, monkeypatch):

@@ -6,7 +6,14 @@ from pathlib import Path
 from typing import NoReturn
 
 from ....errors import InvalidFileError
-from ...containers import MAX_NAME_LENGTH, UniqueNames, decode_text, printable, shown
+from ...containers import (
+    MAX_NAME_LENGTH,
+    UniqueNames,
+    check_n_joints,
+    decode_text,
+    printable,
+    shown,
+)
 
 CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
 
@@ -31,7 +38,7 @@ def read_hierarchies(text: bytes, path: Path | str) -> list[list[BvhJoint]]:
     Raises
     ------
     InvalidFileError
-        The text is not a BVH hierarchy.
+        The text is not a BVH hierarchy, or has too many joints.
     """
     return _Hierarchy(text, path).read()
 
@@ -44,6 +51,7 @@ class _Hierarchy:
         self.line = 1
         self.words = self._words(text)
         self.joints: list[BvhJoint] = []
+        self.n_joints = 0
         self.names = UniqueNames()
 
     def read(self) -> list[list[BvhJoint]]:
@@ -83,8 +91,13 @@ class _Hierarchy:
             if channel not in CHANNELS or channel in channels:
                 self._refuse(f"{shown(name)} has a channel {shown(channel)!r}, or has it twice")
             channels.append(channel)
-        self.joints.append(BvhJoint(self.names.give(name), parent, offset, tuple(channels)))
+        self._add(BvhJoint(self.names.give(name), parent, offset, tuple(channels)))
         return len(self.joints) - 1
+
+    def _add(self, joint: BvhJoint) -> None:
+        self.joints.append(joint)
+        self.n_joints += 1
+        check_n_joints(self.path, self.n_joints)
 
     def _end_site(self, parent: int) -> None:
         self._name()
@@ -96,7 +109,7 @@ class _Hierarchy:
             self._refuse("an End Site is not closed by }")
         if any(offset):
             name = self.names.give(self.joints[parent].name, "_end")
-            self.joints.append(BvhJoint(name, parent, offset, ()))
+            self._add(BvhJoint(name, parent, offset, ()))
 
     def _offset(self) -> tuple[float, float, float]:
         if self._keyword() != "OFFSET":

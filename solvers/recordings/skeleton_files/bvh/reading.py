@@ -9,7 +9,7 @@ import numpy as np
 from ....errors import InvalidFileError
 from ....motion import Motion
 from ....progress import Progress, Remark, unwatched, within
-from ...containers import LineReader, UniqueNames, check_n_joints, check_n_poses, stream_rows
+from ...containers import LineReader, UniqueNames, check_n_poses, stream_rows
 from ...conventions import (
     MIN_BODY_JOINTS,
     Bodies,
@@ -126,8 +126,6 @@ def _read_bodies(
     """Read each body; the largest one shows unit and axes of all."""
     reader = LineReader(path)
     bodies = read_hierarchies(_hierarchy(reader, path), path)
-    n_joints = sum(map(len, bodies))
-    check_n_joints(path, n_joints)
     stated_rate, n_announced = _frame_rate(reader, progress)
     frame_rate = stated_rate or DEFAULT_RATE_HZ
     widths = [sum(len(joint.channels) for joint in joints) for joints in bodies]
@@ -136,7 +134,7 @@ def _read_bodies(
     rows = stream_rows(reader, sum(widths), path, within(progress, 0.0, 0.7))
     if not len(rows):
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
-    check_n_poses(path, len(rows), n_joints)
+    check_n_poses(path, len(rows), sum(map(len, bodies)))
     _check_header(len(rows), n_announced, stated_rate, progress)
     ends = np.cumsum(widths)
     columns = np.split(rows, ends[:-1], axis=1)

@@ -164,6 +164,25 @@ def test_records_that_point_elsewhere_or_are_damaged_are_ignored(
     assert (status, printed) == (0, f"done    {out / 'leg.bvh'}\n1 done, 0 failed\n")
 
 
+@pytest.mark.parametrize("name", [".mocap_assist/other.json", "mocap_assist.json"])
+@pytest.mark.parametrize("kind", ["pipe", "device", "folder"])
+def test_records_that_are_no_files_are_ignored(call, leg_file, tmp_path, name, kind):
+    file = tmp_path / "out" / name
+    file.parent.mkdir(parents=True)
+    if kind == "pipe":
+        os.mkfifo(file)
+    elif kind == "device":
+        file.symlink_to("/dev/zero")
+    else:
+        file.mkdir()
+
+    for words in (("convert", leg_file, "--output-folder"), ("report",)):
+        status, _, err = call(*words, tmp_path / "out")
+
+        assert (status, err) == (0, "")
+    assert json.loads((tmp_path / "out" / "report.json").read_text())["done"] == 1
+
+
 def test_report_is_written_again_when_a_record_is_added_meanwhile(tmp_path):
     Records(tmp_path).prepare()
     one, two = (

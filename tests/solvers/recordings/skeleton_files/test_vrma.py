@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, world_poses
 from solvers.recordings import read_recording
+from solvers.recordings.containers import size_limits
 
 
 def joints(motion):
@@ -112,6 +113,25 @@ BONES = ("extensions", "VRMC_vrm_animation", "humanoid", "humanBones")
 def test_what_is_damaged_is_refused_in_a_sentence(read_any, change, sentence):
     with pytest.raises(InvalidFileError, match=sentence):
         read_any(vrma(change))
+
+
+def test_too_many_nodes_are_refused(read_any):
+    with pytest.raises(InvalidFileError, match="10,000 can be read"):
+        read_any(vrma(lambda document: document["nodes"].extend([{}] * 10_000)))
+
+
+def test_shared_numbers_and_few_keys_use_no_memory(read_any, monkeypatch):
+    def share(document):
+        moves = document["animations"][0]["channels"]
+        moves.extend(moves[:1] * 1000)
+
+    monkeypatch.setattr(size_limits, "MAX_UNCHECKED_POSES", 10_000)
+    read_any(vrma(n_keys=301))
+
+    with pytest.raises(InvalidFileError, match="frames of 1 joints, but hardly any"):
+        read_any(vrma(share, n_keys=301))
+    with pytest.raises(InvalidFileError, match="has 15,001 frames of 19 joints"):
+        read_any(vrma(rate=0.002, n_keys=2))
 
 
 @pytest.mark.parametrize("fraction", [0.95, 0.999])
