@@ -173,6 +173,11 @@ TABLES: dict[str, tuple[str, ...]] = {
         "clavicle", "uparm", "lowarm", "wrist",
         "upleg", "lowleg", "foot", "ball",
     ),
+    "Talking With Hands": (  # of Meta, the recordings of the GENEA challenges
+        "root", "spine0", "spine1", "spine3", "neck0", "head",
+        "shoulder", "arm", "forearm", "wrist",
+        "upleg", "leg", "foot", "ball",
+    ),
     "mocopi": (
         "root", "torso_1", "torso_4", "torso_7", "neck_1", "head",
         "shoulder", "up_arm", "low_arm", "hand",
