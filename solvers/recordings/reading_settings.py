@@ -43,7 +43,7 @@ class Unit(Choice):
     CENTIMETRES = "centimetres", "Read lengths in the files as centimeters", "Centimeters"
     MILLIMETRES = "millimetres", "Read lengths in the files as millimeters", "Millimeters"
     INCHES = "inches", "Read lengths in the files as inches", "Inches"
-    FEET = "feet", "Read lengths in the files as feet", "Feet"
+    FEET = "feet", "Read lengths in the files as feet", "Feet (ft)"
 
     @property
     def metres(self) -> float | None:

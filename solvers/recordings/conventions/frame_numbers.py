@@ -77,7 +77,7 @@ def rate_of_numbers(
         return rate
     if rate is None:
         rate = DEFAULT_FRAME_RATE
-        progress(0.8, Remark(f"The file has no times; {rate:g} Hz is assumed"))
+        progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     if abs(step * rate - MS_PER_S) <= MAX_MS_ROUNDING:
         return rate
     progress(

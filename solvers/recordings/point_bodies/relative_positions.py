@@ -80,7 +80,8 @@ def refuse_changing_bones(path: Path | str, points: Array, roles: Mapping[str, i
     if stretches and (stretch := float(np.median(stretches))) > MAX_STRETCH:
         raise InvalidFileError(
             f"{path} has joints whose bones change their length by {stretch:.0%}, so its"
-            " numbers are no positions. Save positions in the room, or export BVH, FBX or GLB."
+            " numbers are no positions. Save positions in the room (world or global), or export"
+            " BVH, FBX or GLB."
         )
 
 
