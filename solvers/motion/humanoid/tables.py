@@ -223,6 +223,12 @@ TABLES: dict[str, tuple[str, ...]] = {
         "shoulder", "arm_upper", "arm_lower", "hand_wrist",
         "upper_leg leg_upper", "lower_leg leg_lower", "foot_ankle", "foot_ball",
     ),
+    "3ds Max CAT": (
+        "pelvis hub001", "spine1", "spine2", "ribcage hub002", "neck1 neck", "head hub003",
+        "armCollarbone collarbone", "arm1 armUpperarm upperarm", "arm2 armForearm forearm",
+        "armPalm palm",
+        "leg1 legThigh thigh", "leg2 legCalf calf", "legAnkle ankle", "legDigit11 toe",
+    ),
     "Theia": (
         "pelvis", "abdomen", "thorax torso", "", "neck", "head",
         "clavicle", "uarm", "larm", "hand",
