@@ -10,6 +10,7 @@ from ..progress import Progress, Remark, unwatched, within
 from .conventions import (
     Bodies,
     conventions_of,
+    describe_guessed_axis,
     lacks_floor,
     put_on_floor,
     question_of_depth,
@@ -102,11 +103,14 @@ def settle(recording: Recording, settings: ReadingSettings, floor: FloorPlacemen
 
 
 def questions_of(recording: Tracked, floor: FloorPlacement) -> list[str]:
-    """Ask whether size, depth and height of an actor are right, where they are odd.
+    """Ask whether size, depth and height of an actor are right, and the axis of markers.
 
     Heights are not questioned if the settings keep them.
     """
+    conventions = conventions_of(recording)
     found = [question_of_size(recording), question_of_depth(recording)]
+    if isinstance(recording, Tracks) and not conventions.is_certain:
+        found.append(describe_guessed_axis(conventions.up))
     if floor is not FloorPlacement.NEVER:
         found.append(question_of_floor(recording))
     return [question for question in found if question]

@@ -43,6 +43,7 @@ class Unit(Choice):
     CENTIMETRES = "centimetres", "Read lengths in the files as centimeters", "Centimeters"
     MILLIMETRES = "millimetres", "Read lengths in the files as millimeters", "Millimeters"
     INCHES = "inches", "Read lengths in the files as inches", "Inches"
+    FEET = "feet", "Read lengths in the files as feet", "Feet (ft)"
 
     @property
     def metres(self) -> float | None:
@@ -52,6 +53,7 @@ class Unit(Choice):
 
 METRES = {
     Unit.METRES: 1.0, Unit.CENTIMETRES: 0.01, Unit.MILLIMETRES: 0.001, Unit.INCHES: 0.0254,
+    Unit.FEET: 0.3048,
 }  # fmt: skip
 
 

@@ -23,7 +23,7 @@ WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_A-Za-z]+")
 MIN_SIDED_JOINTS = 6
 """Joints with a mirrored name, from which a single letter in that place is a side."""
 
-EXPORT_NUMBER = re.compile(r"(.+)_(\d+)$")
+EXPORT_NUMBER = re.compile(r"(.+)_#?(\d+)$")
 SIDE_WORDS = {
     **dict.fromkeys(("links", "linke", "linker", "linkes", "gauche", "izquierdo", "izquierda",
                      "izq"), "left"),

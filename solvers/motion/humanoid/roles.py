@@ -232,7 +232,7 @@ def _fill_from(
     both = [role for role in by_structure.joints if role in by_name.joints]
     agreed = sum(by_name.joints[role] == by_structure.joints[role] for role in both)
     if agreed < MIN_AGREEMENT * max(len(both), 1):
-        return by_name
+        return _with_hips_of(skeleton, by_name, by_structure)
     taken = set(by_name.joints.values())
     added = {
         role: joint
@@ -241,6 +241,20 @@ def _fill_from(
     }
     joints = _lower_spine(skeleton, {**by_name.joints, **added})
     return _score_names(skeleton, joints) if joints != dict(by_name.joints) else by_name
+
+
+def _with_hips_of(
+    skeleton: Skeleton, by_name: HumanoidMap, by_structure: HumanoidMap
+) -> HumanoidMap:
+    """Return the map by names with the hips by structure, if only they carry its legs."""
+    hips = by_structure.joint("hips")
+    legs = [by_name.joint(role) for role in ("leftUpperLeg", "rightUpperLeg")]
+    if by_name.has("hips") or hips is None or hips in by_name.joints.values():
+        return by_name
+    above = [set(skeleton.ancestors(skeleton.index(leg))) for leg in legs if leg is not None]
+    if len(above) < 2 or max(above[0] & above[1], default=-1) != skeleton.index(hips):
+        return by_name
+    return _score_names(skeleton, _lower_spine(skeleton, {**by_name.joints, "hips": hips}))
 
 
 def _lower_spine(skeleton: Skeleton, joints: dict[str, str]) -> dict[str, str]:

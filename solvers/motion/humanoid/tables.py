@@ -173,6 +173,11 @@ TABLES: dict[str, tuple[str, ...]] = {
         "clavicle", "uparm", "lowarm", "wrist",
         "upleg", "lowleg", "foot", "ball",
     ),
+    "Talking With Hands": (  # of Meta, the recordings of the GENEA challenges
+        "root", "spine0", "spine1", "spine3", "neck0", "head",
+        "shoulder", "arm", "forearm", "wrist",
+        "upleg", "leg", "foot", "ball",
+    ),
     "mocopi": (
         "root", "torso_1", "torso_4", "torso_7", "neck_1", "head",
         "shoulder", "up_arm", "low_arm", "hand",
@@ -217,6 +222,12 @@ TABLES: dict[str, tuple[str, ...]] = {
         "hips", "spine_lower", "spine_middle", "chest", "neck", "head",
         "shoulder", "arm_upper", "arm_lower", "hand_wrist",
         "upper_leg leg_upper", "lower_leg leg_lower", "foot_ankle", "foot_ball",
+    ),
+    "3ds Max CAT": (
+        "pelvis hub001", "spine1", "spine2", "ribcage hub002", "neck1 neck", "head hub003",
+        "armCollarbone collarbone", "arm1 armUpperarm upperarm", "arm2 armForearm forearm",
+        "armPalm palm",
+        "leg1 legThigh thigh", "leg2 legCalf calf", "legAnkle ankle", "legDigit11 toe",
     ),
     "Theia": (
         "pelvis", "abdomen", "thorax torso", "", "neck", "head",

@@ -1,10 +1,10 @@
 """The order of the joints in arrays that data sets and pose estimators store without names.
 
 Sources: the keypoint lists of COCO, Halpe-FullBody, OpenPose (BODY_25), CMU Panoptic, MPII and
-LSP; data/skeleton.py of VideoPose3D (Human3.6M); metadata/mhr70.py of SAM 3D Body (MHR 70);
-MPI-INF-3DHP (mpii_get_joint_set "relevant"); the KIT motion-language data set; extract.py of
-LaFAN1. Joints have the names that this project has for them: those of Microsoft's cameras,
-MediaPipe or SMPL.
+LSP; data/skeleton.py of VideoPose3D (Human3.6M), and of SemGCN (without neck);
+metadata/mhr70.py of SAM 3D Body (MHR 70); MPI-INF-3DHP (mpii_get_joint_set "relevant"); the KIT
+motion-language data set; extract.py of LaFAN1. Joints have the names that this project has for
+them: those of Microsoft's cameras, MediaPipe or SMPL.
 """
 
 from .body_trackers import SMPL, SMPL_HANDS, ZED_34, ZED_38
@@ -87,6 +87,7 @@ LAYOUTS: dict[str, tuple[str, ...]] = {
     "LSP": _LSP,
     "MPII": _MPII,
     "Human3.6M": _H36M_17,
+    "Human3.6M without neck": (*_H36M_17[:9], *_H36M_17[10:]),
     "COCO": _COCO,
     "MPI-INF-3DHP": _MPI_INF,
     "OpenPose": (*_BODY_25[:8], *_BODY_25[9:19]),

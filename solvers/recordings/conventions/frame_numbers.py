@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...progress import Progress, Remark
+from .time_stamps import DEFAULT_FRAME_RATE
 
 IMAGE = r"\.(?:jpe?g|png)"
 FRAME_KEY = re.compile(
@@ -55,21 +56,29 @@ def are_frame_numbers(numbers: Sequence[float]) -> bool:
     return bool(is_small) and step_between(known.tolist()) > 0.0
 
 
-def rate_of_numbers(numbers: Sequence[float], rate: float, progress: Progress) -> float:
+def rate_of_numbers(
+    numbers: Sequence[float], rate: float | None, progress: Progress
+) -> float | None:
     """Return the rate of frames of which only each second, third and so on is there.
 
-    Numbers are those of the video, whose rate is stated. Those that are a frame's duration in
-    milliseconds apart are times, and its rate remains.
+    Numbers are those of the video. Those that are a frame's duration in milliseconds apart are
+    times, and its rate remains, as it does if all frames are there.
 
     Parameters
     ----------
     numbers : sequence of float
         Of the frames, in order.
-    rate : float, Hz
+    rate : float, Hz, or None
+        None: it is not stated, and numbers in steps are those of the default rate.
     progress : Progress
     """
     step = step_between(numbers)
-    if step <= 1.0 or abs(step * rate - MS_PER_S) <= MAX_MS_ROUNDING:
+    if step <= 1.0 or (rate is None and not are_frame_numbers(numbers)):
+        return rate
+    if rate is None:
+        rate = DEFAULT_FRAME_RATE
+        progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
+    if abs(step * rate - MS_PER_S) <= MAX_MS_ROUNDING:
         return rate
     progress(
         0.8,

@@ -51,7 +51,7 @@ def joint_recording(
     confidence : float array, shape (n_frames, n_joints), 0 to 1, or None
     times : float array, shape (n_frames,), seconds, or None
         Time of each frame. The recording is then resampled to a constant rate
-        (`ConstantRate`), and `frame_rate` is ignored.
+        (`ConstantRate`), which is `frame_rate` if the times agree with it.
     frame_rate : float, hertz
     nan_only : bool
         True: only NaN was not observed. The origin is a valid position, and a joint that was
@@ -84,7 +84,7 @@ def joint_recording(
     if missing.all():
         raise InvalidFileError(f"{path} has no joint that is observed in any frame.")
     if times is not None:
-        resampler = ConstantRate(path, times)
+        resampler = ConstantRate(path, times, frame_rate)
         frame_rate = resampler.frame_rate
         positions = resampler.positions(positions)
         states = None if states is None else resampler.states(states)

@@ -17,6 +17,7 @@ from .long_columns import long_columns
 from .long_table import open_long_table
 from .point_table import has_points, open_point_table
 from .table_rows import INDEX, TitledRows, named_arrays, with_index
+from .untitled_tables import numbered_titles
 
 HEAD_BYTES = 4096
 """Bytes by which formats are detected, by definition those of `formats`."""
@@ -50,6 +51,9 @@ NAMES = re.compile(
 """Member of the outermost object, or of one in it, with the names of joints."""
 FRAMES = re.compile(r"\[\s*\[\s*\[\s*-?\d")
 """Positions of joints in several frames."""
+ROWS = re.compile(r"\s*\[\s*\[[^\[\]{}\"]*\]")
+"""The first row of a list of rows of numbers, as pandas writes with `orient="values"`."""
+ROW = re.compile(r"\[([^\[\]{}\"]*)\]")
 UNIT_KEY = re.compile(r"(?i)(?:(?:length|position|coordinate|joint)s?_?)?units?")
 """Member with the unit of length."""
 PART_OF_TITLE = re.compile(r"'([^']*)'")
@@ -71,6 +75,8 @@ def is_json_table(head: bytes) -> bool:
     is_first = bool(titles) and text.lstrip().startswith(("{", '{"'))
     if is_first and any(map(_is_column, titles)):
         return True
+    if ROWS.match(text) and _is_stamped([*map(str.encode, ROW.findall(text))]):
+        return True
     is_array = FRAMES.search(text) is not None or not is_frames_json(head)
     return NAMES.match(text) is not None and is_array
 
@@ -82,8 +88,9 @@ def open_json_table(
 
     Rows may be objects with a value for each title, in a list or keyed by number; columns may
     be lists, or keyed by the number of their row; titles may be in a list of their own next to
-    the rows. Names of joints may be next to an array of their positions, which has a row for
-    each frame or is flat. A unit next to them, such as `"unit": "mm"`, counts.
+    the rows. Rows of numbers alone are read where each is the number or time of a frame and a
+    body in a known order. Names of joints may be next to an array of their positions, which has
+    a row for each frame or is flat. A unit next to them, such as `"unit": "mm"`, counts.
 
     Raises
     ------
@@ -96,6 +103,10 @@ def open_json_table(
     """
     check_scale(scale)
     content = json_content(path).value
+    if isinstance(content, list) and all(isinstance(each, list) for each in content):
+        return open_point_table(
+            path, scale=scale, progress=progress, lines=[_line(row).encode() for row in content]
+        )
     table = next((each for each in _tables(content) if _fits(each.titles)), None)
     if table is None and FRAMES.search(
         read_bytes(path)[:HEAD_BYTES].decode("utf-8", "replace")
@@ -116,6 +127,12 @@ def open_json_table(
     return open_table(
         path, scale=scale, progress=progress, lines=[line.encode() for line in lines]
     )
+
+
+def _is_stamped(rows: list[bytes]) -> bool:
+    """Return whether rows of numbers are the stamp of a frame and the joints of a body."""
+    found = numbered_titles(rows)
+    return found is not None and _is_stamp(found.titles[0])
 
 
 def _stated_units(value: Any) -> Iterator[float]:

@@ -32,9 +32,8 @@ from ..point_bodies import (
     landmark_columns,
     over_midnight,
     recording_from_landmarks,
-    second_of_times,
 )
-from .line_groups import first_repeated_line, grouped
+from .line_groups import MAX_SPREAD, first_repeated_line, frames_of_lines, grouped
 from .long_columns import LongColumns, long_columns, number_of_frame, number_or_missing
 from .mediapipe_csv import mediapipe_landmark
 from .points_recording import recording_of_points
@@ -45,9 +44,6 @@ MAX_WORD_COLUMNS = 4
 """Number of columns of words that may distinguish lines. It bounds the memory and the tries."""
 MIN_JOINTS = 8
 """Number of joints of a body. It guards tables of something else."""
-MAX_SPREAD = 100
-"""Frames for each one with a line, a ratio, up to which missing numbers are frames without a
-body. It bounds the memory of damaged files."""
 MAX_POINTS = 1 << 27
 """Points of all people over all frames. It bounds the memory: 3 GB."""
 MAX_POINTS_OF_FEW_LINES = 1 << 24
@@ -62,6 +58,8 @@ class _LongTable(NamedTuple):
     columns: LongColumns
     words: dict[int, NumberedWords]
     """Words of the joints, and of the columns that distinguish people."""
+    rate: float | None
+    """Frames per second; None if the table does not state it."""
 
     @property
     def joints(self) -> NumberedWords:
@@ -111,7 +109,7 @@ def open_long_table(
     check_scale(scale)
     table = _read_table(LineReader(path, lines), path, progress)
     rows, columns = table.rows, table.columns
-    frames, times = _frames(rows, columns)
+    frames, times, rate = frames_of_lines(rows, columns, table.rate, progress)
     is_row = np.isfinite(rows[:, columns.joint]) & (frames >= 0)
     if not is_row.any() or len(table.joints) < MIN_JOINTS:
         raise InvalidFileError(
@@ -130,9 +128,8 @@ def open_long_table(
         )
     names, order = table.joints.in_order()
     people, points = _points(path, table, frames, order)
-    if times is not None:
-        times = times * (columns.times.second or second_of_times(times, progress))
-    duration = len(points[0]) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
+    seconds = len(points[0]) / (rate or DEFAULT_FRAME_RATE)
+    duration = seconds if times is None else recorded_seconds(times)
     listed = tuple(
         observed_body(
             person,
@@ -149,9 +146,9 @@ def open_long_table(
         if landmarks is not None:
             marks = np.pad(body, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan)
             return recording_from_landmarks(
-                path, marks[:, landmarks], times, None, scale, progress
+                path, marks[:, landmarks], times, rate, scale, progress
             )
-        return recording_of_points(path, names, body[..., :3], times, scale, progress)
+        return recording_of_points(path, names, body[..., :3], times, scale, progress, rate)
 
     return Bodies(str(path), listed if len(listed) > 1 else (), read)
 
@@ -204,7 +201,7 @@ def _read_table(reader: LineReader, path: Path | str, progress: Progress) -> _Lo
     second = columns.times.second
     if columns.time is not None and second is not None:
         rows[:, columns.time] = over_midnight(rows[:, columns.time] * second) / second
-    return _LongTable(rows, columns, words)
+    return _LongTable(rows, columns, words, header.rate)
 
 
 def _points(
@@ -268,29 +265,3 @@ def _people(
         for line in first
     ]
     return [name or "1" for name in names], people
-
-
-def _frames(rows: Array, columns: LongColumns) -> tuple[NDArray[np.intp], Array | None]:
-    """Return the frame of each line, -1 where it has none, and the time of each frame.
-
-    Numbers between those of the file are frames without a body.
-    """
-    key = rows[:, columns.time if columns.frame is None else columns.frame]
-    known, index = np.unique(key, return_inverse=True)
-    known = known[np.isfinite(known)]
-    if columns.frame is not None and len(known) > 1:
-        step = np.diff(known).min()
-        with np.errstate(over="ignore"):
-            spread = np.rint((known - known[0]) / step)
-        if spread[-1] < len(known) * MAX_SPREAD:
-            index = np.append(spread.astype(int), -1)[np.minimum(index, len(known))]
-    frames = np.where(np.isfinite(key), index, -1)
-    if columns.time is None or not len(known):
-        return frames, None
-    times = np.full(frames.max() + 1, np.nan)
-    times[frames[frames >= 0]] = rows[frames >= 0, columns.time]
-    if not np.isfinite(times).any():
-        return frames, None
-    numbers = np.arange(len(times))
-    is_known = np.isfinite(times)
-    return frames, np.interp(numbers, numbers[is_known], times[is_known])

@@ -141,11 +141,13 @@ def open_point_table(
         rows = rows[: columns.times.n_frames(rows[:, columns.time])]
     times = None if columns.time is None else _times(rows[:, columns.time], columns, progress)
     points = rows[:, columns.positions.astype(int)]
+    rate = header.rate
     if times is None:
-        times = _numbered_times(rows, columns, header.rate, progress)
+        times, rate = _numbered_times(rows, columns, header.rate, progress)
     unit = columns.unit if scale is None else scale
     people = _people(columns.names, points, progress) if np.isfinite(points).any() else []
-    duration = len(points) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
+    seconds = len(points) / (rate or DEFAULT_FRAME_RATE)
+    duration = seconds if times is None else recorded_seconds(times)
     listed = tuple(
         observed_body(
             each.name,
@@ -160,10 +162,10 @@ def open_point_table(
         if not header.n_lines:
             refuse_other_points(path, points)
         if not people:
-            return recording_of_points(path, columns.names, points, times, unit, progress)
+            return recording_of_points(path, columns.names, points, times, unit, progress, rate)
         person = people[index]
         mine = points[:, person.columns]
-        return recording_of_points(path, person.names, mine, times, unit, progress)
+        return recording_of_points(path, person.names, mine, times, unit, progress, rate)
 
     return Bodies(str(path), listed if len(listed) > 1 else (), read)
 
@@ -176,10 +178,10 @@ def _times(times: Array, columns: _Columns, progress: Progress) -> Array | None:
 
 def _numbered_times(
     rows: Array, columns: _Columns, rate: float | None, progress: Progress
-) -> Array | None:
-    """Return the times of frames, seconds, by their numbers if these increase.
+) -> tuple[Array | None, float | None]:
+    """Return the times of frames, seconds, by their numbers if these increase, and the rate.
 
-    Without a rate it is None, unless the numbers leave some out.
+    Without a rate both are None, unless the numbers leave some out.
     """
     counted = np.arange(len(rows), dtype=np.float64)
     numbers = counted if columns.frame is None else rows[:, columns.frame]
@@ -187,15 +189,14 @@ def _numbered_times(
     if rate is None:
         is_gapless = not is_increasing or bool((np.diff(numbers) == 1.0).all())
         if is_gapless or not are_frame_numbers(numbers.tolist()):
-            return None
+            return None, None
         rate = DEFAULT_FRAME_RATE
         progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     if not is_increasing:
-        return counted / rate
+        return None, rate
     step = step_between(numbers.tolist()) or 1.0
-    return np.asarray(
-        (numbers - numbers[0]) / step / rate_of_numbers(numbers.tolist(), rate, progress)
-    )
+    rate = rate_of_numbers(numbers.tolist(), rate, progress)
+    return np.asarray((numbers - numbers[0]) / step / rate), rate
 
 
 def _people(names: tuple[str, ...], points: Array, progress: Progress) -> list[MarkerSubject]:

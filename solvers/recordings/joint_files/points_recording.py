@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -39,6 +40,7 @@ def recording_of_points(
     times: Array | None,
     unit: float | None,
     progress: Progress,
+    rate: float | None = None,
 ) -> JointRecording | Tracks:
     """Return named or numbered points as the joints of a body, or as markers if they are none.
 
@@ -50,6 +52,8 @@ def recording_of_points(
     times : shape (n_frames,), seconds, or None
     unit : float, meters per unit of the file, or None
     progress : Progress
+    rate : float, hertz, or None
+        As the file states it; of frames with times, which may be uneven, about the same.
 
     Raises
     ------
@@ -67,20 +71,20 @@ def recording_of_points(
     roots = None if key is None else transforms_at(points[:, names.index(key)])
     if unnamed is not None and (not is_named or unnamed.confidence > MIN_CONFIDENCE):
         placed = in_room(unnamed.names, unnamed.positions, roots)
-        return read_body(path, unnamed._replace(positions=placed), unit, progress, times)
-    if times is None:
+        return read_body(path, unnamed._replace(positions=placed), unit, progress, times, rate)
+    if times is None and rate is None:
         progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     if body is not None:
         placed = in_room(body.names, body.positions, roots)
-        return stand_body(path, body.names, placed, times=times, scale=unit, progress=progress)
+        clock: dict[str, Any] = {"times": times, "rate": rate or DEFAULT_FRAME_RATE}
+        return stand_body(path, body.names, placed, **clock, scale=unit, progress=progress)
     progress(0.8, _remark_of_markers(names, lacking))
-    rate = DEFAULT_FRAME_RATE
     if times is not None:
-        resampler = ConstantRate(path, times)
+        resampler = ConstantRate(path, times, rate)
         points, rate = resampler.positions(points), resampler.frame_rate
     unit = guess_unit_of_points(points, names, progress) if unit is None else unit
     progress(1.0, READING)
-    return stand_markers(names, points * unit, rate, unit, "")
+    return stand_markers(names, points * unit, rate or DEFAULT_FRAME_RATE, unit, "")
 
 
 def refuse_other_points(path: Path | str, points: Array) -> None:

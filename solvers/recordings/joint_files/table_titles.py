@@ -39,6 +39,9 @@ RATE = re.compile(
 )
 """A rate in a comment above the titles. It may have a decimal comma, unless a comma separates
 it from its name."""
+RATE_TITLE = re.compile(r"(?i)(?:video[ _]?)?(?:fps|frame[ _]?rate)\W*(?:hz)?\W*$")
+"""Title of a column with the rate of the table."""
+NUMBER_OF_TABLE = re.compile(r"\d{1,4}(?:[.,]\d{0,6})?")
 KIND = re.compile(r"(?i)pos(ition)?s?|loc(ation)?|translation|rot(ation)?|quat\w*|orientation")
 """What the coordinates below are, in tables that also hold rotations."""
 
@@ -98,7 +101,8 @@ def table_titles(
         following = [*lines[number + 1 : MAX_TITLE_LINES], *fullest]
         found = _titles_of_line(line, following)
         if fits(found.titles):
-            found = found._replace(n_lines=number + 1, rate=_rate(b"\n".join(lines[:number])))
+            rate = _rate(b"\n".join(lines[:number])) or _rate_of_column(found, following)
+            found = found._replace(n_lines=number + 1, rate=rate)
             return _with_units(found, lines[number + 1 : number + 2])
     return None
 
@@ -133,6 +137,15 @@ def _rate(comment: bytes) -> float | None:
     stated = {b"".join(groups).replace(b",", b".") for groups in RATE.findall(comment)}
     rates = {float(each) for each in stated}
     return (rates.pop() or None) if len(rates) == 1 else None
+
+
+def _rate_of_column(found: TableTitles, below: Sequence[bytes]) -> float | None:
+    """Return the rate in a column called so, if it is the same in all lines."""
+    columns = [at for at, title in enumerate(found.titles) if RATE_TITLE.match(title)]
+    rows = [cells_of_line(line, found.separator) for line in below] if columns else []
+    stated = {row[columns[0]] for row in rows if len(row) == len(found.titles)}
+    is_number = len(stated) == 1 and all(map(NUMBER_OF_TABLE.fullmatch, stated))
+    return (float(stated.pop().replace(",", ".")) or None) if is_number else None
 
 
 def _joined_lines(lines: Sequence[bytes]) -> TableTitles | None:

@@ -9,10 +9,11 @@ from ...motion import roles_by_name
 SIGNS = r"[\s_.:\-|/\[(]"
 KINDS = r"pos(?:i(?:tion)?)?|loc(?:ation)?|translat(?:e|ion)|tr?|world"
 COORDINATE = re.compile(
-    rf"(?P<name>.*?)(?:{SIGNS}+(?:{KINDS}))?{SIGNS}*(?P<axis>[xyz]|(?<=\[)[012])[)\]]?"
+    rf"(?P<name>.*?)(?:(?<!cam){SIGNS}+(?:{KINDS}))?{SIGNS}*(?P<axis>[xyz]|(?<=\[)[012])[)\]]?"
     r"(?P<room>3[dD]|[\s_]+(?:world|global|3[dD]))?(?:\s*[(\[](?P<unit>\w+)[)\]]|_(?P<ending>mm?|cm))?",
     re.IGNORECASE,
 )
+"""`t` is a kind of coordinate, but `cam_t` is where a body is in the space of its camera."""
 AXIS_FIRST = re.compile(
     rf"(?:(?:{KINDS}){SIGNS}*)?(?P<axis>[xyz])(?:{SIGNS}(?P<name>.+)|(?P<number>\d+))",
     re.IGNORECASE,

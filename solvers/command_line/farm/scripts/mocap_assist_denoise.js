@@ -20,7 +20,7 @@ const JOB_TYPE = {
     {"key": "body", "type": "string", "default": "", "required": false, "description": "Body to read from input files with several: its name or number, several with commas, or all [default: the person seen in most frames]"},
     {"key": "forward", "type": "string", "default": "", "required": false, "description": "Axis of the file along which the actor faces; it becomes -Y, the front view [default auto]"},
     {"key": "height", "type": "string", "default": "", "required": false, "description": "Stature of the actor for SMPL files, which have no bone lengths [m, 0.1 to 9, default 1.75]"},
-    {"key": "unit", "type": "string", "default": "", "required": false, "description": "Length unit of the files; the import message reports what Auto found [guess, metres, centimetres, millimetres, inches, default guess]"},
+    {"key": "unit", "type": "string", "default": "", "required": false, "description": "Length unit of the files; the import message reports what Auto found [guess, metres, centimetres, millimetres, inches, feet, default guess]"},
     {"key": "up", "type": "string", "default": "", "required": false, "description": "Axis of the file that points up; set it if the actor lies on the floor [default auto]"},
     {"key": "preset", "type": "string", "default": "", "required": false, "description": "Named values of some settings; other options replace them [light, normal, heavy, optical, suit, video-ai, depth-camera]"},
     {"key": "train", "type": "string", "default": "", "required": false, "description": "Clean clips to learn from [default: patterns of the take itself]"},

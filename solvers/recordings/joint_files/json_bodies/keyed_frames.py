@@ -20,6 +20,8 @@ NAMES = ("name", "Name")
 TIME = "time"
 ROOT = "path of the body"
 """Key of the member with the positions of the body in all frames, by their own key."""
+NUMBERS = "numbers of the frames"
+"""Key of the member with the numbers of all frames, in order."""
 
 
 def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[JsonMember]:
@@ -61,20 +63,25 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
         yield from rest
     for camera, frames in by_camera(numbered).items():
         groups.append(("", _people_of(frames, path) or {camera: numbered_take(frames)}))
-    yield from _of_positions(positions, path)
-    takes = _with_own_names(groups, yielded)
-    yield from _rate_of(takes.values(), path)
-    start = min((number for take in takes.values() for number in take), default=0.0)
-    for name, take in takes.items():
-        yield from _by_number(name, take, start, path)
-
-
-def _of_positions(positions: Mapping[str, list[Any]], path: Path | str) -> Iterator[JsonMember]:
-    """Yield the frames of joints by their positions, or else where the body is in them."""
     take = keyed_take(positions, path)
-    yield from _by_number("", take, 0.0, path)
-    if not take and (key := key_of_root(positions)):
+    groups.append(("", {"": take} if take else {}))
+    yield from () if take else _path_of_body(positions)
+    yield from _of_takes(_with_own_names(groups, yielded), path)
+
+
+def _path_of_body(positions: Mapping[str, list[Any]]) -> Iterator[JsonMember]:
+    """Yield where the body is in all frames, if that is among positions that are no joints."""
+    if key := key_of_root(positions):
         yield JsonMember(ROOT, {key: positions[key]}, 1.0)
+
+
+def _of_takes(takes: Mapping[str, Take], path: Path | str) -> Iterator[JsonMember]:
+    """Yield the rate, the numbers and the frames of takes."""
+    yield from _rate_of(takes.values(), path)
+    numbers = sorted({*chain(*takes.values())})
+    yield JsonMember(NUMBERS, numbers, 1.0)
+    for name, take in takes.items():
+        yield from _by_number(name, take, min(numbers, default=0.0), path)
 
 
 def _with_own_names(

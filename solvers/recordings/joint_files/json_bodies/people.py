@@ -39,6 +39,8 @@ IDENTITY_KEYS = either_case("id", "track_id", "person_id", "body_id", "personID"
                             "tracking_id", "trackingId")  # fmt: skip
 NAMES_OF_PEOPLE = (*IDENTITY_KEYS, *either_case("name"))
 """Members with the identity of people in a list."""
+LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
+"""Members with the names of joints, where these stand apart."""
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+")
 PART = re.compile(r"(left|right|l|r)?(hands?|fingers?|faces?|mano)|lh|rh")
 """Word in the key of a part of a person."""
@@ -175,7 +177,8 @@ def _person(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
     found = _key_of_points(body)
     joints = body.get(found)
     if points := points_of(joints, found):
-        yield JsonPerson(identity, points, root=_root_of(body))
+        names = points.names or _listed_names(body, len(points.positions))
+        yield JsonPerson(identity, points._replace(names=names), root=_root_of(body))
     elif isinstance(joints, list):
         is_alone = len(joints) == 1 and isinstance(joints[0], list)
         people = _listed_people(joints[0] if is_alone else joints, found, identity)
@@ -184,6 +187,13 @@ def _person(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson]:
         yield from _person(joints, identity)
     else:
         yield from _keyed_people(body, identity)
+
+
+def _listed_names(body: Mapping[str, Any], n_points: int) -> tuple[str, ...]:
+    """Return the names of as many points that are listed next to them; else empty."""
+    lists = (each for each in members(body, LIST_OF_NAMES) if isinstance(each, list))
+    names = (each for each in lists if all(isinstance(name, str) for name in each))
+    return tuple(next((each for each in names if len({*each}) == n_points == len(each)), ()))
 
 
 def _key_of_points(body: Mapping[str, Any]) -> str:
@@ -221,7 +231,8 @@ def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson
             }
             points = points_of(found) if len(found) >= MIN_JOINTS else None
             if points is not None:
-                yield JsonPerson(name, points)
+                root = _root_of(joints) or _root_of(body)
+                yield JsonPerson(name, points, root=root)
                 break
 
 

@@ -36,13 +36,11 @@ from .joined_frames import (
     joined_frames,
     without_header,
 )
-from .keyed_frames import ROOT, json_by_frame
-from .people import JsonPerson, people_of_frame
+from .keyed_frames import NUMBERS, ROOT, json_by_frame
+from .people import LIST_OF_NAMES, JsonPerson, people_of_frame
 from .points import MIN_JOINTS, transform_of
 from .stamps import NUMBER_KEYS, StatedRate, is_number, stamps_of_frame, stated_rates
 
-LIST_OF_NAMES = ("joint_names", "jointNames", "names", "keypoint_names", "joints", "bones")
-"""Members with the names of joints, where these stand apart."""
 ROTATION = re.compile(rb"(?i)\"\w*(?:rot|quat|orient|euler)\w*\"\s*:\s*[\[{]")
 """Member with the rotation of a bone."""
 MAX_HEAD_BYTES = 1 << 16
@@ -161,7 +159,7 @@ def _read_content(
     second: float | None = None
     names: list[str] = []
     times: list[float] = []
-    roots: list[StatedRoot | None] = []
+    others: dict[str, Any] = {}
     n_several = 0
     for member in json_by_frame(without_header(members), path):
         value = member.value
@@ -171,8 +169,8 @@ def _read_content(
             time, second = read_time(value, name.second)
             times.append(time)
             continue
-        if member.key == ROOT:
-            roots = _roots_of(value)
+        if member.key in {ROOT, NUMBERS}:
+            others[member.key] = value
             continue
         people = [*people_of_frame(value, member.key)]
         n_several += sum(not person.is_identified for person in people) > 1
@@ -183,8 +181,11 @@ def _read_content(
     if n_several:
         progress(0.8, _remark_of_unidentified(n_several))
     by_key, second = _by_key(rows, second, progress)
-    frames = _with_roots(_timed(joined_frames(by_key, path), times), roots)
-    rate = _rate_of_frames(rows, frames, _best_rate(rows, stated), progress)
+    frames = _with_roots(
+        _timed(joined_frames(by_key, path), times), _roots_of(others.get(ROOT, {}))
+    )
+    numbers = _numbers(rows) or others.get(NUMBERS, [])
+    rate = _rate_of_frames(frames, numbers, _best_rate(rows, stated), progress)
     return _Content(frames, rate, second, tuple(names))
 
 
@@ -229,13 +230,17 @@ def _best_rate(rows: list[_Row], stated: list[tuple[str, StatedRate]]) -> float 
 
 
 def _rate_of_frames(
-    rows: list[_Row], frames: list[BodiesFrame], rate: float | None, progress: Progress
+    frames: list[BodiesFrame], numbers: list[float], rate: float | None, progress: Progress
 ) -> float | None:
     """Return the rate of frames by their numbers (`rate_of_numbers`), if none has a time."""
-    if rate is None or any(not np.isnan(frame.time) for frame in frames):
+    if any(not np.isnan(frame.time) for frame in frames):
         return rate
-    numbers = {row.number for _, _, row in rows if not np.isnan(row.number)}
-    return rate_of_numbers(sorted(numbers), rate, progress)
+    return rate_of_numbers(numbers, rate, progress)
+
+
+def _numbers(rows: list[_Row]) -> list[float]:
+    """Return the numbers that frames state, in order."""
+    return sorted({row.number for _, _, row in rows if not np.isnan(row.number)})
 
 
 def _remark_of_unidentified(n_several: int) -> Remark:

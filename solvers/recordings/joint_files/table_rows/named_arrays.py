@@ -8,7 +8,13 @@ import numpy as np
 from ....arrays import Array
 from ....progress import Remark
 from ...containers import printable, shown
-from ...point_bodies import is_other_array, n_known_names, rank_of_array, time_name
+from ...point_bodies import (
+    is_other_array,
+    key_of_root,
+    n_known_names,
+    rank_of_array,
+    time_name,
+)
 from ..json_bodies import is_no_position
 from .titled_rows import TitledRows
 
@@ -73,15 +79,25 @@ def _fits(array: Array, n_joints: int) -> bool:
 def _table(
     names: Sequence[str], fitting: Sequence[tuple[str, Array]], lists: Sequence[Listed]
 ) -> TitledRows:
-    """Return the first of arrays, with the times next to it if there is one for each frame."""
+    """Return the first of arrays with times and the path of the body, if these are next to it.
+
+    They are if they have a value for each frame.
+    """
     titles = [f"{printable(name)}_{axis}" for name in names for axis in "xyz"]
     rows: list[Any] = fitting[0][1].tolist()
     others = ", ".join(key for key, _ in fitting[1:])
     remark = _remark_of_choice(fitting[0][0], others) if others else None
-    for key, times in lists:
-        if time_name(key) and len(times) == len(rows):
-            timed = [[time, *row] for time, row in zip(times, rows, strict=True)]
-            return TitledRows([key, *titles], timed, remark)
+    beside = {key: values for key, values in lists if len(values) == len(rows)}
+    root = key_of_root(beside)
+    if root is not None and all(
+        isinstance(each, list) and len(each) == 3 for each in beside[root]
+    ):
+        titles += [f"{printable(root)}_{axis}" for axis in "xyz"]
+        rows = [[*row, *each] for row, each in zip(rows, beside[root], strict=True)]
+    clock = next(filter(time_name, beside), None)
+    if clock is not None:
+        titles = [clock, *titles]
+        rows = [[time, *row] for time, row in zip(beside[clock], rows, strict=True)]
     return TitledRows(titles, rows, remark)
 
 

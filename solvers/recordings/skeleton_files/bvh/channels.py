@@ -89,16 +89,13 @@ class BvhChannels:
         return votes > 0
 
     def _vote_for_offset(self, joint: int) -> int:
-        """Return 1 where position channels are nearer to zero than to the OFFSET, else -1.
-
-        Return 0 where there are no channels, or both are as near.
-        """
+        """Return the vote of a joint (`vote_for_offset`); 0 where it has no channels."""
         observed = np.array([f"{axis}position" in self.columns[joint] for axis in "xyz"])
         observed &= (True, True, True) if joint else (False, True, False)
-        offset = observed * self.file_offsets[joint]
-        median = observed * _median_position(self._relative_positions(joint))
-        length = float(offset @ offset)
-        return int(np.sign(length / 2 - median @ offset)) if length > 0.0 else 0
+        return vote_for_offset(
+            observed * self.file_offsets[joint],
+            observed * _median_position(self._relative_positions(joint)),
+        )
 
     def _relative_positions(
         self, joint: int, offset_added: bool = False
@@ -182,6 +179,15 @@ class BvhChannels:
             joint = self.children[joint][0]
             trunk[joint] = None
         return trunk
+
+
+def vote_for_offset(offset: NDArray[np.float64], median: NDArray[np.float64]) -> int:
+    """Return 1 where a median position is nearer to zero than to an OFFSET, -1 where farther.
+
+    Return 0 where both are as near.
+    """
+    length = float(offset @ offset)
+    return int(np.sign(length / 2 - median @ offset)) if length > 0.0 else 0
 
 
 def motion_from_poses(

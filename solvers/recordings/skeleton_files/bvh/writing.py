@@ -5,6 +5,7 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ....errors import InvalidMotionError, InvalidSettingError
 from ....files import write_atomically
@@ -12,6 +13,7 @@ from ....motion import Motion, Skeleton
 from ....progress import Progress, unwatched
 from ....rotations import euler_from_quaternion, unwrap_euler
 from ...conventions import CENTIMETER, rotations_y_up_from_z_up, y_up_from_z_up
+from .channels import vote_for_offset
 
 ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 FRAMES_AT_ONCE = 500
@@ -30,8 +32,9 @@ def write_bvh(
 ) -> None:
     """Write a motion as a BVH file atomically, Y up, facing +Z.
 
-    Angles are continuous in time and have six decimals. Joints that are called
-    `<parent>_end` and never rotate become end sites; spaces in names become underscores.
+    Angles are continuous in time and have six decimals. The OFFSET of a root that stays nearer
+    to the origin than to it is 0, since readers would add it to the positions. Joints that are
+    called `<parent>_end` and never rotate become end sites; spaces in names become underscores.
 
     Parameters
     ----------
@@ -64,12 +67,15 @@ def write_bvh(
     rotations = rotations_y_up_from_z_up(motion.rotations[:, rotating])
     angles = np.degrees(unwrap_euler(euler_from_quaternion(rotations, order)))
     positions = y_up_from_z_up(motion.root_positions) / scale
+    offsets = y_up_from_z_up(motion.skeleton.offsets) / scale
+    if vote_for_offset(offsets[0, 1:2], np.median(positions[:, 1:2], axis=0)) > 0:
+        offsets[0] = 0.0
     rows = np.concatenate([positions, angles.reshape(motion.n_frames, -1)], axis=1)
     rows = np.round(rows, 6) + 0.0  # No "-0.000000".
     row_format = " ".join(["%.6f"] * rows.shape[1]) + "\n"
     with write_atomically(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
         file.write("HIERARCHY\n")
-        file.writelines(_hierarchy(motion.skeleton, rotating, scale, order))
+        file.writelines(_hierarchy(motion.skeleton, rotating, offsets + 0.0, order))
         file.write(f"MOTION\nFrames: {motion.n_frames}\nFrame Time: {motion.dt:.10f}\n")
         for start in range(0, len(rows), FRAMES_AT_ONCE):
             block = rows[start : start + FRAMES_AT_ONCE]
@@ -111,10 +117,9 @@ def _depth_first(skeleton: Skeleton) -> list[int]:
 
 
 def _hierarchy(
-    skeleton: Skeleton, rotating: Collection[int], scale: float, order: str
+    skeleton: Skeleton, rotating: Collection[int], offsets: NDArray[np.float64], order: str
 ) -> Iterator[str]:
     """Yield the lines of the hierarchy, with `rotating` joints and the others as end sites."""
-    offsets = y_up_from_z_up(skeleton.offsets) / scale + 0.0
     rotations = " ".join(f"{axis}rotation" for axis in order)
     position_channels = "Xposition Yposition Zposition"
     level = 0

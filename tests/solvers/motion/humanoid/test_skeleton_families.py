@@ -72,6 +72,24 @@ def test_roles_do_not_depend_on_prefixes(family, prefix):
     assert dict(find_humanoid_map(skeleton_from(joints)).joints) == expected(joints)
 
 
+def test_numbers_after_a_sign_are_no_part_of_names():
+    """As in takes of LaFAN1 that were written again: before, the neck was the head."""
+    joints = joints_of("Mixamo")
+    numbers = {joint.name: count for count, joint in enumerate(joints)}
+    numbered = renamed(joints, lambda name: f"{name}_#{numbers[name]}")
+
+    assert dict(find_humanoid_map(skeleton_from(numbered)).joints) == expected(numbered)
+
+
+def test_the_joint_that_carries_the_legs_is_the_hips():
+    """Before, a name in no table left a body with helper joints without hips."""
+    joints = renamed(
+        joints_of("Talking With Hands"), lambda name: {"b_root": "b_center"}.get(name, name)
+    )
+
+    assert find_humanoid_map(skeleton_from(joints)).joint("hips") == "b_center"
+
+
 @pytest.mark.parametrize("family", FAMILIES)
 def test_without_one_joint_no_other_role_is_wrong(family):
     joints = joints_of(family)

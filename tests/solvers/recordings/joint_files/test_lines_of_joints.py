@@ -30,10 +30,16 @@ def walk() -> dict[str, np.ndarray]:
     return {role: positions[:, at] for role, at in roles.items()}
 
 
-def lines(points, form="{frame},{name},{x:.6f},{y:.6f},{z:.6f}"):
+def lines(points, form="{frame},{name},{x:.6f},{y:.6f},{z:.6f}", step=1):
     """Return a line for each joint of each frame, by names or roles."""
     return [
-        form.format(frame=k, t=k / 25.0, name=name, x=path[k][0], y=path[k][1], z=path[k][2])
+        form.format(
+            frame=k,
+            number=step * k,
+            t=k / 25.0,
+            name=name,
+            **dict(zip("xyz", path[k], strict=False)),
+        )
         for k in range(F)
         for name, path in points.items()
     ]
@@ -162,3 +168,32 @@ def test_many_landmarks_are_not_those_of_a_pose(save, name):
     rows = lines(face, "{frame},{name},{x},{y},{z}")
 
     assert isinstance(read_recording(save("frame,landmark,x,y,z", rows)), Tracks)
+
+
+@pytest.mark.parametrize(
+    ("titles", "form", "rate"),
+    [
+        ("frame,joint,x,y,z", "{frame},{name},{x},{y},{z}", 30.0),
+        ("# fps: 60\nframe,joint,x,y,z", "{frame},{name},{x},{y},{z}", 60.0),
+        ("frame_rate,60\nframe,joint,x,y,z", "{frame},{name},{x},{y},{z}", 60.0),
+        ("frame,joint,x,y,z,fps", "{frame},{name},{x},{y},{z},60", 60.0),
+        ("frame,joint,x,y,z,Frame Rate (Hz)", "{frame},{name},{x},{y},{z},59.94", 59.94),
+        ("frame,joint,x,y,z,fps", "{frame},{name},{x},{y},{z},{frame}", 30.0),
+        ("# fps: 60\nframe,time,joint,x,y,z", "{frame},{t},{name},{x},{y},{z}", 25.0),
+    ],
+)
+@pytest.mark.parametrize("step", [1, 2])
+def test_lines_of_joints_have_the_rate_of_the_table(
+    save, collected_messages, titles, form, rate, step
+):
+    """Before, a stated rate was ignored, and so were numbers in steps."""
+    messages, progress = collected_messages
+    rows = lines(walk(), form.replace("{frame}", "{number}"), step)
+
+    recording = read_recording(save(titles, rows), progress=progress)
+
+    in_steps = step if "time" not in titles else 1
+    assert recording.frame_rate == pytest.approx(rate / in_steps, rel=1e-4)
+    assert recording.n_frames == F
+    assert any(f"in steps of {step}" in message for message in messages) == (in_steps > 1)
+    assert any("is assumed" in message for message in messages) == (rate == 30.0)

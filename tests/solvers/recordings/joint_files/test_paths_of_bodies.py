@@ -56,6 +56,37 @@ def test_json_states_the_path_of_the_body(read_any, walk, relative, key, nest):
     check(read_any(json.dumps(content[nest])), walk)
 
 
+@pytest.mark.parametrize("key", ["pred_cam_t", "cam_t_full", "transl", "root_translation"])
+@pytest.mark.parametrize("nest", ["frame", "member", "person", "joints", "listed", "names"])
+def test_named_joints_may_be_next_to_the_path_of_the_body(read_any, walk, relative, key, nest):
+    """Before, joints keyed by name stood in place."""
+    points, path = relative.tolist(), walk[:, 0].tolist()
+    named = [dict(zip(SMPL, frame, strict=True)) for frame in points]
+    frames = [{key: where, **joints} for where, joints in zip(path, named, strict=True)]
+    pairs = zip(points, path, strict=True)
+    content = {
+        "frame": {"fps": 30, "frames": frames},
+        "member": {"fps": 30, "frames": [{key: f[key], "pose": f} for f in frames]},
+        "person": {"fps": 30, "frames": [{"people": [{"id": 3, **f}]} for f in frames]},
+        "joints": {name: relative[:, at].tolist() for at, name in enumerate(SMPL)}
+        | {key: path},
+        "listed": {"fps": 30, "joint_names": SMPL, key: path, "pred_joints": points},
+        "names": [{"joint_names": SMPL, "points": p, key: r} for p, r in pairs],
+    }
+
+    check(read_any(json.dumps(content[nest])), walk)
+
+
+@pytest.mark.parametrize("key", ["pred_cam_t", "cam_t", "transl", "root_pos"])
+def test_columns_of_joints_may_be_next_to_the_path_of_the_body(read_any, walk, relative, key):
+    """Before, the `t` of `cam_t_x` was no part of the name."""
+    titles = [f"{name}_{axis}" for name in (*SMPL, key) for axis in "xyz"]
+    rows = np.concatenate([relative.reshape(F, -1), walk[:, 0]], axis=1)
+    lines = [",".join(f"{x:.5f}" for x in row) for row in rows]
+
+    check(read_any("\n".join([",".join(titles), *lines])), walk)
+
+
 @pytest.mark.parametrize("nest", ["json", "npz"])
 def test_the_camera_of_a_cropped_picture_is_no_path(read_any, relative, walk, nest):
     path = walk[:, 0] + (0.0, 0.0, 43.0)

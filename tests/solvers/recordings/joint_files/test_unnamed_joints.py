@@ -22,6 +22,10 @@ def _one(side, *parts):
 ORDERS = {
     "Human3.6M": ["hips", *_one("right", *LEG), *_one("left", *LEG), "spine", "neck", "neck",
                   "head", *_one("left", *ARM), *_one("right", *ARM)],
+    "Human3.6M without neck": [
+        "hips", *_one("right", *LEG), *_one("left", *LEG), "spine", "neck", "head",
+        *_one("left", *ARM), *_one("right", *ARM),
+    ],
     "COCO": ["head"] * 5 + _both(*ARM, *LEG),
     "BODY_25": ["head", "neck", *_one("right", *ARM), *_one("left", *ARM), "hips",
                 *_one("right", *LEG), *_one("left", *LEG), *["head"] * 4,

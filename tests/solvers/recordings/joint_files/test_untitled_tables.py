@@ -1,5 +1,7 @@
 """Tables of numbers without titles are read where these are a known order of joints."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -46,6 +48,29 @@ def test_numbers_of_a_known_order_need_no_titles(read_any, body, above, confiden
     assert recording.names == LAYOUTS["SMPL"]
     sizes = [np.ptp(each[..., 2]) for each in (recording.tracks.positions, body)]
     assert sizes[0] == pytest.approx(sizes[1], abs=1e-3)
+
+
+@pytest.mark.parametrize("above", [[], ["time"], ["frame", "time"]])
+def test_the_values_of_pandas_in_json_are_such_a_table(read_any, body, above):
+    """Before, times among the values were taken for those of a joint, and refused."""
+    stamps = {"frame": lambda k: k, "time": lambda k: k / RATE_HZ}
+    rows = [
+        [*(stamps[each](k) for each in above), *frame.ravel().tolist()]
+        for k, frame in enumerate(body)
+    ]
+
+    recording = read_any(json.dumps(rows))
+
+    assert recording.frame_rate == (RATE_HZ if above else 20.0)
+    sizes = [np.ptp(each[..., 2]) for each in (recording.tracks.positions, body)]
+    assert sizes[0] == pytest.approx(sizes[1], abs=1e-3)
+
+
+def test_values_of_no_body_in_json_are_refused(read_any, body):
+    rows = [[k / RATE_HZ, *frame[::-1].ravel().tolist()] for k, frame in enumerate(body)]
+
+    with pytest.raises(InvalidFileError, match="without titles, and its numbers form no body"):
+        read_any(json.dumps(rows))
 
 
 def test_numbers_of_frames_are_no_seconds(read_any, body):

@@ -63,3 +63,35 @@ def test_the_time_of_one_frame_does_not_stand_still():
 
     assert frozen_clocks([stamp]) == set()
     assert frozen_clocks([stamp, stamp]) == {"time"}
+
+
+@pytest.mark.parametrize(
+    "layout",
+    [
+        lambda frames: frames,
+        lambda frames: {"frames": frames},
+        lambda frames: [
+            {"index": each["frame"], "landmarks": each["landmarks"]} for each in frames
+        ],
+        lambda frames: {f"frame_{each['frame']:04}": each["landmarks"] for each in frames},
+        lambda frames: {"frames": {str(each["frame"]): each["landmarks"] for each in frames}},
+    ],
+    ids=["list", "member", "index", "names", "keys"],
+)
+@pytest.mark.parametrize(("stated", "rate"), [(None, 30.0), (60.0, 60.0)])
+@pytest.mark.parametrize("step", [1, 2, 5])
+def test_frames_in_steps_have_a_part_of_the_rate(
+    read_any, collected_messages, layout, stated, rate, step
+):
+    """Before, they counted in lists of files that state the rate only."""
+    messages, progress = collected_messages
+    take = layout([frame(k, frame=step * k) for k in range(N)])
+    if stated:
+        take = {"fps": stated, **(take if isinstance(take, dict) else {"frames": take})}
+
+    recording = read_any(json.dumps(take), progress=progress)
+
+    assert recording.tracks.frame_rate == approx(rate / step)
+    assert recording.tracks.n_frames == N
+    assert any(f"in steps of {step}" in message for message in messages) == (step > 1)
+    assert any("30 Hz is assumed" in message for message in messages) == (stated is None)

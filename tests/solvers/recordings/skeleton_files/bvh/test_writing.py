@@ -1,5 +1,7 @@
 """What is written as BVH comes back, and what cannot be written is not half written."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -32,6 +34,23 @@ def test_end_sites_are_written_only_if_they_survive_reading(leg, tmp_path):
         assert_allclose(back.rotations, motion.rotations, atol=1e-8)
         text = (tmp_path / "leg.bvh").read_text()
         assert text.count("End Site") == n_ends
+
+
+@pytest.mark.parametrize("height", [-1.2, -0.9, 0.0, 0.4, 0.9, 3.0])
+def test_a_take_that_is_not_on_the_floor_keeps_its_place(swinging_leg, tmp_path, height):
+    """Before, the rest height was added to hips near 0, as of takes of video models."""
+    offsets = swinging_leg.skeleton.offsets.copy()
+    offsets[0] = [0.1, -0.2, 0.95]
+    skeleton = replace(swinging_leg.skeleton, offsets=offsets)
+    path = swinging_leg.root_positions * (1.0, 1.0, 0.0) + (0.0, 0.0, height)
+    motion = replace(swinging_leg, skeleton=skeleton, root_positions=path)
+
+    write_bvh(motion, tmp_path / "leg.bvh")
+
+    back = read_bvh(tmp_path / "leg.bvh", up="Y", scale=0.01)
+    assert_allclose(back.root_positions, path, atol=1e-7)
+    is_ambiguous = height < 0.95 / 2
+    assert_allclose(back.skeleton.offsets[0], 0.0 if is_ambiguous else offsets[0], atol=1e-7)
 
 
 def test_angles_do_not_jump(leg, tmp_path):
