@@ -96,12 +96,12 @@ def _samples_of(values: Array, baking: Baking) -> Array:
     diagonal, beside = np.zeros(n_samples), np.zeros(n_samples)
     right = np.zeros((n_samples, complete.shape[1]))
     is_missing = np.zeros((n_samples, missing.shape[1]), dtype=np.bool_)
-    trust = np.where(low == high, 1.0, MIXTURE_WEIGHT)
+    reliability = np.where(low == high, 1.0, MIXTURE_WEIGHT)
     for sample, share in ((low, 1.0 - weight), (high, weight)):
-        np.add.at(diagonal, sample, trust * share**2)
-        np.add.at(right, sample, (trust * share)[:, None] * complete)
+        np.add.at(diagonal, sample, reliability * share**2)
+        np.add.at(right, sample, (reliability * share)[:, None] * complete)
         np.logical_or.at(is_missing, sample, missing)
-    np.add.at(beside, high, trust * weight * (1.0 - weight))
+    np.add.at(beside, high, reliability * weight * (1.0 - weight))
     samples: Array = solveh_banded(np.stack([beside, diagonal]), right)
     samples = samples.reshape(n_samples, *values.shape[1:])
     samples[is_missing] = np.nan
