@@ -48,7 +48,9 @@ def apply_default_method(
     """
     noisy, mixture = channels.flat, load_motion_mixture()
     progress(0.0, "Finding errors")
-    bursts = find_bursts(noisy, frame_rate, mixture)
+    bursts = np.zeros(noisy.shape, dtype=np.bool_)
+    if channels.n_rotations:
+        bursts = find_bursts(noisy, frame_rate, mixture)
     estimate, prior_used = estimate_in_groups(
         channels, bursts, frame_rate, bases, within(progress, 0.1, 0.9)
     )

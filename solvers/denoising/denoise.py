@@ -1,18 +1,25 @@
 """Remove jitter, spikes and gaps from a recording, guided by how bodies move."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..arrays import Flags
+from ..arrays import Array, Flags
 from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
 from ..motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
 from ..progress import Progress, unwatched, within
-from .baked_takes import describe_baking, find_baking, recorded_samples, restore_rate
-from .denoise_segment import denoise_segment, joint_strengths
-from .denoise_settings import DEFAULT_SETTINGS, DenoiseMethod, DenoiseSettings
-from .denoised import Denoised, between_samples, join_segments, unchanged
+from .channels import CENTIMETERS, Channels, Estimate, decode, encode
+from .default_method import OUTLIER_THRESHOLD, apply_default_method
+from .denoise_settings import (
+    DEFAULT_SETTINGS,
+    DenoiseMethod,
+    DenoiseSettings,
+    joint_factors,
+)
+from .denoised import Denoised, join_segments, unchanged
 from .edge_poses import (
     describe_edge_poses,
     find_edge_poses,
@@ -26,9 +33,19 @@ from .held_samples import (
     hide_held_samples,
     restore_held_samples,
 )
-from .limits import clamp_to_limits
-from .observed_samples import observed_mask
+from .limb_gaps import keep_standing_feet
+from .limits import clamp_to_limits, find_impossible_rotations
+from .marker_gaps import FilledMarkers, fill_markers
+from .observed_samples import max_per_joint, observed_mask, restore_observed
+from .published import filter_as_published
 from .window_priors import FilterBases
+
+MIN_REPORTED_SPIKE = 2.0
+"""Degrees or centimeters: a sample closer to the estimate is not reported as a spike. Chosen by
+hand; `make sensitivity` varies it."""
+HALF_CONFIDENCE_DEVIATION = 5.0
+"""Standard deviation, degrees or centimeters, at which confidence is one half. By definition of
+the confidence."""
 
 
 def denoise(
@@ -53,9 +70,7 @@ def denoise(
     separate pose keeps its samples too.
 
     Samples that a tracker repeated while the body moved on are treated as missing, unless their
-    strength is below 1: then they are blended like others (`find_held_samples`). A take that
-    was recorded at a lower rate and interpolated linearly is cleaned at that rate, because
-    interpolated noise looks like movement (`find_baking`).
+    strength is below 1: then they are blended like others (`find_held_samples`).
 
     Parameters
     ----------
@@ -98,30 +113,6 @@ def denoise(
         raise InvalidMotionError(
             "Nothing was observed in this take; there is nothing to clean."
         )
-    baking = find_baking(recording) if settings.method is DenoiseMethod.DEFAULT else None
-    if baking is None:
-        return _denoise_take(recording, bases, limits, settings, progress)
-    samples = recorded_samples(recording, baking)
-    result = _denoise_take(samples, bases, limits, settings.at_full_strength(), progress)
-    restored = restore_rate(recording, result.recording, result.cuts, baking)
-    message = f"{describe_baking(recording, baking)} {result.prior_used}"
-    result = between_samples(result, recording, baking.neighbors(recording.n_frames))
-    observed = observed_mask(recording)
-    if isinstance(recording, Motion):
-        has_root = np.isfinite(recording.root_positions).all(axis=1)
-        observed = np.column_stack([observed, has_root])
-    cleaned = _blend(recording, restored, observed, limits, settings)
-    return replace(result, recording=cleaned, prior_used=message)
-
-
-def _denoise_take(
-    recording: Motion | Tracks,
-    bases: FilterBases | None,
-    limits: JointLimits | None,
-    settings: DenoiseSettings,
-    progress: Progress,
-) -> Denoised:
-    """Denoise the segments of a take, each of whose frames was recorded."""
     held, cuts = _find_held_and_cuts(recording, settings)
     seen = hide_held_samples(recording, held)
     edge_poses = find_edge_poses(seen, cuts)
@@ -135,23 +126,21 @@ def _denoise_take(
             results.append(
                 unchanged(segment)
                 if observed_mask(segment).all()
-                else denoise_segment(segment, bases, None, unchanged_settings, step)
+                else _denoise_segment(segment, bases, None, unchanged_settings, step)
             )
         else:
-            results.append(denoise_segment(segment, bases, limits, settings, step))
+            results.append(_denoise_segment(segment, bases, limits, settings, step))
     progress(1.0, "Done")
     result = join_segments(take, results, cuts) if cuts else results[0]
     complete, confidence = restore_edge_poses(
         seen, result.recording, result.confidence, edge_poses
     )
-    sentences = result.prior_used, describe_edge_poses(edge_poses), describe_held_samples(held)
-    return replace(
-        result,
-        recording=_blend(recording, complete, held, limits, settings),
-        confidence=confidence,
-        held=held_joints(recording, held),
-        prior_used=" ".join(filter(None, sentences)),
-    )
+    message = f"{result.prior_used} {describe_edge_poses(edge_poses)}".strip()
+    result = replace(result, recording=complete, confidence=confidence, prior_used=message)
+    possible = recording
+    if limits is not None and isinstance(recording, Motion) and held.any():
+        possible = clamp_to_limits(recording, limits)
+    return _blend_held(possible, result, held, settings)
 
 
 def _find_held_and_cuts(
@@ -168,15 +157,132 @@ def _find_held_and_cuts(
     return held, cuts
 
 
-def _blend(
-    recording: Motion | Tracks,
-    cleaned: Motion | Tracks,
-    samples: Flags,
+def _denoise_segment(
+    segment: Motion | Tracks,
+    bases: FilterBases | None,
     limits: JointLimits | None,
     settings: DenoiseSettings,
+    progress: Progress,
+) -> Denoised:
+    """Denoise one segment of the take."""
+    filled = _fill_gaps(segment, settings, within(progress, 0.0, 0.05))
+    complete = filled.tracks if filled else segment
+    channels = encode(complete, bases.reference_of if bases else None)
+    two_passes = limits is not None and bases is not None
+    first_progress = within(progress, 0.05, 0.5 if two_passes else 0.95)
+    estimate, prior_used = _estimate(
+        channels, segment.frame_rate, bases, settings, first_progress
+    )
+    if limits is not None and bases is not None and isinstance(segment, Motion):
+        estimated_motion = decode(
+            segment, channels, estimate.values.reshape(channels.values.shape)
+        )
+        assert isinstance(estimated_motion, Motion)
+        impossible_mask = find_impossible_rotations(segment, estimated_motion, limits)[
+            :, channels.joints
+        ]
+        impossible_mask[:, -1] = False  # the root position has no limit
+        if impossible_mask.any():
+            values = np.where(impossible_mask[..., None], np.nan, channels.values)
+            possible_channels = replace(channels, values=values)
+            second_progress = within(progress, 0.5, 0.95)
+            estimate, prior_used = _estimate(
+                possible_channels, segment.frame_rate, bases, settings, second_progress
+            )
+    spikes = (estimate.inliers < OUTLIER_THRESHOLD) & (
+        np.abs(channels.flat - estimate.values) > MIN_REPORTED_SPIKE
+    )
+    cleaned = _blend(segment, complete, channels, estimate.values, settings)
+    if isinstance(cleaned, Motion):
+        if settings.method is DenoiseMethod.DEFAULT:
+            cleaned = keep_standing_feet(cleaned, observed_mask(segment))
+        cleaned = cleaned if limits is None else clamp_to_limits(cleaned, limits)
+    confidence = _confidence(max_per_joint(segment, channels, estimate.deviation), filled)
+    if isinstance(cleaned, Tracks):
+        unknown_mask = _unknown_points(cleaned.names, segment, bases)
+        confidence[:, unknown_mask] = 0.0
+        cleaned = cleaned.with_positions(
+            np.where(unknown_mask[:, None], np.nan, cleaned.positions)
+        )
+    return Denoised(
+        cleaned,
+        (max_per_joint(segment, channels, spikes) > 0.0) & observed_mask(segment),
+        np.zeros(confidence.shape, dtype=np.bool_),
+        confidence,
+        estimate.iterations,
+        estimate.converged,
+        prior_used,
+    )
+
+
+def _blend(
+    segment: Motion | Tracks,
+    complete: Motion | Tracks,
+    channels: Channels,
+    estimate: Array,
+    settings: DenoiseSettings,
 ) -> Motion | Tracks:
-    """Blend these samples with what was recorded, by the strength of each joint."""
-    weights = 1.0 - joint_strengths(recording, settings)
-    if limits is not None and isinstance(recording, Motion) and samples.any() and weights.any():
-        recording = clamp_to_limits(recording, limits)
-    return restore_held_samples(recording, cleaned, samples, weights)
+    """Blend from the recorded to the estimated channels, by the strength of each joint."""
+    strengths = _strengths(segment, settings)
+    weights = np.repeat(strengths[channels.joints], channels.values.shape[2])
+    noisy = channels.flat
+    blended = noisy + weights * (estimate - noisy)
+    values = np.where(np.isfinite(noisy), blended, estimate)
+    cleaned = decode(complete, channels, values.reshape(channels.values.shape))
+    return restore_observed(segment, cleaned, strengths == 0.0)
+
+
+def _blend_held(
+    recording: Motion | Tracks, result: Denoised, held: Flags, settings: DenoiseSettings
+) -> Denoised:
+    """Blend what a tracker held as well as what it observed, by the strength of each joint."""
+    strengths = _strengths(recording, settings)
+    cleaned = restore_held_samples(recording, result.recording, held, 1.0 - strengths)
+    message = f"{result.prior_used} {describe_held_samples(held)}".strip()
+    joints = held_joints(recording, held)
+    return replace(result, recording=cleaned, held=joints, prior_used=message)
+
+
+def _strengths(segment: Motion | Tracks, settings: DenoiseSettings) -> Array:
+    """Return the strength of each joint or point, shape (n_joints,)."""
+    if isinstance(segment, Motion):
+        factors = joint_factors(segment.skeleton, settings.part_strengths())
+        return np.asarray(settings.strength * factors)
+    return np.full(segment.n_points, settings.strength)
+
+
+def _unknown_points(
+    names: Sequence[str], segment: Motion | Tracks, bases: FilterBases | None
+) -> NDArray[np.bool_]:
+    """Return which points neither this segment nor the examples show, shape (n_points,)."""
+    known_means = bases.reference_of if bases else {}
+    return np.asarray(
+        ~observed_mask(segment).any(axis=0) & [name not in known_means for name in names]
+    )
+
+
+def _fill_gaps(
+    segment: Motion | Tracks, settings: DenoiseSettings, progress: Progress
+) -> FilledMarkers | None:
+    """Fill gaps of points, so that the filter treats predicted samples as observed."""
+    if isinstance(segment, Tracks) and settings.method is DenoiseMethod.DEFAULT:
+        return fill_markers(segment, progress)
+    return None
+
+
+def _confidence(deviation: Array, filled: FilledMarkers | None) -> Array:
+    if filled is not None:
+        deviation = np.where(filled.filled, CENTIMETERS * filled.deviation, deviation)
+    return np.asarray(1.0 / (1.0 + (deviation / HALF_CONFIDENCE_DEVIATION) ** 2))
+
+
+def _estimate(
+    channels: Channels,
+    frame_rate: float,
+    bases: FilterBases | None,
+    settings: DenoiseSettings,
+    progress: Progress,
+) -> tuple[Estimate, str]:
+    if settings.method is DenoiseMethod.PUBLISHED:
+        return filter_as_published(channels, frame_rate, bases, progress)
+    return apply_default_method(channels, frame_rate, bases, progress)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Flags, Integers
+from ..arrays import Array, Flags
 from ..motion import Motion, Tracks
 from ..motion.skeletons import describe_shots
 from .observed_samples import observed_mask
@@ -38,29 +38,6 @@ def unchanged(segment: Motion | Tracks) -> Denoised:
     """Return the result of a segment that is kept as recorded."""
     none = np.zeros(observed_mask(segment).shape, dtype=np.bool_)
     return Denoised(segment, none, none, 1.0 - none, 0, True, "")
-
-
-def between_samples(
-    result: Denoised,
-    recording: Motion | Tracks,
-    neighbors: tuple[Integers, Integers, Array],
-) -> Denoised:
-    """Return the result of the samples before and after each frame of this recording.
-
-    `neighbors` are both samples of each frame and the weight of the second.
-    """
-    low, high, weight = neighbors
-    before, after = result.confidence[low], result.confidence[high]
-    return Denoised(
-        recording,
-        result.outliers[low] | result.outliers[high],
-        result.held[low] | result.held[high],
-        before + weight[:, None] * (after - before),
-        result.iterations,
-        result.converged,
-        result.prior_used,
-        tuple(int(np.argmax(low >= cut)) for cut in result.cuts),
-    )
 
 
 def join_segments(

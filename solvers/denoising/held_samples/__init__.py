@@ -7,7 +7,6 @@ from .hide_held import (
     hide_held_samples,
     restore_held_samples,
 )
-from .trajectories import part_trajectories
 
 __all__ = [
     "body_is_held",
@@ -15,6 +14,5 @@ __all__ = [
     "find_held_samples",
     "held_joints",
     "hide_held_samples",
-    "part_trajectories",
     "restore_held_samples",
 ]

@@ -9,11 +9,14 @@ from numpy.typing import NDArray
 from ...arrays import Array, Flags
 from ...motion import Motion, Tracks
 from ...motion.skeletons import find_shot_boundaries
-from .trajectories import part_trajectories
+from ...rotations import unroll
 
 MAX_REPEAT_RAD = 1e-5
 """Largest step of a repeated sample, radians. It bounds the rounding of single precision: 1e-7
 of a quaternion, and 5e-7 of 5 m."""
+METERS_PER_RADIAN = 0.3
+"""Displacement in meters that counts like a rotation by one radian. Chosen by hand: 0.3 m is
+the length of a limb's bone, so that both move its end as far."""
 MIN_JITTER_RAD = 6e-5
 """Lowest jitter of a recording, radians; most have 9e-5 to 4e-3. It guards animation that was
 keyed by hand, whose curves are smooth (`test_anticipation_between_keys_is_not_held`)."""
@@ -84,7 +87,7 @@ def find_held_samples(recording: Motion | Tracks) -> Flags:
         Shape (n_frames, n_joints + 1) of a motion, the last for the position of the root, or
         (n_frames, n_points) of tracks.
     """
-    trajectories = part_trajectories(recording)
+    trajectories = _trajectories(recording)
     n_frames, n_parts = trajectories.shape[:2]
     held = np.zeros((n_frames, n_parts), dtype=np.bool_)
     repeats = _steps(trajectories) <= MAX_REPEAT_RAD
@@ -109,8 +112,17 @@ def find_held_samples(recording: Motion | Tracks) -> Flags:
 
 def body_is_held(recording: Motion | Tracks, held: Flags) -> Flags:
     """Return the frames in which most of what moves in this take is held, shape (n_frames,)."""
-    moving = (_steps(part_trajectories(recording)) > MAX_REPEAT_RAD).any(axis=0)
+    moving = (_steps(_trajectories(recording)) > MAX_REPEAT_RAD).any(axis=0)
     return np.asarray(held.any(axis=1) & (held[:, moving].mean(axis=1) >= 0.5))
+
+
+def _trajectories(recording: Motion | Tracks) -> Array:
+    """Return rotations and positions whose distances are radians, (n_frames, n_parts, 4)."""
+    if isinstance(recording, Tracks):
+        return recording.positions / METERS_PER_RADIAN
+    root = np.pad(recording.root_positions / METERS_PER_RADIAN, ((0, 0), (0, 1)))
+    # Twice the quaternion: the distance of neighbors is then their angle in radians.
+    return np.concatenate([2.0 * unroll(recording.rotations), root[:, None]], axis=1)
 
 
 def _steps(trajectories: Array) -> Array:

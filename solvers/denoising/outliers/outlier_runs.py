@@ -282,8 +282,13 @@ def _between_steps(samples: Array, max_frames: int) -> list[_Run]:
     Only channels count that are off the frames before and after by more than these differ.
     """
     edges = np.flatnonzero(np.abs(np.diff(samples, axis=0)).max(axis=1) > MIN_STEP) + 1
-    lengths = edges - edges[:, None]
-    starts, stops = edges[np.array(np.nonzero((lengths > 1) & (lengths <= max_frames)))]
+    after_last = np.searchsorted(edges, edges + max_frames, side="right")
+    counts = after_last - np.arange(len(edges))
+    starts = np.repeat(edges, counts)
+    first = np.repeat(np.cumsum(counts) - counts, counts)
+    stops = edges[np.repeat(np.arange(len(edges)), counts) + np.arange(len(starts)) - first]
+    is_run = stops - starts > 1
+    starts, stops = starts[is_run], stops[is_run]
     sums = np.cumsum(np.concatenate([np.zeros_like(samples[:1]), samples]), axis=0)
     means = (sums[stops] - sums[starts]) / (stops - starts)[:, None]
     before, after = samples[starts - 1], samples[stops]

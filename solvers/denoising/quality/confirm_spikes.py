@@ -69,9 +69,7 @@ def _errors(shot: Motion, signals: tuple[Signal, ...], spikes: Flags) -> tuple[F
     column_of = _parts_of_signals(shot, signals, channels.joints)
     suspected = np.zeros(channels.values.shape, dtype=np.bool_)
     suspected[:, column_of] = spikes[:, :, None]
-    bursts = np.zeros(values.shape, dtype=np.bool_)
-    rotations = slice(channels.n_rotations)
-    bursts[:, rotations] = find_bursts(values[:, rotations], shot.frame_rate, mixture)
+    bursts = find_bursts(values, shot.frame_rate, mixture)
     is_error = suspected.reshape(values.shape) & np.isfinite(values) & ~bursts
     complete = fill_channel_gaps(np.where(is_error | bursts, np.nan, values))
     if np.count_nonzero(spikes) <= MAX_SPIKES_PER_FRAME * shot.n_frames:

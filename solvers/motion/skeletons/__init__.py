@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .mediapipe import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
     from .motion import Motion
     from .point_layouts import LAYOUTS
-    from .resampling import resample, sample_at
+    from .resampling import resample
     from .shot_boundaries import (
         MIN_SHOT_S,
         describe_shots,
@@ -69,7 +69,6 @@ __all__ = [
     "reach",
     "resample",
     "rest_direction",
-    "sample_at",
     "shot_ranges",
     "still_joints",
     "unit_name",

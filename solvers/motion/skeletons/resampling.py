@@ -59,29 +59,7 @@ def resample(recording: Recording, frame_rate: float) -> Recording:
     """
     check_frame_rate(frame_rate)
     times = _sample_times(recording.n_frames, recording.frame_rate, frame_rate)
-    return _resampled(recording, times, frame_rate, frame_rate / recording.frame_rate)
-
-
-def sample_at(
-    recording: Motion | Tracks, times: NDArray[np.float64], frame_rate: float
-) -> Motion | Tracks:
-    """Return the recording at these times, interpolated as by `resample`.
-
-    Parameters
-    ----------
-    recording : Motion or Tracks
-    times : shape (n_times,), in frames of the recording
-    frame_rate : float, hertz
-        That of the result.
-    """
-    if isinstance(recording, Motion):
-        return _resampled(recording, times, frame_rate, 1.0)
-    return _resampled(recording, times, frame_rate, 1.0)
-
-
-def _resampled(
-    recording: Recording, times: NDArray[np.float64], frame_rate: float, slowdown: float
-) -> Recording:
+    slowdown = frame_rate / recording.frame_rate
     if isinstance(recording, Motion):
         rotations = _sample_rotations(recording.rotations, times, slowdown)
         root_positions = _sample(recording.root_positions, times, slowdown)

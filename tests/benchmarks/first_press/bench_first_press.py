@@ -17,6 +17,9 @@ from time import perf_counter
 
 import numpy as np
 
+from solvers.arrays import Flags
+from solvers.denoising import Quality, measure_quality
+
 from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import number, table
 from .calibration import Calibration
@@ -48,8 +51,17 @@ class Scores:
             lambda: defaultdict(dict)
         )
         self.flagged: dict[str, list[float]] = defaultdict(list)
+        self.listed: dict[str, list[float]] = defaultdict(list)
+        self.errors_listed: dict[str, list[int]] = defaultdict(list)
+        self.errors: dict[str, int] = defaultdict(int)
         self.seconds: dict[str, float] = defaultdict(float)
         self.calibration = Calibration()
+
+    def add_check(self, condition: str, quality: Quality, is_good: Flags) -> None:
+        """Count the spikes that Check lists among good samples and among errors."""
+        self.listed[condition].append(float(quality.spikes[is_good].mean()))
+        self.errors_listed[condition].append(int(quality.spikes[~is_good].sum()))
+        self.errors[condition] += int(np.count_nonzero(~is_good))
 
     def tables(self) -> list[str]:
         """Return a table for each figure, and one of what is only asked of ours."""
@@ -79,6 +91,15 @@ class Scores:
             ],
             "good samples flagged, %": [
                 f"{100 * np.mean(self.flagged[str(one)]):.2f}" for one in CONDITIONS
+            ],
+            "good samples that Check lists as spikes, %": [
+                f"{100 * np.mean(self.listed[str(one)]):.2f}" for one in CONDITIONS
+            ],
+            "errors that Check lists, %": [
+                f"{100 * sum(self.errors_listed[str(one)]) / self.errors[str(one)]:.0f}"
+                if one.outliers or one.bursts
+                else "-"
+                for one in CONDITIONS
             ],
             "seconds": [f"{self.seconds[str(one)]:.1f}" for one in CONDITIONS],
         }
@@ -165,6 +186,7 @@ def run(takes: Sequence[Take], methods: Iterable[str]) -> Scores:
                     scores.calibration.add(case, result.motion, result.confidence)
                     is_good = case.is_good
                     scores.flagged[str(condition)].append(float(result.flagged[is_good].mean()))
+                    scores.add_check(str(condition), measure_quality(case.recording), is_good)
                 figures = measure(case, result.motion)
                 scores.figures[name][str(condition)][str(take)] = figures
     return scores

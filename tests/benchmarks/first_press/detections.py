@@ -1,18 +1,15 @@
-"""What Clean finds before it estimates anything: samples that are repeats, and takes baked.
+"""What Clean finds before it estimates anything: samples that repeat earlier ones.
 
-All takes are for development: repeats and rates are found by rules that were chosen on them.
+All takes are for development: the rules by which repeats are found were chosen on them.
 """
 
 from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from solvers.arrays import Array
-from solvers.denoising.baked_takes import Baking, find_baking
 from solvers.denoising.held_samples import body_is_held, find_held_samples
 from solvers.motion import Motion
 from solvers.recordings import read_acclaim, read_bvh
-from solvers.rotations import slerp
 
 from ..shared import clips
 from ..shared.tables import table
@@ -24,22 +21,14 @@ SIGMA = 0.3
 """Noise of takes with repeats, degrees, as in the conditions of the first press."""
 MIN_FRACTION = 0.5
 """Fraction of a limb's repeated samples from which on it counts as found."""
-BAKED = {"24 to 30 Hz": (5, 4), "25 to 30 Hz": (6, 5), "30 to 60 Hz": (2, 1)}
-"""Frames, and the samples that they were interpolated from."""
 
 
 def detections() -> str:
     """Return the table of what is found, and of what is found in takes without anything."""
     rows = {title: _counted(_held_limbs(limb)) for limb, title in LIMBS.items()}
     rows["frames dropped"] = _counted(_dropped_frames())
-    for title, ratio in BAKED.items():
-        rows[f"takes interpolated from {title}"] = _counted(_baked(*ratio))
-    clean = list(_clean_takes())
     rows["clean takes in which nothing is held"] = _counted(
-        not find_held_samples(each).any() for each in clean
-    )
-    rows["clean takes that do not count as interpolated"] = _counted(
-        find_baking(each) is None for each in clean
+        not find_held_samples(each).any() for each in _clean_takes()
     )
     title = "**Found before the estimate, development takes**"
     return f"{title}\n\n{table(['', 'found', 'of'], rows)}\n"
@@ -66,15 +55,6 @@ def _dropped_frames() -> Iterator[bool]:
         yield from body_is_held(recording, find_held_samples(recording))[1:][repeats]
 
 
-def _baked(n_frames: int, n_samples: int) -> Iterator[bool]:
-    for take in DEVELOPMENT:
-        motion = Case(take, Condition("baked", sigma=SIGMA)).recording
-        rate = motion.frame_rate * n_frames / n_samples
-        n_baked = (motion.n_frames - 1) * n_frames // n_samples + 1
-        times = Baking(n_frames, n_samples, 0).times(n_baked)
-        yield find_baking(_linear(motion, times, rate)) == Baking(n_frames, n_samples, 0)
-
-
 def _clean_takes() -> Iterator[Motion]:
     """Yield all recordings of development people and of the corpus, also at 30 Hz."""
     paths = [
@@ -91,13 +71,3 @@ def _clean_takes() -> Iterator[Motion]:
         yield motion
         if (step := round(motion.frame_rate / clips.FRAME_RATE)) > 1:
             yield clips.every(motion, step)
-
-
-def _linear(motion: Motion, times: Array, rate: float) -> Motion:
-    """Interpolate linearly at these times, in frames of the motion."""
-    low, high = np.floor(times).astype(int), np.ceil(times).astype(int)
-    weight = times - low
-    rotations = slerp(motion.rotations[low], motion.rotations[high], weight[:, None])
-    roots = motion.root_positions
-    positions = roots[low] + weight[:, None] * (roots[high] - roots[low])
-    return Motion(motion.skeleton, rotations, positions, rate)

@@ -19,10 +19,9 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[3]
 FAMILIES: dict[str, tuple[str, ...]] = {
     "denoising": (
-        "solvers/denoising/denoise_segment.py",
+        "solvers/denoising/denoise.py",
         "solvers/denoising/edge_poses.py",
         "solvers/denoising/held_samples",
-        "solvers/denoising/baked_takes",
         "solvers/denoising/default_method.py",
         "solvers/denoising/observed_samples.py",
         "solvers/denoising/channels",

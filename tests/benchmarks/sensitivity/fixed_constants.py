@@ -15,7 +15,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "signals/spikes.TUKEY_SIGMAS",
         "denoising/channels/channels.CENTIMETERS",
         "denoising/marker_gaps/gap_boundaries.MEDIAN_NORM",
-        "denoising/denoise_segment.HALF_CONFIDENCE_DEVIATION",
+        "denoising/denoise.HALF_CONFIDENCE_DEVIATION",
         "denoising/motion_model/motion_mixture.N_CHANNELS",
         "denoising/limb_gaps/predict_limbs.BOW_VARIANCE",
         "depth_tracking/capturing/retrack._N_CONTEXT_FRAMES",
