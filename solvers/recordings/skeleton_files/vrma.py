@@ -24,7 +24,7 @@ KEY_TOLERANCE_S = 1e-3
 """Seconds by which a key may be off a frame: rounding of the times in a file."""
 MAX_FRAMES = 1_000_000
 MAX_POSES = 1 << 25
-"""Rotations of joints, and keys. It bounds the memory: 1.1 GB for the rotations."""
+"""Rotations of joints, and keys. It bounds the memory: 1.1 GB, and some 4 GB on the way."""
 MAX_DEPTH, MAX_BONES = 200, 500
 STEP, CUBIC = "STEP", "CUBICSPLINE"
 
