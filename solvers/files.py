@@ -86,8 +86,13 @@ def open_regular(path: Path | str) -> BinaryIO:
 
     Raises OSError for others: opening a pipe may block, and a device may be endless.
     """
-    open_flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    descriptor = os.open(path, open_flags)
+    open_flags = os.O_RDONLY | getattr(os, "O_BINARY", 0)
+    try:
+        descriptor = os.open(path, open_flags | getattr(os, "O_NONBLOCK", 0))
+    except BlockingIOError:  # A file server holds a lease, and gives it up to one that waits.
+        if not stat.S_ISREG(Path(path).stat().st_mode):
+            raise
+        descriptor = os.open(path, open_flags)
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
             raise OSError(errno.EINVAL, "it is not a file", str(path))

@@ -2,10 +2,11 @@
 
 import argparse
 import json
+import shutil
 import sys
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
-from shutil import disk_usage
 
 import bpy
 
@@ -14,6 +15,8 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path, write_atomically
 
 STDOUT = Path("-")
+LITTLE_SPACE = 100_000_000
+"""Bytes on a disk that the saved file may fill. Chosen by hand: more than the largest takes."""
 
 
 def add_output_options(parser: argparse.ArgumentParser, *, saves: bool) -> None:
@@ -56,16 +59,31 @@ def save(target: Path) -> None:
     """Save the open file; Blender writes it atomically.
 
     On a disk that becomes full, Blender reports an arbitrary reason, such as "Success". So the
-    error states also the free space.
+    error states also the free space where it is little.
     """
     try:
         bpy.ops.wm.save_as_mainfile(filepath=str(target), check_existing=False)
     except RuntimeError as error:
         reason = str(error).strip().removeprefix("Error: ").removesuffix(".")
-        free = disk_usage(target.parent).free / 1e6
         raise InvalidFileError(
-            f"{target} was not saved: {reason}. {free:.1f} MB are free on its disk."
+            f"{target} was not saved: {reason}.{_little_space(target)}"
         ) from error
+
+
+def _little_space(target: Path) -> str:
+    """Return a sentence on the free space if the file may not fit in it; empty otherwise."""
+    n_bytes = 0
+    for existing in (target, Path(bpy.data.filepath)):
+        with suppress(OSError):
+            n_bytes = max(n_bytes, existing.stat().st_size)
+    with suppress(OSError):
+        free = shutil.disk_usage(target.parent).free
+        if free < max(LITTLE_SPACE, 2 * n_bytes):
+            return (
+                f" {free / 1e6:.1f} MB are free on its disk. Free some space, or save elsewhere"
+                " with --output."
+            )
+    return ""
 
 
 def report_figures(

@@ -89,7 +89,18 @@ class SparseMotion:
         return sum(curve.values.size for curve in curves)
 
     def save(self, path: Path | str) -> None:
-        """Save as npz, atomically; `load_sparse_motion` reads it."""
+        """Save as npz, atomically; `load_sparse_motion` reads it.
+
+        Raises
+        ------
+        InvalidMotionError
+            The motion is too long to be loaded again.
+        """
+        if self.n_frames > _max_frames(self.skeleton):
+            raise InvalidMotionError(
+                f"{self.n_frames:,} frames of {self.skeleton.n_joints:,} joints cannot be saved"
+                " as keys. Unbake a shorter part."
+            )
         curves = (*self.rotations, self.root)
         arrays = {
             "names": np.array(self.skeleton.names),
@@ -123,6 +134,10 @@ class SparseMotion:
         if not np.isfinite(rotations).all():
             raise InvalidMotionError("A joint has keys that are no rotations. Unbake again.")
         return Motion(self.skeleton, rotations, self.root.at(frames), self.frame_rate)
+
+
+def _max_frames(skeleton: Skeleton) -> int:
+    return min(MAX_FRAMES, MAX_BYTES // (BYTES_PER_POSE * skeleton.n_joints))
 
 
 def load_sparse_motion(path: Path | str) -> SparseMotion:
@@ -159,8 +174,7 @@ def _motion_from_arrays(arrays: dict[str, NDArray[Any]]) -> SparseMotion:
         or arrays["counts"][:-1] @ widths != len(arrays["rotations"])
     ):
         raise InvalidMotionError("The keys do not fit the joints.")
-    max_frames = min(MAX_FRAMES, MAX_BYTES // (BYTES_PER_POSE * skeleton.n_joints))
-    if not 0 < n_frames <= max_frames or frame_rate <= 0.0 or not counts[-1]:
+    if not 0 < n_frames <= _max_frames(skeleton) or frame_rate <= 0.0 or not counts[-1]:
         raise InvalidMotionError("The motion length is invalid.")
     frames = np.split(arrays["frames"], np.cumsum(counts)[:-1])
     if any((np.diff(keys) <= 0).any() for keys in frames):

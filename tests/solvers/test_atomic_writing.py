@@ -2,13 +2,14 @@
 
 import errno
 import os
+import signal
 import sys
 from subprocess import run
 
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.files import remove_leftovers, write_atomically
+from solvers.files import read_regular, remove_leftovers, write_atomically
 
 KILLED = """
 import os, signal, sys
@@ -17,6 +18,25 @@ with write_atomically(sys.argv[1]) as part:
     part.write_text("half")
     os.kill(os.getpid(), signal.SIGKILL)
 """
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs leases")
+def test_file_with_a_lease_is_read_once_it_is_given_up(tmp_path):
+    fcntl = pytest.importorskip("fcntl")
+    path = tmp_path / "a.json"
+    path.write_text("{}")
+    holder = os.open(path, os.O_WRONLY)
+
+    def give_up(*_):
+        fcntl.fcntl(holder, fcntl.F_SETLEASE, fcntl.F_UNLCK)
+
+    before = signal.signal(signal.SIGIO, give_up)
+    try:
+        fcntl.fcntl(holder, fcntl.F_SETLEASE, fcntl.F_WRLCK)
+        assert read_regular(path, 10) == b"{}"
+    finally:
+        signal.signal(signal.SIGIO, before)
+        os.close(holder)
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers.denoising import denoise, learn_filter_bases
-from solvers.denoising.quality import bone_drift
+from solvers.denoising.quality import bone_drift, measure_quality
 from solvers.errors import InvalidMotionError
 from solvers.motion import Tracks
 from solvers.samples import GaitSettings, walking_gait
@@ -47,3 +47,14 @@ def test_bones_of_very_many_points_are_not_searched(rng, monkeypatch):
 
         assert len(found) == (n_points - 1 if n_points <= bone_drift.MAX_POINTS else 0)
     assert len(tested) == 300 * 299 // 2
+
+
+@pytest.mark.parametrize("n_points", [3, 4])
+def test_check_reports_that_bones_are_not_searched(rng, monkeypatch, n_points):
+    monkeypatch.setattr(bone_drift, "MAX_POINTS", 3)
+    names = tuple(f"M{number}" for number in range(n_points))
+    quality = measure_quality(Tracks(names, rng.normal(size=(60, n_points, 3)), 30.0))
+
+    searched = n_points == 3
+    assert quality.figures()["bones_searched"] is searched
+    assert ("Bones are not searched among more than" in quality.report()) is not searched

@@ -1,5 +1,6 @@
 """Records of a batch: a small file for each output, so that many machines may add to them."""
 
+import errno
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields
@@ -8,6 +9,7 @@ from pathlib import Path, PurePosixPath
 from secrets import token_hex
 from typing import Any
 
+from ...errors import InvalidFileError
 from ...faults import Failure, attempt
 from ...files import read_regular, remove_leftovers, write_atomically
 from ...json_text import parse_json
@@ -102,10 +104,7 @@ class Records:
 
     def former(self) -> Iterator[Record]:
         """Yield the records in the single file of earlier versions."""
-        try:
-            notes = parse_json(read_regular(self.folder / FORMER_RECORD, MAX_BYTES))
-        except (OSError, ValueError):
-            return
+        notes = _content(self.folder / FORMER_RECORD)
         for output, note in notes.items() if isinstance(notes, Mapping) else ():
             if isinstance(note, dict):
                 figures = note.pop("figures", None)
@@ -134,14 +133,27 @@ class Records:
 
 def _read(file: Path, output: str | None = None) -> Record | None:
     """Return the record in a file; None if it is missing or is no record of that output."""
-    record = attempt(file, _parsed, file)
+    record = attempt(file, _parsed, _content(file))
     if isinstance(record, Failure) or output not in {None, record.output}:
         return None
     return record
 
 
-def _parsed(file: Path) -> Record:
-    content = parse_json(read_regular(file, MAX_BYTES))
+def _content(file: Path) -> Any:
+    """Return the content of a file; None if it is missing or is not JSON."""
+    try:
+        return parse_json(read_regular(file, MAX_BYTES))
+    except OSError as error:
+        if error.errno == errno.EFBIG:
+            raise InvalidFileError(
+                f"{file} is too large for records of a batch; move it away to start again."
+            ) from None
+    except ValueError:
+        pass
+    return None
+
+
+def _parsed(content: Any) -> Record:
     record = Record(**{each.name: content[each.name] for each in fields(Record)})
     texts = [record.verb, record.output, record.error, record.host, record.identifier]
     lists = [*record.inputs, *record.remarks]

@@ -15,7 +15,7 @@ MAX_SAMPLED_FRAMES = 1000
 bounds the run time of long takes."""
 MAX_POINTS = 300
 """Points without names of joints that are tested in pairs. It bounds the run time: 45,000 pairs
-take some ten seconds, and a thousand points took minutes."""
+take 12 to 24 seconds in a long take, and a thousand points took minutes."""
 LENGTH_COST = 0.01
 """Cost per meter: of two equally constant connections the shorter one is preferred. Chosen by
 hand; `make sensitivity` varies it."""
@@ -48,14 +48,19 @@ def measure_bone_drifts(tracks: Tracks) -> tuple[BoneDrift, ...]:
     Points named like the joints of a body are connected like its limbs and its neck. Other
     points, such as markers, are connected by the minimum spanning tree of how much their
     distances vary (Kirk, O'Brien and Forsyth 2005, doi:10.1109/CVPR.2005.326). Only connections
-    with a nearly constant length are kept. Points without a common observed frame, and more
-    than `MAX_POINTS` of them, are not connected.
+    with a nearly constant length are kept. Points without a common observed frame are not
+    connected, and none where `bones_are_searched` is False.
     """
     pairs = _bones_from_names(tracks.names)
-    if not pairs and tracks.n_points <= MAX_POINTS:
+    if not pairs and bones_are_searched(tracks):
         pairs = _bones_from_distances(tracks)
     drifts = [_drift(tracks, first, second) for first, second in pairs]
     return tuple(drift for drift in drifts if drift is not None)
+
+
+def bones_are_searched(tracks: Tracks) -> bool:
+    """Return whether the names imply bones, or the points are at most `MAX_POINTS`."""
+    return tracks.n_points <= MAX_POINTS or bool(_bones_from_names(tracks.names))
 
 
 def _bones_from_names(names: tuple[str, ...]) -> list[tuple[int, int]]:

@@ -47,6 +47,7 @@ def quality_figures(quality: "Quality") -> dict[str, Any]:
         }
         for bone in quality.bones
     ]
+    figures["bones_searched"] = quality.bones_searched
     figures["cuts"] = list(quality.cuts)
     if quality.limit_excess is not None:
         worst = np.degrees(np.nan_to_num(quality.limit_excess).max(axis=0))

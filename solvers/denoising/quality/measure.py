@@ -16,7 +16,7 @@ from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
 from ..held_samples import body_is_held, find_held_samples, hide_held_samples
 from ..limits import limit_excess
-from .bone_drift import BoneDrift, measure_bone_drifts
+from .bone_drift import BoneDrift, bones_are_searched, measure_bone_drifts
 from .confirm_spikes import confirm_spikes
 from .figures import quality_figures
 from .foot_slide import FootPoints, FootSlide, foot_paths, measure_foot_slide, sole_paths
@@ -87,6 +87,8 @@ class Quality:
         nowhere.
     path_jumps : tuple of PathJump
         Where the root is put elsewhere and stays.
+    bones_searched : bool
+        False where tracks have too many points without names of joints to search for bones.
     """
 
     names: tuple[str, ...]
@@ -101,6 +103,7 @@ class Quality:
     cuts: tuple[int, ...] = ()
     body_held: Flags | None = None
     path_jumps: tuple[PathJump, ...] = ()
+    bones_searched: bool = True
 
     @cached_property
     def spikes(self) -> Flags:
@@ -232,6 +235,7 @@ def measure_quality(
         cuts=cuts,
         body_held=body_is_held(recording, held) if held.any() else None,
         path_jumps=find_path_jumps(seen, cuts),
+        bones_searched=isinstance(recording, Motion) or bones_are_searched(recording),
     )
     progress(1.0, "Measured")
     return quality

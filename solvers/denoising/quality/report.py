@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...signals import find_runs
+from .bone_drift import MAX_POINTS
 from .joint_signals import Signal
 
 if TYPE_CHECKING:
@@ -36,6 +37,12 @@ def quality_report(quality: "Quality") -> str:
         ]
     if quality.bones:
         lines += ["", *_aligned([("bone", "length", "drift"), *_bones(quality)])]
+    if not quality.bones_searched:
+        lines += [
+            "",
+            f"Bones are not searched among more than {MAX_POINTS} markers; check fewer of"
+            " them.",
+        ]
     if quality.limit_excess is not None:
         lines += ["", *_limits(quality)]
     return "\n".join(lines)

@@ -70,8 +70,11 @@ class BodyModel:
                 raise InvalidMotionError(
                     f"The {name} of a body have shape {shape}, not {values.shape}."
                 )
-            if not (np.isfinite(values).all() and (values > 0.0).all()):
-                raise InvalidMotionError(f"The {name} of a body must all be above 0.")
+            if not ((values >= MIN_LENGTH_M) & (values <= MAX_LENGTH_M)).all():
+                raise InvalidMotionError(
+                    f"The {name} of a body must all be from {MIN_LENGTH_M:g} to"
+                    f" {MAX_LENGTH_M:g} m."
+                )
             values.setflags(write=False)
             object.__setattr__(self, name, values)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...arrays import Array, Integers
-from .model import BodyModel
+from .model import MAX_LENGTH_M, MIN_LENGTH_M, BodyModel
 from .normal_equations import SurfaceRows
 from .segment_kinematics import N_SEGMENTS
 from .tables import (
@@ -48,10 +48,11 @@ N_LENGTHS = len(_LENGTHS)
 
 
 def resize_body(body: BodyModel, change: Array) -> BodyModel:
-    """Return the body with each of its `MEASURES` scaled by exp(change)."""
+    """Return the body with each of its `MEASURES` scaled by exp(change), within its bounds."""
     lengths = body.lengths * np.exp(_LENGTH_MAP @ change[:N_LENGTHS])
     radius_factors = np.exp(_RADIUS_MAP @ change[N_LENGTHS:])
-    return BodyModel(lengths, body.radii * radius_factors.reshape(len(CAPSULES), 2))
+    radii = body.radii * radius_factors.reshape(len(CAPSULES), 2)
+    return BodyModel(*(np.clip(each, MIN_LENGTH_M, MAX_LENGTH_M) for each in (lengths, radii)))
 
 
 def shape_jacobian(body: BodyModel, frames: Array, rows: SurfaceRows) -> Array:

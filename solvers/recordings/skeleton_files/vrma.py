@@ -11,14 +11,7 @@ from ...errors import InvalidFileError
 from ...motion import Motion, Skeleton
 from ...progress import Progress, unwatched
 from ...rotations import IDENTITY, inverse, multiply, normalize, rotate, slerp, unroll
-from ..containers import (
-    GlbFile,
-    UniqueNames,
-    check_n_joints,
-    check_n_poses,
-    printable,
-    vector,
-)
+from ..containers import GlbFile, UniqueNames, check_n_joints, printable, vector
 from ..conventions import check_scale, rotations_z_up_from_y_up, z_up_from_y_up
 
 EXTENSION = "VRMC_vrm_animation"
@@ -30,6 +23,8 @@ DEFAULT_RATE_HZ = 60.0
 KEY_TOLERANCE_S = 1e-3
 """Seconds by which a key may be off a frame: rounding of the times in a file."""
 MAX_FRAMES = 1_000_000
+MAX_POSES = 1 << 25
+"""Rotations of joints, and keys. It bounds the memory: 1.1 GB, and some 4 GB on the way."""
 MAX_DEPTH, MAX_BONES = 200, 500
 STEP, CUBIC = "STEP", "CUBICSPLINE"
 
@@ -93,7 +88,7 @@ def read_vrma(
     bones = _bones(file, len(nodes))
     names, order, parents = _tree(file, nodes, bones)
     times, rate = _sample_times(file, nodes, order)
-    check_n_poses(path, len(times), len(order))
+    _check_n_poses(file, len(times) * len(order))
     progress(0.5, "Reading")
     unit = 1.0 if scale is None else scale
     rest = np.array([_world_rest(nodes, node)[1] for node in order])
@@ -148,16 +143,16 @@ def _nodes(file: GlbFile) -> list[_Node]:
     keys: list[dict[str, _Channel]] = [{} for _ in listed]
     n_keys = 0
     for animation in file.items("animations")[:1]:
+        samplers = _objects(animation.get("samplers"))
         for channel in _objects(animation.get("channels")):
             target = channel.get("target")
             if not isinstance(target, dict):
                 continue
             moved, kind = target.get("node"), target.get("path")
             if isinstance(moved, int) and 0 <= moved < len(keys) and kind in _SIZES:
-                samplers = _objects(animation.get("samplers"))
                 keys[moved][kind] = _channel(file, samplers, channel.get("sampler"), kind)
                 n_keys += len(keys[moved][kind].times)
-                check_n_poses(file.path, n_keys, 1)  # Channels may share their numbers.
+                _check_n_poses(file, n_keys)  # Channels may share their numbers.
     return [
         _Node(
             parents[index],
@@ -167,6 +162,14 @@ def _nodes(file: GlbFile) -> list[_Node]:
         )
         for index, node in enumerate(listed)
     ]
+
+
+def _check_n_poses(file: GlbFile, n_poses: int) -> None:
+    if n_poses > MAX_POSES:
+        raise InvalidFileError(
+            f"{file.path} has {n_poses:,} poses of joints; {MAX_POSES:,} can be read. Export a"
+            " shorter part."
+        )
 
 
 _SIZES = {"rotation": 4, "translation": 3}

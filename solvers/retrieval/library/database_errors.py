@@ -13,6 +13,11 @@ PRIMARY_CODE_MASK = 0xFF
 """Mask of the primary error code; the other bits are details."""
 
 
+def is_full_disk(error: Exception) -> bool:
+    """Return whether SQLite failed as the disk is full."""
+    return getattr(error, "sqlite_errorcode", 0) & PRIMARY_CODE_MASK == sqlite3.SQLITE_FULL
+
+
 @contextmanager
 def readable_errors(path: Path | None) -> Iterator[None]:
     """Raise what SQLite, or `report_damage`, reports of a file as an InvalidFileError."""
@@ -25,7 +30,7 @@ def readable_errors(path: Path | None) -> Iterator[None]:
             raise InvalidFileError(
                 f"{name} is being written by another program; try again when it is done."
             ) from None
-        if code == sqlite3.SQLITE_FULL:
+        if is_full_disk(error):
             raise InvalidFileError(
                 f"{name} cannot be written: the disk is full. It is as it was before."
             ) from None

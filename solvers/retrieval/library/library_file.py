@@ -7,7 +7,7 @@ stays intact if a process dies. Views and triggers, which SQLite would execute, 
 import os
 import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ...errors import InvalidFileError
@@ -20,7 +20,7 @@ from ..index import (
     vocabulary_arrays,
     vocabulary_from_arrays,
 )
-from .database_errors import readable_errors, report_damage
+from .database_errors import is_full_disk, readable_errors, report_damage
 from .schema import MAX_NUMBER, check_schema, create_tables, refuse_side_files
 from .values import check_number, read_row_numbers
 
@@ -46,7 +46,7 @@ def create_file(path: Path) -> None:
     """Create an empty library in a missing or empty file; leave other files unchanged.
 
     If two processes do so at the same time, only one creates the tables. A file that this call
-    made and could not fill, such as on a full disk, is removed.
+    made and could not fill as the disk is full is removed.
 
     Raises
     ------
@@ -54,8 +54,7 @@ def create_file(path: Path) -> None:
         The name has no suffix of a library; the folder is missing or not writable.
     """
     refuse_other_suffix(path)
-    is_new = is_missing(path)
-    with readable_errors(path):
+    with readable_errors(path), _no_empty_file_on_full_disk(path):
         database = _connect(path)
         try:
             if not database.execute("PRAGMA page_count").fetchone()[0]:
@@ -64,9 +63,24 @@ def create_file(path: Path) -> None:
                         _lay_out(database)
         finally:
             database.close()
+
+
+@contextmanager
+def _no_empty_file_on_full_disk(path: Path) -> Iterator[None]:
+    """Remove a file that the block made and could not fill, as the disk is full.
+
+    After any other error it stays: another process may be creating the tables in it.
+    """
+    is_new = is_missing(path)
+    try:
+        yield
+    except sqlite3.Error as error:
+        if is_new and is_full_disk(error):
             made = real_path(path)
-            if is_new and made.exists() and not made.stat().st_size:
-                made.unlink()
+            with suppress(OSError):
+                if not made.stat().st_size:
+                    made.unlink()
+        raise
 
 
 def refuse_other_suffix(path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import errno
 import json
+from types import SimpleNamespace
 
 import pytest
 from numpy.testing import assert_allclose
@@ -57,7 +58,24 @@ def test_command_reports_an_unwritable_file(dancer, command, tmp_path):
     status, _, err = command("denoise", "--output", str(tmp_path / "x.blend"))
 
     assert status == 2
-    assert "x.blend was not saved: " in err and "MB are free on its disk." in err
+    assert "x.blend was not saved: " in err and "MB are free" not in err
+
+
+@pytest.mark.parametrize("free", [1_500_000, None])
+def test_command_reports_a_full_disk(dancer, command, tmp_path, monkeypatch, free):
+    (tmp_path / "x.blend").mkdir()
+
+    def usage(folder):
+        if free is None:
+            raise OSError(errno.EIO, "Input/output error")
+        return SimpleNamespace(free=free)
+
+    monkeypatch.setattr("shutil.disk_usage", usage)
+
+    status, _, err = command("denoise", "--output", str(tmp_path / "x.blend"))
+
+    assert status == 2 and "x.blend was not saved: " in err
+    assert ("1.5 MB are free on its disk. Free some space" in err) == (free is not None)
 
 
 def test_picture_that_cannot_be_drawn_is_reported(dancer, command, monkeypatch, tmp_path):

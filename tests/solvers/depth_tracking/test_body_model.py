@@ -106,8 +106,9 @@ def test_load_body_model_raises_for_damaged_or_foreign_files(tmp_path):
     [
         (np.ones(3), np.ones((19, 2)), "lengths of a body have shape"),
         (np.ones(20), np.ones((19, 1)), "radii of a body have shape"),
-        (np.full(20, np.nan), np.ones((19, 2)), "lengths of a body must all be above 0"),
-        (np.ones(20), -np.ones((19, 2)), "radii of a body must all be above 0"),
+        (np.full(20, np.nan), np.ones((19, 2)), "lengths of a body must all be from 0.001"),
+        (np.ones(20), np.full((19, 2), 9e-4), "radii of a body must all be from 0.001"),
+        (np.full(20, 101.0), np.ones((19, 2)), "lengths of a body must all be from 0.001 to"),
     ],
 )
 def test_body_model_raises_for_invalid_values(lengths, radii, words):

@@ -1,5 +1,7 @@
 """Few keys reproduce the motion within the tolerance with the curves of Blender."""
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -223,3 +225,14 @@ def test_single_joint_has_end_points():
     sparse = reduce_keys(Motion(lone, rotations, np.zeros((50, 3)), 30.0), 0.001)
 
     assert 2 <= len(sparse.rotations[0].frames) < 10 and sparse.error <= 0.001
+
+
+def test_motion_too_long_to_be_loaded_is_not_saved(walk, tmp_path, monkeypatch):
+    sparse = reduce_keys(walk, 0.05)
+    module = import_module("solvers.retargeting.reduce_keys")
+    monkeypatch.setattr(module, "MAX_FRAMES", walk.n_frames - 1)
+
+    with pytest.raises(InvalidMotionError, match=r"saved as keys\. Unbake a shorter part\."):
+        sparse.save(tmp_path / "keys.npz")
+
+    assert not list(tmp_path.iterdir())

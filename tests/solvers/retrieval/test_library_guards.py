@@ -175,6 +175,34 @@ def test_full_disk_leaves_no_empty_library(tmp_path, monkeypatch, existed):
     assert path.exists() == existed
 
 
+def test_other_failures_leave_a_file_that_another_process_may_be_filling(tmp_path, monkeypatch):
+    def fail(database: sqlite3.Connection) -> None:
+        raise sqlite3.OperationalError("disk I/O error")
+
+    monkeypatch.setattr(library_file, "create_tables", fail)
+    path = tmp_path / "a.clips"
+
+    with pytest.raises(InvalidFileError):
+        open_clip_library(path)
+
+    assert path.exists()
+
+
+def test_full_disk_is_reported_where_the_empty_library_stays(tmp_path, monkeypatch):
+    def one_page(database: sqlite3.Connection) -> None:
+        database.execute("PRAGMA max_page_count = 1")
+        create_tables(database)
+
+    def fail(path, **_):
+        raise PermissionError(path)
+
+    monkeypatch.setattr(library_file, "create_tables", one_page)
+    monkeypatch.setattr("pathlib.Path.unlink", fail)
+
+    with pytest.raises(InvalidFileError, match="the disk is full"):
+        open_clip_library(tmp_path / "a.clips")
+
+
 def test_solver_error_is_not_reported_as_damage(tmp_path, monkeypatch):
     def fail(*_):
         raise ValueError("a mistake of ours")

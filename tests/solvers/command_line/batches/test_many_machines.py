@@ -8,8 +8,6 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-import pytest
-
 from solvers.command_line.arguments import read
 from solvers.command_line.batches import batch
 from solvers.command_line.batches.report import Entry, write_report
@@ -144,43 +142,6 @@ def test_report_needs_records(call, tmp_path):
             2, f"There are no records of a batch in the folder {folder}.\n",
         )  # fmt: skip
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize(
-    "change", [{"output": "../x.bvh"}, {"output": "/x.bvh"}, {"error": 1}, {"figures": []}]
-)
-def test_records_that_point_elsewhere_or_are_damaged_are_ignored(
-    call, leg_file, tmp_path, change
-):
-    out = tmp_path / "out"
-    call("convert", leg_file, "--output-folder", out)
-    (file,) = out.glob(".mocap_assist/*.json")
-    record = {**json.loads(file.read_text()), "output": "x.bvh", **change}
-    Records(out).file(record["output"]).write_text(json.dumps(record))
-    file.with_name("leg.bvh.json").write_text(file.read_text())
-
-    status, printed, _ = call("report", out)
-
-    assert (status, printed) == (0, f"done    {out / 'leg.bvh'}\n1 done, 0 failed\n")
-
-
-@pytest.mark.parametrize("name", [".mocap_assist/other.json", "mocap_assist.json"])
-@pytest.mark.parametrize("kind", ["pipe", "device", "folder"])
-def test_records_that_are_no_files_are_ignored(call, leg_file, tmp_path, name, kind):
-    file = tmp_path / "out" / name
-    file.parent.mkdir(parents=True)
-    if kind == "pipe":
-        os.mkfifo(file)
-    elif kind == "device":
-        file.symlink_to("/dev/zero")
-    else:
-        file.mkdir()
-
-    for words in (("convert", leg_file, "--output-folder"), ("report",)):
-        status, _, err = call(*words, tmp_path / "out")
-
-        assert (status, err) == (0, "")
-    assert json.loads((tmp_path / "out" / "report.json").read_text())["done"] == 1
 
 
 def test_report_is_written_again_when_a_record_is_added_meanwhile(tmp_path):
