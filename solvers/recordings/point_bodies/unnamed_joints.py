@@ -118,8 +118,8 @@ def _is_crossed(posture: Array) -> bool:
         - posture[:, POSTURE_JOINTS.index(f"right{part}")]
         for part in ("UpperLeg", "UpperArm")
     )
-    alike = (hips * shoulders).sum(axis=1)
-    return bool(np.isfinite(alike).any() and np.nanmedian(alike) < 0.0)
+    agreement = (hips * shoulders).sum(axis=1)
+    return bool(np.isfinite(agreement).any() and np.nanmedian(alike) < 0.0)
 
 
 def _in_order(points: Array, order: Sequence[str]) -> tuple[tuple[str, ...], Array]:
