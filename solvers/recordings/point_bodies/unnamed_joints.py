@@ -119,7 +119,7 @@ def _is_crossed(posture: Array) -> bool:
         for part in ("UpperLeg", "UpperArm")
     )
     agreement = (hips * shoulders).sum(axis=1)
-    return bool(np.isfinite(agreement).any() and np.nanmedian(alike) < 0.0)
+    return bool(np.isfinite(agreement).any() and np.nanmedian(agreement) < 0.0)
 
 
 def _in_order(points: Array, order: Sequence[str]) -> tuple[tuple[str, ...], Array]:
