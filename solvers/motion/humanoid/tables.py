@@ -174,7 +174,7 @@ TABLES: dict[str, tuple[str, ...]] = {
         "upleg", "lowleg", "foot", "ball",
     ),
     "Talking With Hands": (  # of Meta, the recordings of the GENEA challenges
-        "root", "spine0", "spine1", "spine3", "neck0", "head",
+        "b_root", "spine0", "spine1", "spine3", "neck0", "head",
         "shoulder", "arm", "forearm", "wrist",
         "upleg", "leg", "foot", "ball",
     ),
@@ -225,9 +225,8 @@ TABLES: dict[str, tuple[str, ...]] = {
     ),
     "3ds Max CAT": (
         "pelvis hub001", "spine1", "spine2", "ribcage hub002", "neck1 neck", "head hub003",
-        "armCollarbone collarbone", "arm1 armUpperarm upperarm", "arm2 armForearm forearm",
-        "armPalm palm",
-        "leg1 legThigh thigh", "leg2 legCalf calf", "legAnkle ankle", "legDigit11 toe",
+        "armCollarbone", "armUpperarm", "armForearm", "armPalm",
+        "legThigh", "legCalf", "legAnkle", "legDigit11",
     ),
     "Theia": (
         "pelvis", "abdomen", "thorax torso", "", "neck", "head",

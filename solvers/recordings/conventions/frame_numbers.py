@@ -30,7 +30,11 @@ fractions."""
 MS_PER_S = 1000.0
 """Milliseconds per second, by definition."""
 MAX_MS_ROUNDING = 1.0
-"""Milliseconds by which whole numbers of them miss a second. By definition: rounding of one."""
+"""Milliseconds by which whole numbers of them miss a second, or large ones the duration of a
+frame. By definition: rounding of one."""
+MAX_UNSTATED_STEP = 4.0
+"""Step between numbers without a stated rate, up to which they count frames. By definition of
+the unit: 5 ms is a frame of 200 Hz."""
 
 
 def step_between(numbers: Sequence[float]) -> float:
@@ -61,8 +65,8 @@ def rate_of_numbers(
 ) -> float | None:
     """Return the rate of frames of which only each second, third and so on is there.
 
-    Numbers are those of the video. Those that are a frame's duration in milliseconds apart are
-    times, and its rate remains, as it does if all frames are there.
+    Numbers are those of the video. Those that are a frame's duration apart are times, and its
+    rate remains, as it does if all frames are there.
 
     Parameters
     ----------
@@ -73,15 +77,27 @@ def rate_of_numbers(
     progress : Progress
     """
     step = step_between(numbers)
-    if step <= 1.0 or (rate is None and not are_frame_numbers(numbers)):
+    if step <= 1.0 or (rate is None and not _is_plain_step(step, numbers)):
         return rate
     if rate is None:
         rate = DEFAULT_FRAME_RATE
         progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
-    if abs(step * rate - MS_PER_S) <= MAX_MS_ROUNDING:
+    if _is_duration(step, rate):
         return rate
     progress(
         0.8,
         Remark(f"Frames are numbered in steps of {step:g}; their rate is {rate / step:g} Hz"),
     )
     return rate / step
+
+
+def _is_plain_step(step: float, numbers: Sequence[float]) -> bool:
+    """Return whether numbers without a rate can be no times."""
+    return step <= MAX_UNSTATED_STEP and are_frame_numbers(numbers)
+
+
+def _is_duration(step: float, rate: float) -> bool:
+    """Return whether a step is the duration of a frame in milliseconds or a smaller unit."""
+    is_exact = abs(step * rate - MS_PER_S) <= MAX_MS_ROUNDING
+    is_rounded = abs(step - MS_PER_S / rate) <= MAX_MS_ROUNDING
+    return is_exact or step >= MS_PER_S or (step > MAX_FRAME_STEP and is_rounded)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from ..containers import SPACE, decode_text, find_separator, is_missing, split_cells
 from ..conventions import meters_from_unit_name
 from ..point_bodies import is_quantity
+from .json_bodies import MAX_SAMPLING_HZ, MIN_SAMPLING_HZ
 
 MAX_TITLE_LINES = 10
 """Lines above the frames. It bounds the search; tables of Motive have seven."""
@@ -145,7 +146,8 @@ def _rate_of_column(found: TableTitles, below: Sequence[bytes]) -> float | None:
     rows = [cells_of_line(line, found.separator) for line in below] if columns else []
     stated = {row[columns[0]] for row in rows if len(row) == len(found.titles)}
     is_number = len(stated) == 1 and all(map(NUMBER_OF_TABLE.fullmatch, stated))
-    return (float(stated.pop().replace(",", ".")) or None) if is_number else None
+    rate = float(stated.pop().replace(",", ".")) if is_number else 0.0
+    return rate if MIN_SAMPLING_HZ < rate <= MAX_SAMPLING_HZ else None
 
 
 def _joined_lines(lines: Sequence[bytes]) -> TableTitles | None:

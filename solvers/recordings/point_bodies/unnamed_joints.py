@@ -88,9 +88,13 @@ def bone_misfit(names: Sequence[str], positions: Array) -> float:
 
     It is the sum of three means over the bones of the limbs, each a ratio: the spread of the
     length over time, the difference of both sides, and the difference from an adult's
-    proportions.
+    proportions. It is infinite if one order of the sides is that of the hips, and the other one
+    that of the shoulders.
     """
-    lengths = segment_lengths(posture_positions(Tracks(tuple(names), positions, 1.0)))
+    posture = posture_positions(Tracks(tuple(names), positions, 1.0))
+    if _is_crossed(posture):
+        return np.inf
+    lengths = segment_lengths(posture)
     lengths = lengths[:, [*LIMB_BONES, *OTHER_SIDE]]
     if not np.isfinite(lengths).any(axis=0).all():
         return np.inf
@@ -105,6 +109,17 @@ def bone_misfit(names: Sequence[str], positions: Array) -> float:
         np.abs(ratios - np.median(ratios)),
     )
     return float(sum(np.minimum(part, MAX_BONE_MISFIT).mean() for part in parts))
+
+
+def _is_crossed(posture: Array) -> bool:
+    """Return whether left is on one side in the hips and on the other one in the shoulders."""
+    hips, shoulders = (
+        posture[:, POSTURE_JOINTS.index(f"left{part}")]
+        - posture[:, POSTURE_JOINTS.index(f"right{part}")]
+        for part in ("UpperLeg", "UpperArm")
+    )
+    agreement = (hips * shoulders).sum(axis=1)
+    return bool(np.isfinite(agreement).any() and np.nanmedian(agreement) < 0.0)
 
 
 def _in_order(points: Array, order: Sequence[str]) -> tuple[tuple[str, ...], Array]:

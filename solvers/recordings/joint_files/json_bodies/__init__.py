@@ -14,14 +14,23 @@ from .bodies import (
 from .people import is_frames_json, is_no_position, people_of_frame
 from .points import position_of
 from .pose_estimators import is_frame_json, open_frames_json
-from .stamps import stated_rates, time_of_frame
+from .stamps import (
+    MAX_SAMPLING_HZ,
+    MIN_SAMPLING_HZ,
+    is_number,
+    stated_rates,
+    time_of_frame,
+)
 
 __all__ = [
+    "MAX_SAMPLING_HZ",
+    "MIN_SAMPLING_HZ",
     "BodiesFrame",
     "BodyJoints",
     "is_frame_json",
     "is_frames_json",
     "is_no_position",
+    "is_number",
     "json_frames",
     "listed",
     "name_of_body",

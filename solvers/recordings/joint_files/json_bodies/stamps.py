@@ -10,7 +10,7 @@ from ...point_bodies import read_time, time_name
 from .points import either_case, members
 
 NUMBER_KEYS = either_case("frame", "frame_id", "frame_number", "frame_index", "frame_idx",
-                          "frameId", "frameNumber", "frameIndex", "index", "idx")  # fmt: skip
+                          "frameId", "frameNumber", "frameIndex")  # fmt: skip
 """Members with the number of a frame."""
 HEADER_KEYS = either_case("header", "meta", "metadata")
 """Members with the time of a frame, as in messages of ROS."""

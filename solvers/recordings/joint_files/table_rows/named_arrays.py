@@ -15,11 +15,13 @@ from ...point_bodies import (
     rank_of_array,
     time_name,
 )
-from ..json_bodies import is_no_position
+from ..json_bodies import is_no_position, is_number
 from .titled_rows import TitledRows
 
 MIN_NAMES = 8
 """Number of names of joints. It guards lists of other words."""
+UNCLEAR_PATHS = {"position", "transform"}
+"""Keys that may be those of the path of a body, or of a camera or anything else."""
 Listed = tuple[str, list[Any]]
 """A list and its key."""
 
@@ -88,10 +90,8 @@ def _table(
     others = ", ".join(key for key, _ in fitting[1:])
     remark = _remark_of_choice(fitting[0][0], others) if others else None
     beside = {key: values for key, values in lists if len(values) == len(rows)}
-    root = key_of_root(beside)
-    if root is not None and all(
-        isinstance(each, list) and len(each) == 3 for each in beside[root]
-    ):
+    root = key_of_root(key for key in beside if key.lower() not in UNCLEAR_PATHS)
+    if root is not None and all(map(_is_point, beside[root])):
         titles += [f"{printable(root)}_{axis}" for axis in "xyz"]
         rows = [[*row, *each] for row, each in zip(rows, beside[root], strict=True)]
     clock = next(filter(time_name, beside), None)
@@ -99,6 +99,10 @@ def _table(
         titles = [clock, *titles]
         rows = [[time, *row] for time, row in zip(beside[clock], rows, strict=True)]
     return TitledRows(titles, rows, remark)
+
+
+def _is_point(value: Any) -> bool:
+    return isinstance(value, list) and len(value) == 3 and all(map(is_number, value))
 
 
 def _remark_of_choice(key: str, others: str) -> Remark:

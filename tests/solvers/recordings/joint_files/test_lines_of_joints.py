@@ -179,6 +179,8 @@ def test_many_landmarks_are_not_those_of_a_pose(save, name):
         ("frame,joint,x,y,z,fps", "{frame},{name},{x},{y},{z},60", 60.0),
         ("frame,joint,x,y,z,Frame Rate (Hz)", "{frame},{name},{x},{y},{z},59.94", 59.94),
         ("frame,joint,x,y,z,fps", "{frame},{name},{x},{y},{z},{frame}", 30.0),
+        ("frame,joint,x,y,z,fps", "{frame},{name},{x},{y},{z},1", 30.0),
+        ("frame,joint,x,y,z,fps", "{frame},{name},{x},{y},{z},9999", 30.0),
         ("# fps: 60\nframe,time,joint,x,y,z", "{frame},{t},{name},{x},{y},{z}", 25.0),
     ],
 )

@@ -87,6 +87,17 @@ def test_columns_of_joints_may_be_next_to_the_path_of_the_body(read_any, walk, r
     check(read_any("\n".join([",".join(titles), *lines])), walk)
 
 
+@pytest.mark.parametrize("key", ["position", "transform"])
+def test_other_values_next_to_names_are_no_path_of_the_body(read_any, walk, relative, key):
+    """A `position` may be that of a camera, and text is none."""
+    for other, values in ((key, walk[:, 0].tolist()), ("root", [["a"] * 3] * F)):
+        take = {"joint_names": SMPL, other: values, "pred_joints": relative.tolist()}
+
+        recording = read_any(json.dumps({"fps": 30, **take}))
+
+        check(recording, relative)
+
+
 @pytest.mark.parametrize("nest", ["json", "npz"])
 def test_the_camera_of_a_cropped_picture_is_no_path(read_any, relative, walk, nest):
     path = walk[:, 0] + (0.0, 0.0, 43.0)

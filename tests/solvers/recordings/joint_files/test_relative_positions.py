@@ -89,19 +89,6 @@ def test_positions_in_the_room_come_before_those_relative_to_the_parents(read_an
     )
 
 
-@pytest.mark.parametrize("title", ["{}.{}", "{}_{}"])
-def test_tables_of_angles_are_refused(read_any, walk, rng, title):
-    """Before, a table of angles whose titles do not say so came in as a crumpled body."""
-    swing = np.sin(np.linspace(0.0, 6.0, F))[:, None]
-    angles = {name: 40.0 * rng.normal(size=3) * swing for name in walk}
-    titles = [title.format(name, axis) for name in walk for axis in "xyz"]
-    rows = np.concatenate([*angles.values()], axis=1)
-    lines = [",".join(f"{x:.3f}" for x in row) for row in rows]
-
-    with pytest.raises(InvalidFileError, match=r"change their length by .*no positions"):
-        read_any("\n".join([",".join(titles), *lines]))
-
-
 def test_a_still_actor_is_no_set_of_offsets(read_any, walk):
     still = {role: np.tile(path[:1], (F, 1)) for role, path in walk.items()}
 

@@ -113,6 +113,15 @@ def test_points_in_another_order_are_no_body(tmp_path, walk):
     assert "form no body in a known order" in said
 
 
+@pytest.mark.parametrize("layout", ["Human3.6M", "Human3.6M without neck"])
+def test_legs_and_arms_with_other_orders_of_the_sides_are_no_body(tmp_path, walk, layout):
+    """Before, such legs came in crossed."""
+    points = ordered(walk, layout)
+    points[:, 1:7] = points[:, [4, 5, 6, 1, 2, 3]]
+
+    assert not isinstance(read(tmp_path, points)[0], JointRecording)
+
+
 @pytest.mark.parametrize("make", [
     lambda points: points[None],
     lambda points: np.moveaxis(points, 2, 1),

@@ -70,16 +70,15 @@ def test_the_time_of_one_frame_does_not_stand_still():
     [
         lambda frames: frames,
         lambda frames: {"frames": frames},
-        lambda frames: [
-            {"index": each["frame"], "landmarks": each["landmarks"]} for each in frames
-        ],
         lambda frames: {f"frame_{each['frame']:04}": each["landmarks"] for each in frames},
         lambda frames: {"frames": {str(each["frame"]): each["landmarks"] for each in frames}},
     ],
-    ids=["list", "member", "index", "names", "keys"],
+    ids=["list", "member", "names", "keys"],
 )
-@pytest.mark.parametrize(("stated", "rate"), [(None, 30.0), (60.0, 60.0)])
-@pytest.mark.parametrize("step", [1, 2, 5])
+@pytest.mark.parametrize(
+    ("stated", "rate", "step"),
+    [(None, 30.0, 1), (None, 30.0, 2), (60.0, 60.0, 1), (60.0, 60.0, 2), (60.0, 60.0, 5)],
+)
 def test_frames_in_steps_have_a_part_of_the_rate(
     read_any, collected_messages, layout, stated, rate, step
 ):
@@ -95,3 +94,25 @@ def test_frames_in_steps_have_a_part_of_the_rate(
     assert recording.tracks.n_frames == N
     assert any(f"in steps of {step}" in message for message in messages) == (step > 1)
     assert any("30 Hz is assumed" in message for message in messages) == (stated is None)
+
+
+@pytest.mark.parametrize(
+    ("step", "stated", "rate"),
+    [(33, 30.0, 30.0), (16, 60.0, 60.0), (20000, 50.0, 50.0), (5, None, 30.0)],
+)
+@pytest.mark.parametrize("is_keyed", [False, True])
+def test_numbers_that_are_times_do_not_divide_the_rate(read_any, step, stated, rate, is_keyed):
+    """Before, 16 ms at 60 Hz became 3.75 Hz, and microseconds were refused."""
+    frames = [frame(k, frame=step * k) for k in range(N)]
+    keyed = {str(each["frame"]): each["landmarks"] for each in frames}
+    take = {"frames": keyed if is_keyed else frames} | ({"fps": stated} if stated else {})
+
+    assert read_any(json.dumps(take)).tracks.frame_rate == approx(rate)
+
+
+@pytest.mark.parametrize("key", ["index", "idx"])
+def test_an_index_is_no_number_of_a_frame(read_any, key):
+    """It is often that of a body; frames of the same number would be joined."""
+    frames = [frame(k, **{key: k % 2}) for k in range(N)]
+
+    assert read_any(json.dumps(frames)).tracks.n_frames == N
