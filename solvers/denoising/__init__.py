@@ -10,7 +10,7 @@ True
 >>> corrupted = corrupt(walk, jitter, missing={"RightArm": range(20, 80)})
 >>> issues = find_worst_issues(corrupted, measure_quality(corrupted))
 >>> next(issue.sentence for issue in issues if issue.kind == "gap")
-'RightArm is missing for 1.00 s.'
+'RightArm and 2 more are missing for 1.00 s.'
 """
 
 from typing import TYPE_CHECKING

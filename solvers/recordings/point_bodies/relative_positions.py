@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import chain, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -36,68 +35,6 @@ guards bones whose lengths are rounded; joints of a body move with its hips."""
 MIN_STILL_JOINTS = 0.8
 """Joints that do not move, a fraction of those with a role. Chosen by hand: some programs also
 move collarbones or hands relative to their parents."""
-
-LIMB_BONES = tuple(
-    (f"{side}{start}", f"{side}{end}")
-    for side in ("left", "right")
-    for limb in (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand"))
-    for start, end in pairwise(limb)
-)
-"""Roles at both ends of the long bones of limbs."""
-LIMB_JOINTS = sorted({*chain(*LIMB_BONES)})
-MAX_STRETCH = 0.5
-"""Range of the length of bones between its 10th and 90th percentile, relative to the median, a
-ratio, in half of the limbs. Chosen by hand: it is up to 0.24 in 400 takes of eight sensors and
-from 0.74 in tables of the angles of three takes."""
-MAX_BONE_FRACTION = 0.85
-"""Typical length of these bones relative to the distance of any two of their joints, a ratio.
-Chosen by hand: it is 1.0 to 1.2 in the same tables, and 0.3 to 0.7 in positions with noise of
-20 cm, or in the picture of a camera, whose bones change their length as well."""
-N_MEASURED_FRAMES = 500
-"""Number of frames, evenly spaced, whose bones are measured. It bounds the run time."""
-
-
-def refuse_other_values(path: Path | str, points: Array, roles: Mapping[str, int]) -> None:
-    """Raise InvalidFileError if numbers are offsets from parent bones, or angles.
-
-    Parameters
-    ----------
-    path : Path or str
-    points : shape (n_frames, n_joints, 3), in any unit and axes; NaN where missing
-    roles : joints by humanoid role
-    """
-    refuse_parent_positions(path, points, roles)
-    refuse_changing_bones(path, points, roles)
-
-
-def refuse_changing_bones(path: Path | str, points: Array, roles: Mapping[str, int]) -> None:
-    """Raise InvalidFileError if limbs change their length as no body does, as angles would.
-
-    Points with three equal coordinates, such as 0, or at one place are not observed. Parameters
-    are those of `refuse_other_values`.
-    """
-    if not {*LIMB_JOINTS} <= roles.keys():
-        return
-    step = max(1, len(points) // N_MEASURED_FRAMES)
-    limbs = points[::step, [roles[role] for role in LIMB_JOINTS]]
-    is_unknown = (np.abs(limbs) == np.abs(limbs[..., :1])).all(axis=2, keepdims=True)
-    limbs = np.where(is_unknown, np.nan, limbs)
-    distances = np.linalg.norm(limbs[:, :, None] - limbs[:, None], axis=3)
-    distances[distances == 0.0] = np.nan
-    starts, ends = np.vectorize(LIMB_JOINTS.index)(LIMB_BONES).T
-    bones = distances[:, starts, ends]
-    bones = bones[:, np.isfinite(bones).any(axis=0)]
-    if not bones.size:
-        return
-    short, middle, long = np.nanpercentile(bones, (10.0, 50.0, 90.0), axis=0)
-    stretch = np.median((long - short) / middle)
-    fraction = np.nanmedian(bones) / np.nanmedian(distances)
-    if stretch > MAX_STRETCH and fraction > MAX_BONE_FRACTION:
-        raise InvalidFileError(
-            f"{path} has joints whose bones change their length by {stretch:.0%}, so its"
-            " numbers are no positions. Save positions in the room (world or global), or export"
-            " BVH, FBX or GLB."
-        )
 
 
 def refuse_parent_positions(path: Path | str, points: Array, roles: Mapping[str, int]) -> None:
