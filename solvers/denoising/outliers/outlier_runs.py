@@ -282,13 +282,13 @@ def _between_steps(samples: Array, max_frames: int) -> list[_Run]:
     Only channels count that are off the frames before and after by more than these differ.
     """
     edges = np.flatnonzero(np.abs(np.diff(samples, axis=0)).max(axis=1) > MIN_STEP) + 1
-    after_last = np.searchsorted(edges, edges + max_frames, side="right")
-    counts = after_last - np.arange(len(edges))
-    starts = np.repeat(edges, counts)
-    first = np.repeat(np.cumsum(counts) - counts, counts)
-    stops = edges[np.repeat(np.arange(len(edges)), counts) + np.arange(len(starts)) - first]
-    is_run = stops - starts > 1
-    starts, stops = starts[is_run], stops[is_run]
+    # Each edge with those up to `max_frames` later: all pairs would need too much memory.
+    own = np.arange(len(edges))
+    counts = np.searchsorted(edges, edges + max_frames, side="right") - own
+    own = np.repeat(own, counts)
+    later = np.arange(len(own)) - np.repeat(np.cumsum(counts) - counts, counts)
+    starts, stops = edges[own], edges[own + later]
+    starts, stops = starts[stops - starts > 1], stops[stops - starts > 1]
     sums = np.cumsum(np.concatenate([np.zeros_like(samples[:1]), samples]), axis=0)
     means = (sums[stops] - sums[starts]) / (stops - starts)[:, None]
     before, after = samples[starts - 1], samples[stops]

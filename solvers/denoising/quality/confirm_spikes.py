@@ -16,7 +16,7 @@ from .joint_signals import Signal
 
 MAX_SPIKES_PER_FRAME = 1.0
 """Spikes of all joints per frame, a mean over a shot, above which all of them count. It bounds
-the run time: a clean dance has 0.3 that are movement, a take with 10 % of outliers has 4."""
+the run time: a climb without errors has 0.3, a take with 10 % of outliers has 4."""
 ERROR_RATE = 1e-5
 """Errors per sample that a list assumes: one in an hour of a channel at 30 Hz. Chosen by hand
 on development takes of the first press: the odds of all 219 suspects that are fast movement are

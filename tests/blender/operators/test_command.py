@@ -80,7 +80,7 @@ def test_command_reports_a_full_disk(dancer, command, tmp_path, monkeypatch, fre
 
 def test_picture_that_cannot_be_drawn_is_reported(dancer, command, monkeypatch, tmp_path):
     picture = tmp_path / "x.png"
-    picture.write_bytes(b"a picture of somebody")
+    picture.write_bytes(b"an older picture")
 
     def fill_disk(*_, **__):
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -90,7 +90,7 @@ def test_picture_that_cannot_be_drawn_is_reported(dancer, command, monkeypatch, 
     status, _, err = command("quality", "--picture", picture)
 
     assert (status, err) == (0, f"{picture} cannot be written: the disk is full.\n")
-    assert picture.read_bytes() == b"a picture of somebody"
+    assert picture.read_bytes() == b"an older picture"
 
 
 def test_quality_command_measures(bad_arm, command):

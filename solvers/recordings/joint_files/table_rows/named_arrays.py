@@ -89,15 +89,15 @@ def _table(
     rows: list[Any] = fitting[0][1].tolist()
     others = ", ".join(key for key, _ in fitting[1:])
     remark = _remark_of_choice(fitting[0][0], others) if others else None
-    beside = {key: values for key, values in lists if len(values) == len(rows)}
-    root = key_of_root(key for key in beside if key.lower() not in UNCLEAR_PATHS)
-    if root is not None and all(map(_is_point, beside[root])):
+    per_frame = {key: values for key, values in lists if len(values) == len(rows)}
+    root = key_of_root(key for key in per_frame if key.lower() not in UNCLEAR_PATHS)
+    if root is not None and all(map(_is_point, per_frame[root])):
         titles += [f"{printable(root)}_{axis}" for axis in "xyz"]
-        rows = [[*row, *each] for row, each in zip(rows, beside[root], strict=True)]
-    clock = next(filter(time_name, beside), None)
+        rows = [[*row, *each] for row, each in zip(rows, per_frame[root], strict=True)]
+    clock = next(filter(time_name, per_frame), None)
     if clock is not None:
         titles = [clock, *titles]
-        rows = [[time, *row] for time, row in zip(beside[clock], rows, strict=True)]
+        rows = [[time, *row] for time, row in zip(per_frame[clock], rows, strict=True)]
     return TitledRows(titles, rows, remark)
 
 
