@@ -21,7 +21,7 @@ from .tables import (
     SIDES,
 )
 
-MIN_LENGTH_M, MAX_LENGTH_M = 1e-6, 100.0
+MIN_LENGTH_M, MAX_LENGTH_M = 1e-3, 100.0
 """Bounds of the length or radius of a body part. They guard against damaged files
 (`test_body_of_no_size_is_refused`)."""
 LAYOUT = ArchiveLayout(
