@@ -128,7 +128,7 @@ residuals: .venv-4.5/ready  ## learn the shipped errors of a Kinect, and their c
 motion-prior: .venv-4.5/ready  ## learn the shipped motion prior of the depth tracker
 	$(PYTHON_4.5) -m tests.training.train_motion_prior $(ARGUMENTS)
 
-motion-mixture: .venv-4.5/ready  ## learn how joints move, for Clean without examples
+motion-mixture: .venv-4.5/ready  ## learn how joints move; ARGUMENTS=--pairs: with their parents
 	$(PYTHON_4.5) -m tests.training.train_motion_mixture $(ARGUMENTS)
 
 body-relation: .venv-4.5/ready  ## learn how joints move together, for limbs that are missing

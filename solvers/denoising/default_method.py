@@ -8,13 +8,13 @@ from ..progress import Progress, within
 from .averaging import (
     MIN_NOISE,
     average_estimates,
-    leverage_factor,
     noise_factors,
     smooth_by_spline,
 )
 from .channels import Channels, Estimate
 from .limb_gaps import load_body_relation, predict_limbs
 from .motion_model import (
+    SHIPPED_PAIRS,
     MixtureSmoother,
     estimate_joint_noise,
     load_motion_mixture,
@@ -66,22 +66,15 @@ def apply_default_method(
     spline = smooth_by_spline(complete)
     factors = noise_factors(noise, complete, [estimate, spline], is_good)
     noise = np.maximum(noise * factors, MIN_NOISE)
-    by_mixture = MixtureSmoother(
-        covariances * np.square(factors[::3])[:, None, None], frame_rate, mixture
+    smooth_by_mixtures = MixtureSmoother(
+        covariances * np.square(factors[::3])[:, None, None],
+        frame_rate,
+        (mixture, load_motion_mixture(SHIPPED_PAIRS)),
+        channels.parents,
     )
+    smoothed = [spline, smooth_by_mixtures(complete)]
     averaged, weights = average_estimates(
-        noisy,
-        estimate,
-        [
-            (smoothed, leverage_factor(smooth, smoothed, complete, is_good, noise))
-            for smooth, smoothed in (
-                (smooth_by_spline, spline),
-                (by_mixture, by_mixture(complete)),
-            )
-            if smoothed is not None
-        ],
-        is_good,
-        noise,
+        noisy, estimate, [each for each in smoothed if each is not None], is_good, noise
     )
     n_predicted = 0
     if bases is None:

@@ -9,7 +9,7 @@ def parse_output(description: str | None, shipped: Path) -> Path:
     return Path(output_parser(description, shipped).parse_args().out)
 
 
-def output_parser(description: str | None, shipped: Path) -> argparse.ArgumentParser:
+def output_parser(description: str | None, shipped: Path | None) -> argparse.ArgumentParser:
     """Return a parser with `--out`, for scripts that add arguments of their own."""
     parser = argparse.ArgumentParser(
         description=description, formatter_class=argparse.RawDescriptionHelpFormatter

@@ -1,6 +1,8 @@
-"""Learn the mixture of windows that Clean ships, from captures that anyone may use.
+"""Learn the mixtures of windows that Clean ships, from captures that anyone may use.
 
-    make motion-mixture ARGUMENTS="[--out FILE]"
+    make motion-mixture ARGUMENTS="[--pairs] [--out FILE]"
+
+With `--pairs` that of joints and their parents, otherwise that of joints.
 
 CMU (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217): playground, jumps, punches,
 sword, lifting, salsa, walks. No actor or take of `tests/benchmarks/first_press/takes.py` that
@@ -9,14 +11,14 @@ is scored, and no development take.
 
 from collections.abc import Iterator
 
-from solvers.denoising.motion_model import SHIPPED, learn_motion_mixture
+from solvers.denoising.motion_model import SHIPPED, SHIPPED_PAIRS, learn_motion_mixture
 from solvers.denoising.motion_model.learn_mixture import FRAME_RATE
 from solvers.motion import Motion
 
 from ..benchmarks.first_press.takes import DEVELOPMENT, read_variety, variety_names
 from ..benchmarks.shared import clips
 from ..benchmarks.shared.clips import every
-from .arguments import parse_output, print_progress
+from .arguments import output_parser, print_progress
 
 ACTORS = ("01_", "02_", "salsa_")
 """Of `cmu_variety`. Subject 03, martial arts and Indian dance are scored."""
@@ -47,9 +49,14 @@ def motions() -> Iterator[Motion]:
 
 def main() -> None:
     """Learn, and save where it is shipped."""
-    out = parse_output(__doc__, SHIPPED)
-    mixture = learn_motion_mixture(list(motions()), trained_on=WORDS, progress=print_progress)
-    mixture.save(out)
+    parser = output_parser(__doc__, None)
+    parser.add_argument("--pairs", action="store_true")
+    chosen = parser.parse_args()
+    n_joints, shipped = (2, SHIPPED_PAIRS) if chosen.pairs else (1, SHIPPED)
+    mixture = learn_motion_mixture(
+        list(motions()), n_joints, trained_on=WORDS, progress=print_progress
+    )
+    mixture.save(chosen.out or shipped)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ..channels import Estimate, Smoothed
-from .measure_leverage import leverage
+from .leverage import leverage
 from .remaining_noise import MIN_NOISE
 
 POOLED_JOINTS = 4.0
@@ -27,7 +27,7 @@ RIDGE = 1e-9
 def average_estimates(
     noisy: Array,
     estimate: Estimate,
-    smoothers: Sequence[tuple[Smoothed, float]],
+    smoothers: Sequence[Smoothed],
     is_good: NDArray[np.bool_],
     noise: Array,
 ) -> tuple[Estimate, Array]:
@@ -42,9 +42,8 @@ def average_estimates(
     noisy : shape (n_frames, n_channels)
         Each joint has three channels.
     estimate : Estimate
-    smoothers : sequence of Smoothed and its `leverage_factor`
-        Of the same take. The estimate counts with a factor of 1: measuring it would take as
-        long as the estimate itself.
+    smoothers : sequence of Smoothed
+        Of the same take.
     is_good : shape (n_frames, n_channels)
         Samples that are compared: observed ones that are no outliers. A joint without any keeps
         its estimate.
@@ -62,16 +61,14 @@ def average_estimates(
     .. [1] Stein (1981). Estimation of the mean of a multivariate normal distribution. Annals of
        Statistics 9. doi:10.1214/aos/1176345632
     """
-    smoothed = [each for each, _ in smoothers]
-    candidates: list[Estimate | Smoothed] = [estimate, *smoothed]
-    factors = [1.0, *(factor for _, factor in smoothers)]
+    candidates: list[Estimate | Smoothed] = [estimate, *smoothers]
     complete = np.where(is_good, noisy, estimate.values)
     residuals = np.stack([
         np.where(is_good, complete - each.values, 0.0) for each in candidates
     ])
     leverages = np.stack([
-        factor * leverage(residual, each.leave_one_out_error)
-        for residual, each, factor in zip(residuals, candidates, factors, strict=True)
+        leverage(residual, each.leave_one_out_error)
+        for residual, each in zip(residuals, candidates, strict=True)
     ])
     variance = np.square(noise)
     joints = (-1, 3)
@@ -89,7 +86,7 @@ def average_estimates(
         products = products + POOLED_JOINTS * products.mean(axis=0)
         freedom = freedom + POOLED_JOINTS * freedom.mean(axis=0)
         weights[compared] = _least_error_weights(products, freedom)
-    return _blend(estimate, smoothed, np.repeat(weights, 3, axis=0).T, is_good), weights
+    return _blend(estimate, smoothers, np.repeat(weights, 3, axis=0).T, is_good), weights
 
 
 def _least_error_weights(products: Array, freedom: Array) -> Array:

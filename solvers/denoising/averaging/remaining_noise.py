@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ..channels import Estimate, Smoothed
 from ..motion_model import MAX_CONSTANT_RANGE
-from .measure_leverage import leverage
+from .leverage import leverage
 
 MIN_NOISE = 1e-3
 """Degrees or centimeters: smaller noise is that of rounding in files. Guards a division."""

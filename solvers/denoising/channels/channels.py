@@ -33,6 +33,8 @@ class Channels:
         Position and heading of the body.
     moving_references : shape (n_frames, n_parts - 1, 4), optional
         Rotations of the joints' references over time, of a motion.
+    parents : shape (n_parts,), optional
+        Index of the part of each joint's parent, of a motion; -1 where there is none.
     """
 
     keys: tuple[str, ...]
@@ -41,6 +43,7 @@ class Channels:
     references: Mapping[str, Array]
     path: TravelPath
     moving_references: Array | None = None
+    parents: NDArray[np.intp] | None = None
 
     @property
     def flat(self) -> Array:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...motion import Motion, find_humanoid_map, t_pose_alignment
@@ -92,6 +93,7 @@ def encode_motion(motion: Motion, references: Mapping[str, Array] | None = None)
         dict(zip(rig.keys, references_used, strict=True)) | {BODY_POSITION: median_position},
         path,
         moving_references,
+        _parents(motion, rig),
     )
 
 
@@ -146,6 +148,13 @@ def _rig(motion: Motion) -> EncodedJoints:
         heading,
         joints.index(heading.joint),
     )
+
+
+def _parents(motion: Motion, rig: EncodedJoints) -> NDArray[np.intp]:
+    """Return the part of each part's parent; the root position has none."""
+    part_of = {joint: part for part, joint in enumerate(rig.joints)}
+    parents = (part_of.get(motion.skeleton.parents[joint], -1) for joint in rig.joints)
+    return np.array([*parents, -1])
 
 
 def _conversion_between_rigs(rig: EncodedJoints, references_used: Array) -> tuple[Array, Array]:

@@ -2,7 +2,13 @@
 
 from .joint_noise import MAX_CONSTANT_RANGE, JointNoise, estimate_joint_noise
 from .learn_mixture import learn_motion_mixture
-from .motion_mixture import N_CHANNELS, SHIPPED, MotionMixture, load_motion_mixture
+from .motion_mixture import (
+    N_CHANNELS,
+    SHIPPED,
+    SHIPPED_PAIRS,
+    MotionMixture,
+    load_motion_mixture,
+)
 from .principal_axes import principal_axes, robust_axes
 from .smooth_joints import MAX_LEVERAGE, MixtureSmoother
 
@@ -11,6 +17,7 @@ __all__ = [
     "MAX_LEVERAGE",
     "N_CHANNELS",
     "SHIPPED",
+    "SHIPPED_PAIRS",
     "JointNoise",
     "MixtureSmoother",
     "MotionMixture",

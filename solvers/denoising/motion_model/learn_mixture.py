@@ -10,6 +10,7 @@ from ...errors import InvalidMotionError
 from ...motion import Motion
 from ...progress import Progress, unwatched
 from ..channels import encode
+from .joint_groups import find_joint_groups
 from .motion_mixture import N_CHANNELS, MotionMixture
 from .principal_axes import principal_axes
 
@@ -20,9 +21,9 @@ FRAME_RATE = 30.0
 """Hertz, by definition the rate of the patterns of Clean."""
 HOP_FRAMES = 7
 """Frames from a window to the next."""
-N_COMPONENTS = 40
-"""Number of Gaussians. On the development takes of the first press 20 cost 1 %, and 80 gain
-0.6 % in twice the time."""
+N_COMPONENTS = {1: 40, 2: 80}
+"""Number of Gaussians, by that of joints. On the development takes of the first press 20 cost
+1 % for joints, and 40 cost 0.3 % for pairs."""
 N_ITERATIONS = 25
 """Updates of expectation maximization."""
 MIN_MOVEMENT = 0.3
@@ -39,41 +40,53 @@ MIN_RESPONSIBILITY = 1e-4
 the run time, which is a tenth of that with all windows."""
 
 
-def extract_windows(motions: Sequence[Motion]) -> Array:
-    """Return the DCT coefficients of all moving joints, shape (n_windows, 3, WINDOW_FRAMES).
+def extract_windows(motions: Sequence[Motion], n_joints: int = 1) -> Array:
+    """Return the DCT coefficients of all moving joints, or of joints with their parents.
 
-    Each joint's movement is along its principal axes.
+    Their movement is along common principal axes.
 
     Parameters
     ----------
     motions : sequence of Motion
         Complete, at FRAME_RATE; shorter ones than a window are left out.
+    n_joints : int
+        Joints that are looked at together.
+
+    Returns
+    -------
+    shape (n_windows, 3 n_joints, WINDOW_FRAMES)
     """
-    found = []
+    n_axes = N_CHANNELS * n_joints
+    found = [np.zeros((0, n_axes, WINDOW_FRAMES))]
     for motion in motions:
         if motion.n_frames < WINDOW_FRAMES:
             continue
-        values = encode(motion, None).values
-        values = values[:, values.std(axis=0).max(axis=-1) > MIN_MOVEMENT]
-        centered = values - values.mean(axis=0)
-        axes = principal_axes(centered, np.tile(np.eye(N_CHANNELS), (centered.shape[1], 1, 1)))
+        channels = encode(motion, None)
+        values, parents = channels.values, channels.parents
+        assert parents is not None
+        moves = values.std(axis=0).max(axis=-1) > MIN_MOVEMENT
+        groups = find_joint_groups(parents, moves, n_joints)
+        centered = (values - values.mean(axis=0))[:, groups]
+        centered = centered.reshape(len(values), len(groups), n_axes)
+        axes = principal_axes(centered, np.tile(np.eye(n_axes), (len(groups), 1, 1)))
         along_axes = np.einsum("tjc,jac->tja", centered, axes.from_channels)
         starts = np.arange(0, len(values) - WINDOW_FRAMES + 1, HOP_FRAMES)
         windows = np.stack([along_axes[start : start + WINDOW_FRAMES] for start in starts])
         coefficients = scipy.fft.dct(windows, axis=1, norm="ortho").transpose(0, 2, 3, 1)
-        found.append(coefficients.reshape(-1, N_CHANNELS, WINDOW_FRAMES))
-    return np.concatenate(found) if found else np.zeros((0, N_CHANNELS, WINDOW_FRAMES))
+        found.append(coefficients.reshape(-1, n_axes, WINDOW_FRAMES))
+    return np.concatenate(found)
 
 
 def learn_motion_mixture(
     motions: Sequence[Motion],
+    n_joints: int = 1,
     *,
     max_windows: int = 60_000,
-    n_components: int = N_COMPONENTS,
+    n_components: int | None = None,
     trained_on: str = "",
     progress: Progress = unwatched,
 ) -> MotionMixture:
-    """Fit a mixture of zero-mean Gaussians to the windows of all moving joints.
+    """Fit a mixture of zero-mean Gaussians to the windows of moving joints.
 
     Components start with windows of equal energy, from the stillest to the fastest.
 
@@ -81,9 +94,12 @@ def learn_motion_mixture(
     ----------
     motions : sequence of Motion
         Complete, at FRAME_RATE.
+    n_joints : int
+        1 for joints, 2 for joints with their parents.
     max_windows : int
         Windows that are drawn, always the same ones.
-    n_components : int
+    n_components : int, optional
+        Without it, N_COMPONENTS.
     trained_on : str
         Description of the recordings.
     progress : Progress
@@ -93,7 +109,8 @@ def learn_motion_mixture(
     InvalidMotionError
         There are fewer windows than components.
     """
-    windows = extract_windows(motions)
+    n_components = n_components or N_COMPONENTS[n_joints]
+    windows = extract_windows(motions, n_joints)
     if len(windows) < n_components:
         raise InvalidMotionError("The recordings are too short to learn from.")
     order = np.random.default_rng(0).permutation(len(windows))[:max_windows]
@@ -110,7 +127,7 @@ def learn_motion_mixture(
 
 
 def _covariances(windows: Array, responsibility: Array) -> Array:
-    """Return the covariance of each axis of one component, shape (3, window, window)."""
+    """Return the covariance of each axis of a component, shape (n_axes, window, window)."""
     counts = np.flatnonzero(responsibility > MIN_RESPONSIBILITY)
     own = windows[counts].transpose(1, 0, 2)
     products = (own * responsibility[counts, None]).transpose(0, 2, 1) @ own

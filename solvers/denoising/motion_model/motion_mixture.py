@@ -1,4 +1,4 @@
-"""A mixture of Gaussians over windows of one joint: from holding still to a kick."""
+"""A mixture of Gaussians over windows of a joint, or of a joint and its parent."""
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -25,7 +25,7 @@ LAYOUT = ArchiveLayout(
         "weights": numbers("components", minimum=np.finfo(float).tiny, maximum=1.0),
         "covariances": covariances(
             "components",
-            N_CHANNELS,
+            "axes",
             "coefficients",
             "coefficients",
             minimum=-MAX_COVARIANCE,
@@ -39,23 +39,26 @@ LAYOUT = ArchiveLayout(
     remedy="Learn it again.",
 )
 SHIPPED = Path(__file__).parent / "motions.npz"
+"""Of joints."""
+SHIPPED_PAIRS = Path(__file__).parent / "pairs.npz"
+"""Of joints and their parents."""
 MAX_MISSING_WEIGHT = 1e-4
 """Difference of the sum of all weights from 1. By definition: rounding in single precision."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionMixture:
-    """A mixture of zero-mean Gaussians over the DCT coefficients of a joint's window.
+    """A mixture of zero-mean Gaussians over the DCT coefficients of a window of joints.
 
-    The coefficients are those of a joint's movement along its principal axes, which in each
-    component are independent of each other. The mixture is therefore the same for any axes of
-    a rig's joints.
+    The coefficients are those of the movement of one or two joints along their common principal
+    axes, which in each component are independent of each other. The mixture is therefore the
+    same for any axes of a rig's joints.
 
     Attributes
     ----------
     weights : shape (n_components,)
         Fraction of the windows of each component.
-    covariances : shape (n_components, 3, window, window), square degrees
+    covariances : shape (n_components, 3 n_joints, window, window), square degrees
         Of each axis, that of the largest movement first; a window has as many frames as
         coefficients.
     frame_rate : float, Hz
@@ -68,6 +71,11 @@ class MotionMixture:
     covariances: Array
     frame_rate: float
     trained_on: str = ""
+
+    @property
+    def n_joints(self) -> int:
+        """Joints of a window."""
+        return self.covariances.shape[1] // N_CHANNELS
 
     @property
     def window(self) -> int:
@@ -96,9 +104,9 @@ class MotionMixture:
         )
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=4)
 def load_motion_mixture(path: Path | str = SHIPPED) -> MotionMixture:
-    """Read what `MotionMixture.save` wrote; without a path, the mixture that is shipped.
+    """Read what `MotionMixture.save` wrote; without a path, the shipped mixture of joints.
 
     Raises
     ------
@@ -106,6 +114,8 @@ def load_motion_mixture(path: Path | str = SHIPPED) -> MotionMixture:
         The file is missing, damaged, or holds something else.
     """
     arrays = LAYOUT.read(path)
+    if arrays["covariances"].shape[1] not in (N_CHANNELS, 2 * N_CHANNELS):
+        raise LAYOUT.damaged(path, "the axes are not those of one or two joints")
     if not np.isclose(arrays["weights"].sum(), 1.0, atol=MAX_MISSING_WEIGHT):
         raise LAYOUT.damaged(path, "the weights do not add up to 1")
     return MotionMixture(

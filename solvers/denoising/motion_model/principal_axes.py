@@ -1,4 +1,4 @@
-"""The axes along which a joint moves most and least."""
+"""The axes along which joints move most and least."""
 
 from typing import NamedTuple
 
@@ -6,9 +6,9 @@ import numpy as np
 
 from ...arrays import Array
 
-TIE_BREAK = 1e-9 * np.diag([2.0, 1.0, 0.0])
-"""Fraction of the variance, added to each channel. Guards joints that move equally along two
-axes, whose axes rounding would choose."""
+TIE_BREAK = 1e-9
+"""Fraction of the variance by which each channel has more of it than the next. Guards joints
+that move equally along two axes, whose axes rounding would choose."""
 MIN_VARIANCE = np.finfo(float).tiny
 """Of all channels together. Guards joints that stand still."""
 MIN_LENGTH = 1e-9
@@ -16,18 +16,18 @@ MIN_LENGTH = 1e-9
 
 
 class PrincipalAxes(NamedTuple):
-    """The principal axes of each joint's movement, that of the largest movement first.
+    """The principal axes of the movement of joints, that of the largest movement first.
 
-    They are orthogonal where the noise of a joint is equal along all axes. Otherwise they are
+    They are orthogonal where the noise is equal along all axes. Otherwise they are
     oblique, so that the noise along one of them is independent of that along the others.
     """
 
     to_channels: Array
-    """Unit vectors as columns, shape (n_joints, 3, 3)."""
+    """Unit vectors as columns, shape (n_joints, n_channels, n_channels)."""
     from_channels: Array
     """Its inverse, same shape."""
     variance: Array
-    """Of the noise along each axis, shape (n_joints, 3)."""
+    """Of the noise along each axis, shape (n_joints, n_channels)."""
 
 
 def principal_axes(samples: Array, noise: Array) -> PrincipalAxes:
@@ -38,16 +38,18 @@ def principal_axes(samples: Array, noise: Array) -> PrincipalAxes:
 
     Parameters
     ----------
-    samples : shape (n_frames, n_joints, 3), without NaN
-    noise : shape (n_joints, 3, 3)
-        Covariance of a joint's channels, positive definite.
+    samples : shape (n_frames, n_joints, n_channels), without NaN
+        Of joints, or of joints that are looked at together.
+    noise : shape (n_joints, n_channels, n_channels)
+        Covariance of the channels, positive definite.
     """
     factor = np.linalg.cholesky(noise)
     whiten = np.linalg.inv(factor)
     whitened = np.einsum("tjc,jac->tja", samples - samples.mean(axis=0), whiten)
     products = np.einsum("tjc,tjd->jcd", whitened, whitened)
     scale = np.maximum(np.einsum("jcc->j", products), MIN_VARIANCE)
-    movement, axes = np.linalg.eigh(products + scale[:, None, None] * TIE_BREAK)
+    tie_break = TIE_BREAK * np.diag(np.arange(noise.shape[1])[::-1])
+    movement, axes = np.linalg.eigh(products + scale[:, None, None] * tie_break)
     lengths = np.linalg.norm(factor @ axes, axis=1)
     order = np.argsort(-movement * lengths**2, axis=1, kind="stable")
     axes = np.take_along_axis(axes, order[:, None], axis=2)

@@ -24,7 +24,6 @@ BOUNDS: dict[str, tuple[str, ...]] = {
         "reconstruction/pose_library/subsample.N_COMPONENTS",
         "reconstruction/residual_correction/residual_prior.PREDICTION_RATE_HZ",
         "retargeting/key_thinning.N_SAMPLED_POSES",
-        "denoising/averaging/measure_leverage.MAX_PROBED_FRAMES",
         "denoising/marker_gaps/fill_markers.MAX_GAPS_TOGETHER",
         "denoising/marker_gaps/gap_boundaries.MAX_TRAINING_FRAMES",
         "denoising/outliers/predictive_density.N_RARE_COMPONENTS",

@@ -8,12 +8,10 @@ from numpy.testing import assert_allclose
 from solvers.denoising import denoise
 from solvers.denoising.averaging import (
     average_estimates,
-    leverage_factor,
     noise_factors,
     smooth_by_spline,
     smoothing_spline,
 )
-from solvers.denoising.averaging.measure_leverage import leverage
 from solvers.denoising.channels import Estimate, Smoothed
 from solvers.denoising.motion_model import estimate_joint_noise
 from solvers.motion import Motion, find_humanoid_map
@@ -63,7 +61,7 @@ def test_weights_are_those_of_the_least_error(rng):
     _, weights = average_estimates(
         noisy,
         useless,
-        [(each, 1.0) for each in smoothed],
+        smoothed,
         np.ones(noisy.shape, dtype=bool),
         np.ones(3),
     )
@@ -74,78 +72,6 @@ def test_weights_are_those_of_the_least_error(rng):
     assert_allclose(weights[0], [0.0, *expected], atol=0.05)
 
 
-def test_leverage_factor_is_the_fraction_of_followed_noise(rng):
-    """A spline chooses its smoothness by the noise, too: it follows more than its leverage."""
-    waves = 5.0 * np.sin(np.outer(np.arange(60) / 12.0, np.linspace(0.5, 1.5, 2000)))
-    noise = rng.normal(size=waves.shape)
-    samples, good = waves + noise, np.ones(waves.shape, dtype=bool)
-
-    smoothed = smooth_by_spline(samples)
-    factor = _spline_factor(samples, good, np.ones(2000))
-
-    predicted = leverage(samples - smoothed.values, smoothed.leave_one_out_error).sum()
-    followed = (noise * (smoothed.values - waves)).sum() / predicted
-    assert followed > 1.05
-    assert_allclose(factor, followed, rtol=0.05)
-
-
-def test_leverage_factor_of_a_fixed_spline_is_one(rng, monkeypatch):
-    monkeypatch.setattr(smoothing_spline, "SMOOTHNESS", np.array([3.0]))
-    samples = rng.normal(size=(60, 300))
-    good = rng.random(samples.shape) > 0.2
-
-    factor = _spline_factor(samples, good, np.full(300, 2.0))
-
-    assert_allclose(factor, 1.0, atol=0.02)
-
-
-def test_leverage_factor_of_a_fixed_spline_is_one_for_a_single_channel(monkeypatch):
-    """One probe of 60 samples is a matter of luck: it says up to 1.6."""
-    monkeypatch.setattr(smoothing_spline, "SMOOTHNESS", np.array([3.0]))
-    good = np.ones((60, 1), dtype=bool)
-
-    factors = [
-        _spline_factor(np.random.default_rng(seed).normal(size=(60, 1)), good, np.ones(1))
-        for seed in range(10)
-    ]
-
-    assert_allclose(factors, 1.0, atol=0.15)
-
-
-def test_leverage_factor_does_not_depend_on_the_order_of_the_channels():
-    rng = np.random.default_rng(5)
-    waves = 5.0 * np.sin(np.outer(np.arange(60) / 12.0, np.linspace(0.5, 1.5, 9)))
-    samples = waves + rng.normal(size=waves.shape)
-    still = np.full((60, 3), 7.0)
-    others = np.hstack([still, samples[:, ::-1]])
-
-    factors = [
-        _spline_factor(each, np.ones(each.shape, dtype=bool), np.ones(each.shape[1]))
-        for each in (samples, others)
-    ]
-
-    assert factors[0] > 1.01
-    assert_allclose(factors[1], factors[0], rtol=1e-9)
-
-
-def test_smoother_that_follows_noise_gets_less_weight(rng):
-    noisy = rng.normal(size=(2000, 3))
-    smoothed = [_mean_of_samples(noisy, 4, rng) for _ in range(2)]
-
-    equal, weights = (
-        average_estimates(
-            noisy,
-            _estimate(noisy),
-            [(smoothed[0], 1.0), (smoothed[1], factor)],
-            np.ones(noisy.shape, dtype=bool),
-            np.ones(3),
-        )[1]
-        for factor in (1.0, 1.5)
-    )
-
-    assert weights[0, 2] < equal[0, 2] - 0.1
-
-
 def test_clean_take_keeps_its_samples(rng):
     """Without noise, the candidate that changes nothing wins, although it predicts badly."""
     clean = 20.0 * np.sin(np.outer(np.arange(200) / 20.0, np.arange(1.0, 7.0)))
@@ -153,7 +79,7 @@ def test_clean_take_keeps_its_samples(rng):
     blurred = replace(_estimate(clean + 0.5), leave_one_out_error=np.full(clean.shape, -0.5))
 
     stacked, weights = average_estimates(
-        clean, blurred, [(unchanged, 1.0)], np.ones(clean.shape, dtype=bool), np.full(6, 0.01)
+        clean, blurred, [unchanged], np.ones(clean.shape, dtype=bool), np.full(6, 0.01)
     )
 
     assert_allclose(weights, np.tile([0.0, 1.0], (2, 1)), atol=0.02)
@@ -202,11 +128,6 @@ def test_spike_before_a_kick_is_removed(rng):
     assert np.flatnonzero(cleaned.outliers[:, leg]).tolist() == [20]
     error = angle_between(cleaned.recording.rotations[20, leg], kick.rotations[20, leg])
     assert np.degrees(error) < 3.0
-
-
-def _spline_factor(samples: np.ndarray, good: np.ndarray, noise: np.ndarray) -> float:
-    smoothed = smooth_by_spline(samples)
-    return leverage_factor(smooth_by_spline, smoothed, samples, good, noise)
 
 
 def _noise_factors(samples: np.ndarray) -> np.ndarray:

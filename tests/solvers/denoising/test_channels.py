@@ -41,6 +41,17 @@ def test_motion_is_decoded_exactly(walk):
     assert_allclose(back.root_positions, walk.root_positions, atol=1e-12)
 
 
+def test_parents_of_parts_are_those_of_the_skeleton(walk):
+    """End sites have no part, and the root position has no parent."""
+    channels, skeleton = encode(walk), walk.skeleton
+
+    assert channels.parents is not None
+    pairs = zip(channels.joints[:-1], channels.parents[:-1], strict=True)
+    parents = [channels.joints[part] if part >= 0 else -1 for _, part in pairs]
+    assert parents == [skeleton.parents[joint] for joint in channels.joints[:-1]]
+    assert channels.parents[-1] == -1
+
+
 def test_joint_with_a_mean_half_a_turn_away_does_not_flip(walk):
     """Actors may have feet with other rest poses: the sign of a rotation must not jump."""
     references = dict(encode(walk).references)

@@ -5,16 +5,20 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.fft import idct
 from scipy.linalg import block_diag, eigh
+from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 from scipy.special import softmax
 from scipy.stats import multivariate_normal
 
 from solvers.denoising.motion_model import (
+    SHIPPED_PAIRS,
     MixtureSmoother,
     MotionMixture,
     learn_motion_mixture,
     load_motion_mixture,
+    principal_axes,
 )
+from solvers.denoising.motion_model.joint_groups import find_joint_groups
 from solvers.denoising.motion_model.learn_mixture import extract_windows
 from solvers.denoising.outliers import PredictiveDensity
 from solvers.denoising.outliers.predictive_density import NEW_MOVEMENT_RATE
@@ -31,11 +35,15 @@ AXES = Rotation.from_rotvec([0.5, -0.8, 0.3]).as_matrix()
 
 @pytest.fixture
 def mixture(rng):
+    return random_mixture(rng, 3)
+
+
+def random_mixture(rng: np.random.Generator, n_axes: int) -> MotionMixture:
     """Two components, slow and fast, with correlated coefficients."""
     decay = 10.0 / (1.0 + np.arange(WINDOW)) ** 2
-    mixing = rng.normal(size=(3, WINDOW, WINDOW)) / 5.0 + np.eye(WINDOW)
+    mixing = rng.normal(size=(n_axes, WINDOW, WINDOW)) / 5.0 + np.eye(WINDOW)
     covariances = mixing @ np.diag(decay**2) @ mixing.transpose(0, 2, 1)
-    covariances *= np.array([4.0, 1.0, 0.25])[:, None, None]
+    covariances *= 4.0 ** (1.0 - np.arange(n_axes))[:, None, None]
     return MotionMixture(
         np.array([0.7, 0.3]), np.stack([0.05 * covariances, covariances]), 30.0
     )
@@ -102,18 +110,28 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
     assert_allclose(density.max_gain, np.log(shifted / continued), rtol=1e-6)
 
 
+@pytest.mark.parametrize("n_joints", [1, 2])
 @pytest.mark.parametrize("turn", [np.eye(3), AXES])
 @pytest.mark.parametrize("noise", [[0.7, 0.7, 0.7], [1.5, 0.7, 0.1]])
-def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng, noise, turn):
-    samples = 5.0 * rng.normal(size=(WINDOW, 3))
+def test_one_window_is_smoothed_to_the_posterior_mean(rng, n_joints, noise, turn):
+    """Of a joint; and of a joint together with its parent, which has twice the noise."""
+    n_axes = 3 * n_joints
+    mixture = random_mixture(rng, n_axes)
+    samples = 5.0 * rng.normal(size=(WINDOW, n_axes))
     samples -= samples.mean(axis=0)
-    variance = turn @ np.diag(np.square(noise)) @ turn.T
+    own = turn @ np.diag(np.square(noise)) @ turn.T
+    of_joints = [own, 4.0 * own][:n_joints]
+    variance = block_diag(*of_joints)
     movement, axes = eigh(samples.T @ samples, variance)
     axes = variance @ axes
     lengths = np.linalg.norm(axes, axis=0)
     axes = (axes / lengths)[:, np.argsort(-movement * lengths**2)]
+    # The parent comes first in the take, and last in the group.
+    parents, take = np.arange(n_joints) - 1, np.array_split(samples, n_joints, axis=1)[::-1]
 
-    smoothed = MixtureSmoother(variance[None], 30.0, mixture)(samples)
+    smoothed = MixtureSmoother(np.stack(of_joints[::-1]), 30.0, [mixture], parents)(
+        np.hstack(take)
+    )
 
     assert smoothed is not None
     flat, of_noise = samples.T.ravel(), np.kron(variance, np.eye(WINDOW))
@@ -124,18 +142,77 @@ def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng, noise, turn)
         means.append(flat - of_noise @ np.linalg.solve(covariance, flat))
         variances.append(np.diag(of_noise - of_noise @ np.linalg.solve(covariance, of_noise)))
     shares = softmax(densities)
-    expected = np.average(means, axis=0, weights=shares).reshape(3, WINDOW).T
-    assert_allclose(smoothed.values, expected, atol=1e-6)
-    variance = np.average(variances, axis=0, weights=shares).reshape(3, WINDOW).T
-    assert_allclose(smoothed.variance, variance, rtol=1e-6)
+    for found, of_components in ((smoothed.values, means), (smoothed.variance, variances)):
+        expected = np.average(of_components, axis=0, weights=shares).reshape(n_axes, WINDOW).T
+        found = np.hstack(np.array_split(found, n_joints, axis=1)[::-1])
+        assert_allclose(found, expected, atol=1e-5)  # the tie break of equal axes
+
+
+def test_variance_has_that_between_the_components(mixture, rng):
+    """Where a window may be slow or fast, the posterior is wider than either of them."""
+    samples, noise = rng.normal(size=(WINDOW, 3)), 0.7
+    samples -= samples.mean(axis=0)
+    axes = principal_axes(samples[:, None], noise**2 * np.eye(3)[None]).to_channels[0]
+    covariances = [frame_covariance(mixture, index, 0.0, axes) for index in range(2)]
+    of_noise = noise**2 * np.eye(3 * WINDOW)
+
+    def log_densities(scale: float) -> np.ndarray:
+        return np.log(mixture.weights) + [
+            multivariate_normal.logpdf(scale * samples.T.ravel(), cov=each + of_noise)
+            for each in covariances
+        ]
+
+    scale = brentq(lambda each: np.diff(log_densities(each))[0], 0.1, 100.0)
+    smoothed = MixtureSmoother(equal_noise(1, noise), 30.0, [mixture])(scale * samples)
+
+    assert smoothed is not None
+    shares, flat = softmax(log_densities(scale)), scale * samples.T.ravel()
+    gains = np.stack([np.linalg.solve(each + of_noise, each) for each in covariances])
+    means = flat @ gains
+    within = noise**2 * shares @ np.trace(gains, axis1=1, axis2=2)
+    between = shares @ np.square(means - shares @ means).sum(axis=1)
+    assert_allclose(shares, 0.5, atol=1e-6)
+    assert between > 0.1 * within
+    assert_allclose(smoothed.variance.sum(), within + between, rtol=1e-5)
+
+
+def test_joint_is_the_mean_over_itself_its_parent_and_its_children(mixture, rng):
+    pairs, noise = random_mixture(rng, 6), equal_noise(4, 0.7)
+    parents = np.array([-1, 0, 1, 1])
+    samples = np.cumsum(rng.normal(size=(4 * WINDOW, 12)), axis=0)
+
+    smoothed = MixtureSmoother(noise, 30.0, [mixture, pairs], parents)(samples)
+
+    alone = MixtureSmoother(noise, 30.0, [mixture])(samples)
+    assert smoothed is not None
+    assert alone is not None
+    with_others = []
+    for pair in ([0, 1], [1, 2], [1, 3]):
+        columns = [3 * joint + axis for joint in pair for axis in range(3)]
+        of_pair = MixtureSmoother(noise[:2], 30.0, [pairs], np.array([-1, 0]))
+        found = of_pair(samples[:, columns])
+        assert found is not None
+        with_others.append(found.values[:, 3:] if pair == [0, 1] else found.values[:, :3])
+    expected = np.mean([alone.values[:, 3:6], *with_others], axis=0)
+    assert_allclose(smoothed.values[:, 3:6], expected, atol=1e-9)
+
+
+def test_groups_skip_joints_that_stand_still():
+    """A neck that is not recorded, between chest and head."""
+    parents = np.array([-1, 0, 1, 0])
+    moves = np.array([True, False, True, True])
+
+    assert find_joint_groups(parents, moves, 1).tolist() == [[0], [2], [3]]
+    assert find_joint_groups(parents, moves, 2).tolist() == [[2, 0], [3, 0]]
+    assert find_joint_groups(parents, moves, 3).shape == (0, 3)
 
 
 @pytest.mark.parametrize("axes", [AXES, np.eye(3)[[2, 0, 1]]])
 def test_axes_of_a_rigs_joints_change_nothing(mixture, rng, axes):
     """Neither does it matter what the other joints do."""
     samples, other = np.cumsum(rng.normal(size=(2, 4 * WINDOW, 3)), axis=1)
-    smooth = MixtureSmoother(equal_noise(1, 0.7), 30.0, mixture)
-    smooth_two = MixtureSmoother(equal_noise(2, 0.7), 30.0, mixture)
+    smooth = MixtureSmoother(equal_noise(1, 0.7), 30.0, [mixture])
+    smooth_two = MixtureSmoother(equal_noise(2, 0.7), 30.0, [mixture])
 
     smoothed, both = smooth(samples), smooth_two(np.hstack([other, samples @ axes]))
 
@@ -150,7 +227,7 @@ def test_rounding_does_not_choose_the_axes_of_a_circle(rng):
     """A joint that moves equally along two axes, and not along the third."""
     phases = np.arange(60) * (2.0 * np.pi / 30.0)
     circle = 20.0 * np.stack([np.cos(phases), np.sin(phases), 0.0 * phases], axis=1)
-    smooth = MixtureSmoother(equal_noise(), 30.0, load_motion_mixture())
+    smooth = MixtureSmoother(equal_noise(), 30.0, [load_motion_mixture()])
 
     smoothed, again = smooth(circle), smooth(circle + 1e-12 * rng.normal(size=circle.shape))
 
@@ -159,16 +236,18 @@ def test_rounding_does_not_choose_the_axes_of_a_circle(rng):
     assert_allclose(again.values, smoothed.values, atol=1e-4)
 
 
-def test_mixture_is_learned_along_the_axes_of_each_joint(swinging_leg):
+@pytest.mark.parametrize("n_joints", [1, 2])
+def test_mixture_is_learned_along_the_axes_of_the_joints(swinging_leg, n_joints):
     turned = swinging_leg.rotations.copy()
     turn = quaternion_from_rotation_vector(np.array([0.5, -0.8, 0.3]))
     turned[:, 1:] = multiply(multiply(inverse(turn), turned[:, 1:]), turn)
 
     windows, same = (
-        extract_windows([swinging_leg.with_poses(each)])
+        extract_windows([swinging_leg.with_poses(each)], n_joints)
         for each in (swinging_leg.rotations, turned)
     )
 
+    assert windows.shape[1:] == (3 * n_joints, 16)
     assert_allclose(abs(same), abs(windows), atol=1e-5)
 
 
@@ -180,7 +259,7 @@ def test_same_movement_at_any_rate(rate):
     wave = 20.0 * np.sin(2.0 * np.pi * time[:, None] * np.array([0.5, 0.7, 0.3]))
     noisy = wave + rng.normal(size=wave.shape)
 
-    smoothed = MixtureSmoother(equal_noise(), rate, load_motion_mixture())(noisy)
+    smoothed = MixtureSmoother(equal_noise(), rate, [load_motion_mixture()])(noisy)
 
     assert smoothed is not None
     error = np.sqrt(((smoothed.values - wave) ** 2).mean())
@@ -190,7 +269,7 @@ def test_same_movement_at_any_rate(rate):
 
 
 def test_takes_shorter_than_a_window_are_left_to_others(mixture):
-    assert MixtureSmoother(equal_noise(), 30.0, mixture)(np.zeros((WINDOW - 1, 3))) is None
+    assert MixtureSmoother(equal_noise(), 30.0, [mixture])(np.zeros((WINDOW - 1, 3))) is None
 
 
 def test_learned_mixture_comes_back_from_its_file(tmp_path, swinging_leg):
@@ -216,5 +295,17 @@ def test_damaged_file_is_refused(tmp_path):
         load_motion_mixture(tmp_path / "bad.npz")
 
 
-def test_shipped_mixture_names_its_training_data():
-    assert "CMU" in load_motion_mixture().trained_on
+def test_mixture_of_a_joint_and_a_third_is_refused(tmp_path):
+    covariances = np.tile(np.eye(WINDOW), (2, 4, 1, 1))
+    MotionMixture(np.full(2, 0.5), covariances, 30.0).save(tmp_path / "odd.npz")
+
+    with pytest.raises(InvalidFileError, match="one or two joints"):
+        load_motion_mixture(tmp_path / "odd.npz")
+
+
+def test_shipped_mixtures_name_their_training_data():
+    joints, pairs = load_motion_mixture(), load_motion_mixture(SHIPPED_PAIRS)
+
+    assert (joints.n_joints, pairs.n_joints) == (1, 2)
+    assert "CMU" in joints.trained_on
+    assert "CMU" in pairs.trained_on
