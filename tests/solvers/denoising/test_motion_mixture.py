@@ -1,4 +1,4 @@
-"""The mixture of windows: exact where it has one component, and never unpickled."""
+"""The mixture of windows: predictive densities and smoothing are exact."""
 
 import numpy as np
 import pytest
@@ -11,20 +11,15 @@ from scipy.special import softmax
 from scipy.stats import multivariate_normal
 
 from solvers.denoising.motion_model import (
-    SHIPPED_PAIRS,
     MixtureSmoother,
     MotionMixture,
-    learn_motion_mixture,
     load_motion_mixture,
     principal_axes,
 )
 from solvers.denoising.motion_model.joint_groups import find_joint_groups
-from solvers.denoising.motion_model.learn_mixture import extract_windows
 from solvers.denoising.outliers import PredictiveDensity
 from solvers.denoising.outliers.predictive_density import NEW_MOVEMENT_RATE
 from solvers.denoising.window_priors import Windows
-from solvers.errors import InvalidFileError, InvalidMotionError
-from solvers.rotations import inverse, multiply, quaternion_from_rotation_vector
 
 WINDOW = 8
 
@@ -236,21 +231,6 @@ def test_rounding_does_not_choose_the_axes_of_a_circle(rng):
     assert_allclose(again.values, smoothed.values, atol=1e-4)
 
 
-@pytest.mark.parametrize("n_joints", [1, 2])
-def test_mixture_is_learned_along_the_axes_of_the_joints(swinging_leg, n_joints):
-    turned = swinging_leg.rotations.copy()
-    turn = quaternion_from_rotation_vector(np.array([0.5, -0.8, 0.3]))
-    turned[:, 1:] = multiply(multiply(inverse(turn), turned[:, 1:]), turn)
-
-    windows, same = (
-        extract_windows([swinging_leg.with_poses(each)], n_joints)
-        for each in (swinging_leg.rotations, turned)
-    )
-
-    assert windows.shape[1:] == (3 * n_joints, 16)
-    assert_allclose(abs(same), abs(windows), atol=1e-5)
-
-
 @pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 120.0])
 def test_same_movement_at_any_rate(rate):
     """A slow wave comes back, and its leave-one-out error is about that of the noise."""
@@ -270,42 +250,3 @@ def test_same_movement_at_any_rate(rate):
 
 def test_takes_shorter_than_a_window_are_left_to_others(mixture):
     assert MixtureSmoother(equal_noise(), 30.0, [mixture])(np.zeros((WINDOW - 1, 3))) is None
-
-
-def test_learned_mixture_comes_back_from_its_file(tmp_path, swinging_leg):
-    learned = learn_motion_mixture([swinging_leg], n_components=2, trained_on="a leg")
-    learned.save(tmp_path / "leg.npz")
-
-    loaded = load_motion_mixture(tmp_path / "leg.npz")
-
-    assert loaded.trained_on == "a leg"
-    assert_allclose(loaded.weights.sum(), 1.0)
-    assert_allclose(loaded.covariances, learned.covariances, rtol=1e-5, atol=1e-6)
-
-
-def test_too_little_to_learn_from(swinging_leg):
-    with pytest.raises(InvalidMotionError, match="too short"):
-        learn_motion_mixture([swinging_leg.slice(0, 5)])
-
-
-def test_damaged_file_is_refused(tmp_path):
-    (tmp_path / "bad.npz").write_bytes(b"PK\x03\x04 no archive")
-
-    with pytest.raises(InvalidFileError):
-        load_motion_mixture(tmp_path / "bad.npz")
-
-
-def test_mixture_of_a_joint_and_a_third_is_refused(tmp_path):
-    covariances = np.tile(np.eye(WINDOW), (2, 4, 1, 1))
-    MotionMixture(np.full(2, 0.5), covariances, 30.0).save(tmp_path / "odd.npz")
-
-    with pytest.raises(InvalidFileError, match="one or two joints"):
-        load_motion_mixture(tmp_path / "odd.npz")
-
-
-def test_shipped_mixtures_name_their_training_data():
-    joints, pairs = load_motion_mixture(), load_motion_mixture(SHIPPED_PAIRS)
-
-    assert (joints.n_joints, pairs.n_joints) == (1, 2)
-    assert "CMU" in joints.trained_on
-    assert "CMU" in pairs.trained_on
