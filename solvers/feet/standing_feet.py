@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
-from ..motion.humanoid import HumanoidMap, detect_contacts, known_foot_points
+from ..motion.humanoid import SIDES, HumanoidMap, detect_contacts, known_foot_points
 from ..motion.skeletons import still_joints
 from ..signals import find_runs
-from .legs import SIDES, LegJoints
+from .legs import LegJoints
 
 MIN_HIP_HEIGHT = 0.2
 """Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,

@@ -6,11 +6,11 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..motion import Motion, forward_kinematics
+from ..motion.humanoid import SIDES
 from ..rotations import rotate
 from ..signals import smooth_gaussian
 from .body import PhysicsBody
 
-SIDES = ("left", "right")
 LEG = ("UpperLeg", "LowerLeg", "Foot")
 MAX_CONTACT_M = 0.005
 """Meters, for legs of 0.9 m: a sole this near to the ground touches it. Chosen by hand;

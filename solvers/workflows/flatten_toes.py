@@ -4,8 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..feet import SIDES, LegJoints, find_legs
+from ..feet import LegJoints, find_legs
 from ..motion import Motion, WorldPoses, forward_kinematics
+from ..motion.humanoid import SIDES
 from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between, slerp
 from ..signals import smooth_gaussian
 

@@ -11,6 +11,7 @@ from ...motion.humanoid import (
     ADULT_BONE_LENGTHS_M,
     MIRROR_JOINTS,
     POSTURE_JOINTS,
+    SIDES,
     posture_positions,
     segment_lengths,
 )
@@ -31,7 +32,7 @@ MAX_BONE_MISFIT = 1.0
 """Misfit of one bone, a ratio, that counts. It guards against single points that are wrong."""
 LIMB_BONES = [
     POSTURE_JOINTS.index(side + part)
-    for side in ("left", "right")
+    for side in SIDES
     for part in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 ]
 """Joints at the lower ends of bones that every order has."""
