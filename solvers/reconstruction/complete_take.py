@@ -51,16 +51,16 @@ def complete_take(
 ) -> CompletedTake:
     """Replace unreliable and missing joints by those of library poses."""
     rebuilt = complete_joints(recording, postures, reliability, settings, progress)
-    tracks, ahead = recording.tracks, not settings.causal
+    tracks, causal = recording.tracks, settings.causal
     observed = tracks.visible.any(axis=0)
-    smooth = fill_gaps(tracks.positions[:, observed], ahead=ahead)
-    smooth = smooth_gaussian(smooth, POSITION_SMOOTHING_S * tracks.frame_rate, ahead=ahead)
+    smooth = fill_gaps(tracks.positions[:, observed], causal=causal)
+    smooth = smooth_gaussian(smooth, POSITION_SMOOTHING_S * tracks.frame_rate, causal=causal)
     distance = np.zeros(reliability.shape)
     distance[:, observed] = np.linalg.norm(
         rebuilt.tracks.positions[:, observed] - smooth, axis=-1
     )
     replacement = replacement_weights(tracks.visible, reliability, distance)
-    if not settings.causal:
+    if not causal:
         used = tracks.visible & (replacement <= 0.0)
         bridged = blend_gaps(
             tracks.positions, used, rebuilt.tracks.positions, rebuilt.deviation,

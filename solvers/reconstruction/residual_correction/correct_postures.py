@@ -192,8 +192,8 @@ def predict_postures(
 ) -> CorrectedPostures:
     """Return corrected posture joints, given the reliability of each, (n_frames, 20)."""
     causal = settings.method is CorrectionMethod.CAUSAL
-    smooth = smooth_postures(recording, float(prior.smoothing), weights, ahead=not causal)
-    prediction = prior.predict(smooth, ahead=not causal)
+    smooth = smooth_postures(recording, float(prior.smoothing), weights, causal=causal)
+    prediction = prior.predict(smooth, causal=causal)
     fraction = settings.change * prediction.coverage.mean(axis=0)
     offsets = TakeOffsets(mean_offset(prediction, weights), fraction)
     frames = settings.smoothing * recording.frame_rate
