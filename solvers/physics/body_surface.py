@@ -128,6 +128,6 @@ def find_leg_chain(body: PhysicsBody, side: str) -> tuple[int, int, int] | None:
 
 
 def measure_foot_slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:
-    """Return the distance in meters that both feet cover over the ground during contact."""
+    """Return the distance, meters, that both feet cover during contacts (n_frames, 2)."""
     standing = contacts[1:] & contacts[:-1]
     return float(measure_sole_speeds(body, motion)[1:][standing].sum() / motion.frame_rate)

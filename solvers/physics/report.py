@@ -35,9 +35,9 @@ def describe_result(followed: NDArray[np.bool_], smoothing: float) -> str:
 
 
 def describe_first_failure(followed: NDArray[np.bool_], frames: Sequence[float]) -> str:
-    """Return which of the `frames` of a take the body failed to follow first.
+    """Describe which of the `frames` of a take the body failed to follow first.
 
-    The text is empty if it followed all, or gave up.
+    `followed` has the shape (n_frames,). The text is empty if all are True, or none.
     """
     if followed.all() or not followed.any():
         return ""

@@ -49,7 +49,10 @@ def complete_take(
     settings: PostureSettings,
     progress: Progress,
 ) -> CompletedTake:
-    """Replace unreliable and missing joints by those of library poses."""
+    """Replace unreliable and missing joints by those of library poses.
+
+    `reliability` has the shape (n_frames, n_joints), 0 to 1.
+    """
     rebuilt = complete_joints(recording, postures, reliability, settings, progress)
     tracks, causal = recording.tracks, settings.causal
     observed = tracks.visible.any(axis=0)
@@ -73,7 +76,10 @@ def complete_take(
 def blend_rebuilt(
     recording: JointRecording, rebuilt: CompletedJoints, reliability: Array, replacement: Array
 ) -> CompletedTake:
-    """Blend observed joints and library poses by the weights of `replacement_weights`."""
+    """Blend observed joints and library poses by the weights of `replacement_weights`.
+
+    `reliability` and `replacement` have the shape (n_frames, n_joints), 0 to 1.
+    """
     return CompletedTake(
         replace(recording, tracks=_blend_tracks(recording.tracks, rebuilt.tracks, replacement)),
         rebuilt,

@@ -123,7 +123,7 @@ def contact_probabilities(motion: Motion, humanoid_map: HumanoidMap | None = Non
 
 
 def contacts_of_points(positions: Array, frame_rate: float, size: float = 1.0) -> Flags:
-    """Return foot contacts from positions alone; see `probabilities_of_points`."""
+    """Return foot contacts, (n_frames, 2), from positions; see `probabilities_of_points`."""
     return probabilities_of_points(positions, frame_rate, size) > 0.5
 
 

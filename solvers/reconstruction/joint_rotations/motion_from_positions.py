@@ -132,8 +132,7 @@ def resize_skeleton(
     Returns
     -------
     Skeleton
-        Of the same joints at the same place; joints that are not among the points keep their
-        offsets.
+        The same joints; those that are not among the points keep their offsets.
     """
     measured = skeleton_from_points(_without_unreliable(tracks, reliability), parents)
     offsets = skeleton.offsets.copy()

@@ -214,7 +214,11 @@ def subtract_offsets(
     settings: CorrectionSettings,
     smoother: Callable[[Array, Array], Array],
 ) -> CorrectedPostures:
-    """Return posture joints without the sensor's offsets, smoothed with the given function."""
+    """Return posture joints without the sensor's offsets, smoothed with the given function.
+
+    `weights` has the shape (n_frames, 20), 0 to 1. `smoother` gets positions (n_frames, 20, 3),
+    meters, and their weights.
+    """
     mean, fraction = offsets
     predicted = smooth.positions + smooth.rotate_to_world(
         fraction[:, None] * (prediction.offsets - mean)

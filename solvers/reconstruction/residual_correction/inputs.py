@@ -65,7 +65,8 @@ def smooth_postures(
 ) -> SmoothedPostures:
     """Smooth a recording with a Gaussian of `seconds`, fill gaps, and normalize it.
 
-    If `causal`, a frame depends on no later one, except for the actor's size.
+    `weights`, (n_frames, 20), are 0 to 1. If `causal`, a frame depends on no later one, except
+    for the actor's size.
     """
     positions = fill_gaps(posture_positions(recording), causal=causal)
     observed = np.isfinite(positions).all(axis=(0, 2))

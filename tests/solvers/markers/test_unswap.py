@@ -141,11 +141,11 @@ def test_viterbi_finds_the_cheapest_sequence_of_labels(rng):
         rng.uniform(0, 3, 10),
         rng.normal(size=10),
     )
-    trajectories = (np.arange(2**10)[:, None] >> np.arange(10)) % 2
-    rotations = np.diff(trajectories, axis=1) != 0
-    cost = np.where(rotations, change[1:], stay[1:]).sum(axis=1) + trajectories @ swapped_cost
+    sequences = (np.arange(2**10)[:, None] >> np.arange(10)) % 2
+    changes = np.diff(sequences, axis=1) != 0
+    cost = np.where(changes, change[1:], stay[1:]).sum(axis=1) + sequences @ swapped_cost
 
-    assert np.array_equal(_viterbi(stay, change, swapped_cost), trajectories[cost.argmin()])
+    assert np.array_equal(_viterbi(stay, change, swapped_cost), sequences[cost.argmin()])
 
 
 @pytest.mark.parametrize("file", ["85_02.c3d", "HDM_bd_05-01_01_120.c3d"])
