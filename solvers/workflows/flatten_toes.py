@@ -28,7 +28,7 @@ MAX_DROP = 0.7
 whose feet hang, which measure a foot on tiptoe."""
 MIN_STANDING_FRAMES = 10
 """Minimum number of reliable standing frames to measure the pose of a foot. Chosen by hand: 0.3
-s at 30 Hz, so that a few wrong frames are no majority."""
+s at 30 Hz, so that a few wrong frames are not a majority."""
 BLEND_S, HEADING_SMOOTHING_S = 0.05, 0.5
 """Seconds over which the correction begins and ends, and over which the heading of the shin is
 smoothed. Chosen by hand: 1.5 frames at 30 Hz, so that toes do not jump, and 15 frames, in which

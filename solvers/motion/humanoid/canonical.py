@@ -229,7 +229,7 @@ def end_of_foot(skeleton: Skeleton, foot: int, toes: int | None) -> int:
     """Return the joint of the toes, otherwise the farthest one below the ankle, or the ankle.
 
     The next joint may be at the sole, straight below the ankle, and show no direction. An end
-    that only prolongs the shin is no foot (`prolongs_shin`).
+    that only prolongs the shin is not a foot (`prolongs_shin`).
     """
     if toes is not None:
         return toes

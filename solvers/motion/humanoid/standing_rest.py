@@ -27,7 +27,7 @@ TOPS = ("neck", "head", "chest", "spine")
 
 
 def with_standing_rest(motion: Motion, humanoid: HumanoidMap) -> Motion:
-    """Return the same motion with a standing rest pose, if that of its file is no person's.
+    """Return the same motion with a standing rest pose, if that of its file is not a person's.
 
     Files of some data sets have rest poses that no body can take: each bone lies along an axis
     of its joint, so that one leg points down and the other up, or the trunk lies on its side

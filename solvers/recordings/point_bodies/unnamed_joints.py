@@ -20,9 +20,10 @@ from ...motion.skeletons import COMPUTED_JOINTS, LAYOUTS
 N_SAMPLED_FRAMES = 200
 """Number of frames, evenly spaced, whose bones are measured. It bounds the run time."""
 MAX_MISFIT = 0.65
-"""Misfit, a ratio (`bone_misfit`), from which points are no body in that order. Chosen by hand
-on takes of CMU and HDM05: the right order has 0.1 to 0.3, and 0.3 to 0.6 with noise of 2 cm;
-one in a hundred random orders has less than 0.73; x0.5 and x2 fail tests of this module."""
+"""Misfit, a ratio (`bone_misfit`), from which points do not form a body in that order. Chosen
+by hand on takes of CMU and HDM05: the right order has 0.1 to 0.3, and 0.3 to 0.6 with noise of
+2 cm; one in a hundred random orders has less than 0.73; x0.5 and x2 fail tests of this
+module."""
 CLEAR_MISFIT = 0.35
 """Misfit, a ratio, up to which the confidence is full. Chosen by hand on the same takes."""
 CLEAR_LEAD = 1.5
