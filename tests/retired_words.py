@@ -136,10 +136,10 @@ RETIRED_IN_NAMES = {
 called any more, as a word of its name, and what is used instead."""
 STORED_NAMES = {
     "CENTIMETRES", "COREGIONALISED", "METRES", "MILLIMETRES", "WHOLE", "WHOLE_TAKE",
-    "grey_opening", "metres",
+    "grey_opening",
 }  # fmt: skip
-"""Settings fields and items of their choices, which presets and command lines have stored, and
-`metres`, which belongs to such a choice. `grey_opening` is a function of SciPy."""
+"""Settings fields and items of their choices, which presets and command lines have stored.
+`grey_opening` is a function of SciPy."""
 RETIRED_FIRST_WORDS = {
     "FARTHEST", "FEWEST", "FINEST", "LARGEST", "LEAST", "LONGEST", "MOST", "NARROWEST",
     "SHORTEST", "SMALLEST", "TALLEST", "WIDEST",

@@ -45,7 +45,7 @@ def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Ste
     """Make an action that leads from the pose of `base` to that of `result` when combined.
 
     Blender's NLA combines by channel: it multiplies quaternions and adds all else. Channels
-    that are equal are left out. A key of `base` that is no number has no delta.
+    that are equal are left out. A key of `base` that is not a number has no delta.
 
     Raises
     ------

@@ -27,7 +27,7 @@ def quaternions_from_channels(channels: Array, mode: str) -> Array:
     """Return rotations, shape (n_frames, 4), from channels, (n_frames, 3 or 4), radians.
 
     As Blender does, quaternions and axes of any length count by their direction, and
-    those without one for no rotation at all. A channel that is no number makes the rotation
+    those without one for no rotation at all. A channel that is not a number makes the rotation
     missing: NaN.
     """
     if mode == "QUATERNION":

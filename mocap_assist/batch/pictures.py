@@ -7,10 +7,9 @@ import bpy
 from ...solvers.command_line.batches import Screen
 from ...solvers.errors import MocapAssistError
 from ...solvers.files import unwritable
-from ...solvers.motion import Motion, Tracks
 from ...solvers.pictures import StickFigureSettings, draw_stick_figures
 from ..actions.armature_read import read_take
-from ..actions.markers.take import read_markers
+from ..check.checking import read_played
 from ..runtime.selection import played_source
 from ..scene import history
 
@@ -25,7 +24,7 @@ def draw_result(
     A failed drawing is reported on `screen`, is not an error, and keeps an existing file.
     """
     try:
-        figures = {"result": _played_motion(scene, subject)}
+        figures = {"result": read_played(scene, subject).recordings[0]}
         if subject.type == "ARMATURE" and (raw := history.raw_of(played_source(subject)[0])):
             given = read_take(subject, scene, source=raw).parts[0].motion
             if given.n_frames == figures["result"].n_frames:
@@ -37,9 +36,3 @@ def draw_result(
         screen.write_line(str(error))
     except OSError as error:
         screen.write_line(str(unwritable(path, error)))
-
-
-def _played_motion(scene: bpy.types.Scene, subject: bpy.types.Object) -> Motion | Tracks:
-    if subject.type == "ARMATURE":
-        return read_take(subject, scene, source=played_source(subject)).parts[0].motion
-    return read_markers(subject, scene).tracks

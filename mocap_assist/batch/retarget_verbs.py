@@ -10,6 +10,7 @@ from ...solvers.command_line.arguments import (
     arguments_from,
     settings_from_arguments,
 )
+from ...solvers.command_line.retarget_verbs import add_tolerance_option
 from ...solvers.progress import Progress
 from ...solvers.recordings.conventions import CENTIMETER
 from ...solvers.retargeting import RetargetSettings, UnbakeSettings
@@ -58,10 +59,7 @@ def perform_retarget(
 
 def add_unbake_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `unbake`."""
-    parser.add_argument(
-        "--tolerance", type=float, default=1.0, metavar="CM",
-        help="largest error of hands, feet and head in centimeters [default 1]",
-    )  # fmt: skip
+    add_tolerance_option(parser, "hands, feet and head")
     arguments_from(parser, UnbakeSettings)
 
 

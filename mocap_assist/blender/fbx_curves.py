@@ -35,7 +35,7 @@ def describe_missing_curves(path: str) -> str:
 
 
 def _lacks_x(path: str, link: re.Pattern[bytes]) -> bool:
-    """Whether curves are linked to a channel of which none is for X."""
+    """Whether the curves that are linked to a channel lack the one for X."""
     if bpy.app.version >= FIRST_COMPLETE:
         return False
     with open_regular(path) as file:

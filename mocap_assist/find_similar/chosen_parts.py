@@ -6,11 +6,12 @@ from typing import Any
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Skeleton, find_humanoid_map
+from ...solvers.motion.humanoid import SIDES
 from ...solvers.retrieval import FindSettings
 
 LIMBS = {
     f"{side}_{limb}": tuple(f"{side}{bone}" for bone in bones)
-    for side in ("left", "right")
+    for side in SIDES
     for limb, bones in (
         ("arm", ("Shoulder", "UpperArm", "LowerArm", "Hand")),
         ("leg", ("UpperLeg", "LowerLeg", "Foot", "Toes")),
@@ -42,7 +43,7 @@ def parts_of_bones(
 def _part(role: str) -> str:
     if role in TRUNK:
         return "trunk"
-    for side in ("left", "right"):
+    for side in SIDES:
         if role.startswith(tuple(f"{side}{finger}" for finger in FINGERS)):
             return f"{side}_arm"
     return next((part for part, names in LIMBS.items() if role.startswith(names)), "")

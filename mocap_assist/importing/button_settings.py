@@ -128,7 +128,7 @@ class ImportChoices(FloorPlacementSettings, ReadingSettings):
     def depth(self) -> DepthSettings:
         """Settings for depth images."""
         return DepthSettings(
-            scale=self.unit.metres or 0.0,
+            scale=self.unit.meters or 0.0,
             fx=self.focal_length,
             fy=self.focal_length_y,
             cx=self.center_x,

@@ -97,7 +97,7 @@ def change_axes(context: bpy.types.Context, owner: bpy.types.Object, change: Axe
     origin = origin_of(owner)
     before = noted_conventions(origin) or FileConventions()
     after = with_axes(before, change.up.axis, change.forward.axis)
-    after = FileConventions(**{**asdict(after), "unit": change.unit.metres or before.unit})
+    after = FileConventions(**{**asdict(after), "unit": change.unit.meters or before.unit})
     scale = change.global_scale or _scale_of(origin)
     factor = scale / _scale_of(origin) * after.unit / before.unit
     rotation = Quaternion(rotation_between(before, after)).to_matrix().to_4x4()

@@ -224,7 +224,7 @@ def read_file(path: Path, conversion: Conversion) -> ReadRecording:
 def _settle_scene_take(motion: Motion, conversion: Conversion) -> Motion:
     """Return a take of another program in the unit and axes of the settings."""
     reading, conventions = conversion.reading, conventions_of(motion)
-    if unit := reading.unit.metres:
+    if unit := reading.unit.meters:
         motion = with_conventions(
             scaled(motion, unit / conventions.unit),
             replace(conventions, unit=unit, is_unit_guessed=False),
@@ -254,11 +254,7 @@ def convert_tracked(recording: TrackedRecording, conversion: Conversion) -> Moti
 
 def at_rate(moving: Moving, frame_rate: float) -> Moving:
     """Return the recording with so many frames per second, in hertz."""
-    if moving.frame_rate == frame_rate:
-        return moving
-    if isinstance(moving, Motion):
-        return cast(Moving, resample(moving, frame_rate))
-    return cast(Moving, resample(moving, frame_rate))
+    return moving if moving.frame_rate == frame_rate else resample(moving, frame_rate)
 
 
 def in_one_tree(recording: JointRecording) -> bool:

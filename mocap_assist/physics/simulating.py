@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import bpy
 
-from ...solvers.physics import SimulateSettings
+from ...solvers.physics import SimulateSettings, describe_first_failure
 from ..actions.armature_read import read_take
 from ..actions.armature_write import Output, assign_result, check_writable, write_take
 from ..blender.time_slices import Sliced, Steps
@@ -64,7 +64,9 @@ def write_simulated(
     _, armature, played = present.find()
     history.record(action, played, _entry(settings, result))
     assign_result(armature, action, slot, Output.ACTION)
-    return f"{action.name}: {len(result.moved)} bones moved. {result.simulated.message}"
+    failure = describe_first_failure(result.simulated.followed, read.frames.tolist())
+    message = f"{result.simulated.message} {failure}".rstrip()
+    return f"{action.name}: {len(result.moved)} bones moved. {message}"
 
 
 def _entry(settings: SimulateBundle, result: Resimulated) -> dict[str, object]:

@@ -11,7 +11,7 @@ from ..overlays.view_drawing import Color, ViewDrawing, draw_lines
 from ..panel_parts.preference_values import preferred
 from ..panel_parts.sidebar_tab import is_tab_open
 from ..runtime.selection import select_only_bone
-from .bone_map import SIDES, listed_armature
+from .bone_map import LISTED_ARMATURES, listed_armature
 
 SWITCH = "mocap_assist_highlight"
 COLOR: Color = (1.0, 0.25, 0.85, 1.0)
@@ -42,7 +42,7 @@ def _pair(context: bpy.types.Context) -> Iterator[tuple[bpy.types.Object, str]]:
     if not 0 <= listed.active_row < len(listed.rows):
         return
     row = listed.rows[listed.active_row]
-    for side in SIDES:
+    for side in LISTED_ARMATURES:
         armature, bone = listed_armature(listed, side), getattr(row, side)
         if armature is not None and bone in armature.pose.bones:
             yield armature, bone

@@ -19,7 +19,7 @@ from ..panel_parts.panel_layout import draw_sentence, is_wide
 from ..runtime.selection import selected_armature, why_not_retarget
 from .bone_highlight import COLOR, SWITCH, why_certain
 from .bone_map import (
-    SIDES,
+    LISTED_ARMATURES,
     BoneMaps,
     count_low_confidence,
     find_maps,
@@ -65,7 +65,7 @@ class MOCAP_UL_bones(bpy.types.UIList):
         source bone that is missing: names would be cut. They are drawn without the namespace,
         such as mixamorig:.
         """
-        bars = {side: _bars(row, side) for side in SIDES}
+        bars = {side: _bars(row, side) for side in LISTED_ARMATURES}
         wide, known = is_wide(context), [each for each in bars.values() if each]
         lowest = min(known, key=BARS.__getitem__, default=None)
         role = role_label(row.name)
@@ -75,7 +75,7 @@ class MOCAP_UL_bones(bpy.types.UIList):
             cell = columns.row()
             cell.active = bool(bone)
             cell.alert = bool(bone) and armature is not None and bone not in armature.data.bones
-            is_first = side == SIDES[0]
+            is_first = side == LISTED_ARMATURES[0]
             missing = role if is_first and not wide else "-"
             shown = mark if wide else lowest if is_first else None
             _draw_cell(cell, bone.rpartition(":")[2] or missing, shown)
@@ -160,7 +160,10 @@ class _PresetButton(_BoneButton):
     side: bpy.props.EnumProperty(
         name="Armature",
         description="Armature of the bone map",
-        items=[(side, side.capitalize(), f"Bone map of the {side} armature") for side in SIDES],
+        items=[
+            (side, side.capitalize(), f"Bone map of the {side} armature")
+            for side in LISTED_ARMATURES
+        ],
         options={"SKIP_SAVE"},
     )
 
@@ -216,7 +219,7 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if not len(listed.rows):
         return
     heads = _columns(layout, translated("Body Parts"), wide=is_wide(context))
-    for side in SIDES:
+    for side in LISTED_ARMATURES:
         heads.label(text=side.capitalize())
     layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
     _draw_legend(layout, context)
@@ -232,14 +235,14 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     _draw_reasons(layout, context, row)
     column = layout.column(align=True)
     column.label(text=role_label(row.name), translate=False)
-    for side in SIDES:
+    for side in LISTED_ARMATURES:
         if (armature := listed_armature(listed, side)) is not None:
             column.prop_search(
                 row, side, armature.data, "bones", text=side.capitalize(), icon="BONE_DATA"
             )
     for idname, icon in ((SAVE, "FILE_TICK"), (LOAD, "FILE_FOLDER")):
         row = layout.row(align=True)
-        for side in SIDES:
+        for side in LISTED_ARMATURES:
             row.operator(idname, text=PRESETS[idname, side], icon=icon).side = side
 
 
@@ -256,7 +259,7 @@ def _draw_reasons(
     layout: bpy.types.UILayout, context: bpy.types.Context, row: bpy.types.PropertyGroup
 ) -> None:
     """Draw the confidence in both bones of a row, and the reasons."""
-    for side in SIDES:
+    for side in LISTED_ARMATURES:
         if text := why_certain(row, side):
             icon = "ERROR" if has_low_confidence(row, side) else "CHECKMARK"
             draw_sentence(layout, context, text, icon=icon)

@@ -12,7 +12,7 @@ from ..rigs.role_confidence import explain_rig_roles
 from ..rigs.target_read import find_roles
 
 FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
-SIDES = ("source", "target")
+LISTED_ARMATURES = ("source", "target")
 TAKEN = "another row has this bone, so this one is ignored"
 MISSING = "the armature has no such bone"
 
@@ -55,7 +55,7 @@ def maps_for(
 def listed_maps(listed: bpy.types.PropertyGroup) -> BoneMaps:
     """Return the humanoid map of the list; a bone that is named twice counts once."""
     maps = []
-    for side in SIDES:
+    for side in LISTED_ARMATURES:
         roles: dict[str, str] = {}
         for row in listed.rows:
             bone = getattr(row, side)
@@ -88,7 +88,7 @@ def list_maps(
 
 def explain_rows(listed: bpy.types.PropertyGroup) -> None:
     """Write confidence and reason into all rows, for the armatures of the list."""
-    for side, humanoid in zip(SIDES, listed_maps(listed), strict=True):
+    for side, humanoid in zip(LISTED_ARMATURES, listed_maps(listed), strict=True):
         armature = listed_armature(listed, side)
         if armature is None:
             continue
@@ -136,7 +136,9 @@ def fraction_of_certain_roles(listed: bpy.types.PropertyGroup, side: str) -> flo
 
 def count_low_confidence(listed: bpy.types.PropertyGroup) -> int:
     """Return how many bones of the list have low confidence."""
-    return sum(has_low_confidence(row, side) for row in listed.rows for side in SIDES)
+    return sum(
+        has_low_confidence(row, side) for row in listed.rows for side in LISTED_ARMATURES
+    )
 
 
 def has_low_confidence(row: bpy.types.PropertyGroup, side: str) -> bool:

@@ -21,7 +21,7 @@ from ..overlays.pixel_drawing import (
 from ..overlays.view_drawing import Color, ViewDrawing
 from ..panel_parts.preference_values import preferred
 from .bone_highlight import COLOR as HIGHLIGHT
-from .bone_map import SIDES, listed_armature
+from .bone_map import LISTED_ARMATURES, listed_armature
 
 SWITCH = "mocap_assist_rest_poses"
 UNMAPPED: Color = tuple(UNKNOWN.tolist())
@@ -56,11 +56,11 @@ def rest_figures(context: bpy.types.Context) -> list[RestFigure]:
     no bone to draw.
     """
     listed = context.scene.mocap_assist.bone_map
-    armatures = [listed_armature(listed, side) for side in SIDES]
+    armatures = [listed_armature(listed, side) for side in LISTED_ARMATURES]
     if not len(listed.rows) or context.view_layer.objects.active not in armatures:
         return []
     figures = []
-    for side, armature in zip(SIDES, armatures, strict=True):
+    for side, armature in zip(LISTED_ARMATURES, armatures, strict=True):
         figure = None if armature is None else _rest_figure(listed, side, armature)
         if figure is None or not len(figure.lines):
             return []

@@ -28,7 +28,7 @@ from ..rigs.target_read import read_target, vertical_part
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
-from .bone_map import SIDES, BoneMaps, is_finger, maps_for
+from .bone_map import LISTED_ARMATURES, BoneMaps, is_finger, maps_for
 from .button_settings import RetargetBundle, RetargetChoices, Takes
 from .solve_retargeting import (
     ReportedRetargeting,
@@ -123,7 +123,9 @@ def _low_confidence(source: bpy.types.Object, found: RetargetScene) -> dict[str,
     armatures = (source, found.target)
     return {
         side: describe_low_confidence(humanoid, explain_rig_roles(armature, humanoid))
-        for side, humanoid, armature in zip(SIDES, found.maps, armatures, strict=True)
+        for side, humanoid, armature in zip(
+            LISTED_ARMATURES, found.maps, armatures, strict=True
+        )
     }
 
 

@@ -11,6 +11,7 @@ from mathutils import Matrix
 
 from ...solvers.arrays import Array
 from ...solvers.motion import HUMANOID_ROLES, HumanoidMap, Motion, Skeleton
+from ...solvers.motion.humanoid import SIDES
 from ...solvers.rotations import IDENTITY, inverse, multiply, quaternion_from_matrix, rotate
 from ..actions.take import ArmatureTake
 from ..blender import compat
@@ -151,7 +152,7 @@ def _parent(role: str, ordered: list[str]) -> int:
 
 
 def _above(role: str) -> str:
-    side = next((side for side in ("left", "right") if role.startswith(side)), "")
+    side = next((side for side in SIDES if role.startswith(side)), "")
     part = role.removeprefix(side)
     for inner, outer in pairwise(PHALANGES):
         if part.endswith(inner):

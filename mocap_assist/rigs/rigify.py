@@ -9,7 +9,7 @@ from ...solvers.arrays import Array
 from ...solvers.motion import roles_by_name
 from .control_plan import Limbs, Plan, RigPlan
 
-SIDES = {"left": "L", "right": "R"}
+SIDE_LETTERS = {"left": "L", "right": "R"}
 LIMB_CONTROLS = {"Arm": ("upper_arm", "hand", "Hand"), "Leg": ("thigh", "foot", "Foot")}
 SPINE = re.compile(r"spine_fk\.\d+$")
 SPINE_ROLES = ("spine", "chest", "upperChest")
@@ -52,8 +52,11 @@ def rigify_plan(
     switches: dict[tuple[str, str], float] = {("torso", "torso_parent"): 1.0}
     switches |= {("torso", f"{part}_follow"): 1.0 for part in ("neck", "head")}
     keyed_by_ik = {
-        f"{side}{part}" for side in SIDES for limb in LIMB_CONTROLS for part in _parts(limb)
-    } | {f"{side}Toes" for side in SIDES}
+        f"{side}{part}"
+        for side in SIDE_LETTERS
+        for limb in LIMB_CONTROLS
+        for part in _parts(limb)
+    } | {f"{side}Toes" for side in SIDE_LETTERS}
     for role, control in roles.items():
         if limbs is Limbs.IK and role in keyed_by_ik:
             continue
@@ -61,7 +64,7 @@ def rigify_plan(
             plans += _torso(control, roles, heads)
         else:
             plans.append(Plan(control, role, role))
-    for side, letter in SIDES.items():
+    for side, letter in SIDE_LETTERS.items():
         for limb, (upper, end, end_role) in LIMB_CONTROLS.items():
             if not all(f"{side}{part}" in roles for part in _parts(limb)):
                 continue

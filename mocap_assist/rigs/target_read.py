@@ -8,7 +8,7 @@ import numpy as np
 from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import HumanoidMap, Skeleton, find_humanoid_map
-from ...solvers.motion.humanoid import ESSENTIAL_ROLES
+from ...solvers.motion.humanoid import ESSENTIAL_ROLES, SIDES
 from ...solvers.rotations import inverse, multiply, quaternion_from_matrix, rotate
 from ..actions.take import skeleton_of
 from ..scene.controls import NO_CONTROL, Control, TargetRig
@@ -19,7 +19,6 @@ from .probing import find_carriers, location_axes
 from .rigify import is_rigify, rigify_plan, rigify_roles
 
 ROOT_NAMES = ("root", "Root", "c_traj", "c_pos", "master", "Armature", "reference")
-SIDES = ("left", "right")
 
 
 def find_roles(armature: bpy.types.Object) -> HumanoidMap:

@@ -34,7 +34,7 @@ OPERATION = "retrack"
 SUFFIX = ".retracked"
 DIGITS = 2
 """Number of decimals of a frame in a message. It bounds the length of the message."""
-SIDES = ("before", "after")
+ENDS = ("before", "after")
 EXTREME, KEYFRAME = 1, 0
 """Blender's key types: for the corrected frame, and for the others."""
 
@@ -195,7 +195,7 @@ def _report(take: TrackedTake, result: Retracked) -> str:
     rows = [result.first, result.frame, result.last]
     first, frame, last = np.round(take.frames[rows], DIGITS)
     message = f"re-tracked frames {first:g} to {last:g} from frame {frame:g}."
-    open_ends = [side for side, met in zip(SIDES, result.met, strict=True) if not met]
+    open_ends = [side for side, met in zip(ENDS, result.met, strict=True) if not met]
     if not open_ends:
         return f"{message} It meets the old motion on both sides."
     where = "before and after" if len(open_ends) > 1 else open_ends[0]

@@ -81,9 +81,7 @@ def _resample(
     if isinstance(recording, JointRecording):
         tracks = resample(recording.tracks, frame_rate)
         return JointRecording(tracks, None, recording.sensor)
-    if isinstance(recording, Tracks):
-        return resample(recording, frame_rate)
-    return resample(recording, frame_rate)  # for types: of a motion
+    return resample(recording, frame_rate)
 
 
 def pace_packets(

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import NamedTuple
 
-from ..errors import InvalidMotionError, InvalidSettingError
+from ..errors import InvalidMotionError
 from ..motion import (
     HumanoidMap,
     Motion,
@@ -116,13 +116,17 @@ def perform_retarget(task: Task, target: RetargetTarget, progress: Progress) -> 
     return Outcome(text, figures)
 
 
-def add_unbake_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of `unbake`."""
+def add_tolerance_option(parser: argparse.ArgumentParser, joints: str) -> None:
+    """Add `--tolerance`; `joints` describes the joints that keep it."""
     parser.add_argument(
         "--tolerance", type=float, default=1.0, metavar="CM",
-        help="Maximum error in centimeters of any joint at any frame"
-        " [default 1]",
+        help=f"Maximum error of {joints} at any frame, in centimeters [default 1]",
     )  # fmt: skip
+
+
+def add_unbake_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `unbake`."""
+    add_tolerance_option(parser, "any joint")
     parser.add_argument(
         "--keys", action="store_true",
         help="Also write the keys and their handles as .npz, next to the motion",
@@ -134,10 +138,6 @@ def add_unbake_options(parser: argparse.ArgumentParser) -> None:
 def perform_unbake(task: Task, prepared: None, progress: Progress) -> Outcome:
     """Reduce the keys of one motion and write the result."""
     motion = _read_motion(task, "unbaked", within(progress, 0.0, 0.2))
-    if not task.arguments.tolerance > 0.0:
-        raise InvalidSettingError(
-            f"tolerance is {task.arguments.tolerance:g} cm; it must be more than 0."
-        )
     sparse = reduce_keys(
         motion,
         CENTIMETER * task.arguments.tolerance,

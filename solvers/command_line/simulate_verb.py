@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
-from ..physics import Simulated, SimulateSettings, simulate
+from ..physics import Simulated, SimulateSettings, describe_first_failure, simulate
 from ..progress import Progress, within
 from .arguments import (
     Outcome,
@@ -58,8 +58,11 @@ def _figures(simulated: Simulated) -> dict[str, object]:
 
 
 def _summary(simulated: Simulated) -> str:
+    frames = range(1, len(simulated.followed) + 1)
+    failure = describe_first_failure(simulated.followed, frames)
+    message = f"{simulated.message} {failure}".rstrip()
     return (
-        f"{simulated.message} Maximum ground penetration was"
+        f"{message} Maximum ground penetration was"
         f" {100 * simulated.penetration_before:.1f} cm, now"
         f" {100 * simulated.penetration_after:.1f} cm; feet in contact slid"
         f" {100 * simulated.slide_before:.0f} cm in total, now"

@@ -90,8 +90,8 @@ def _describe(n_smoothed: int, n_predicted: int) -> str:
     if n_smoothed:
         joints = _joints(n_smoothed)
         sentences.append(
-            f"For {joints}, plain smoothing and typical human movement fit better than the"
-            " patterns of the take."
+            f"For {joints}, general smoothing fits better than learned patterns, so it counts"
+            " more there."
         )
     if n_predicted:
         sentences.append(

@@ -129,9 +129,9 @@ def _interpolate_trajectory(
     all_frames = np.arange(n_frames)
     for axis in range(3):
         trajectory[:, axis] = np.interp(all_frames, observed, centers[:, axis])
-    position = np.searchsorted(observed, all_frames)
-    before = observed[np.clip(position - 1, 0, len(observed) - 1)]
-    after = observed[np.clip(position, 0, len(observed) - 1)]
+    index = np.searchsorted(observed, all_frames)
+    before = observed[np.clip(index - 1, 0, len(observed) - 1)]
+    after = observed[np.clip(index, 0, len(observed) - 1)]
     step = int(np.diff(frames).max(initial=1))
     near = np.minimum(np.abs(all_frames - before), np.abs(all_frames - after)) < step
     joined = (before <= all_frames) & (all_frames <= after)

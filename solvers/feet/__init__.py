@@ -6,7 +6,7 @@ from ..import_on_demand import import_on_demand
 
 if TYPE_CHECKING:
     from .body_supports import find_supports
-    from .legs import SIDES, LegJoints, find_foot_joints, find_legs
+    from .legs import LegJoints, find_foot_joints, find_foot_points, find_legs
     from .live_planting import LivePlanting, PlantedPose
     from .plant_feet import Planted, plant_feet
     from .plant_settings import PlantSettings
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "HEEL_FRACTION",
-    "SIDES",
     "LegJoints",
     "LivePlanting",
     "PlantSettings",
     "Planted",
     "PlantedPose",
     "find_foot_joints",
+    "find_foot_points",
     "find_legs",
     "find_supports",
     "plant_feet",

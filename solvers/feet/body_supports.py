@@ -9,6 +9,7 @@ from ..arrays import Array, Flags
 from ..motion import Motion, Skeleton, WorldPoses, forward_kinematics
 from ..motion.humanoid import (
     HUMAN_LEG_LENGTH_M,
+    SIDES,
     ContactModel,
     HumanoidMap,
     known_foot_points,
@@ -18,7 +19,7 @@ from ..motion.humanoid import (
 from ..motion.skeletons import ground_level
 from ..motion_fitting.goals import BonePoint
 from ..signals import smooth_gaussian, two_state_probabilities
-from .legs import SIDES, LegJoints
+from .legs import LegJoints
 from .pelvis import pelvis_points
 from .standing_feet import MIN_CONTACT_S, rests_on_hips, without_short_contacts
 

@@ -1,14 +1,13 @@
 """Find the legs of a skeleton, and the points of its feet."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Motion, Skeleton, Tracks
-from ..motion.humanoid import HumanoidMap, find_humanoid_map, roles_by_name
-
-SIDES = ("left", "right")
+from ..motion import Skeleton, Tracks
+from ..motion.humanoid import SIDES, HumanoidMap, find_humanoid_map, roles_by_name
 
 
 @dataclass(frozen=True)
@@ -52,27 +51,33 @@ def find_legs(
 
 
 def find_foot_joints(
-    recording: Motion | Tracks, humanoid_map: HumanoidMap | None = None
+    skeleton: Skeleton, humanoid_map: HumanoidMap | None = None
 ) -> NDArray[np.intp] | None:
-    """Return the indices of ankle and toes (columns) of the left and right foot (rows).
+    """Return the joints of ankle and toes (columns) of the left and right foot (rows).
 
-    They are joints of a motion, or points of tracks with the names of joints. Without toes the
-    ankle appears twice. Returns None unless both feet are found.
+    Without toes the ankle appears twice. Returns None unless both feet are found.
     """
-    if isinstance(recording, Motion):
-        humanoid = humanoid_map or find_humanoid_map(recording.skeleton)
-        joint_of_role = humanoid.indices(recording.skeleton)
-    else:
-        index_of_name = {name: index for index, name in enumerate(recording.names)}
-        roles = humanoid_map.joints if humanoid_map else roles_by_name(recording.names)
-        joint_of_role = {
-            role: index_of_name[name] for role, name in roles.items() if name in index_of_name
-        }
-    if any(f"{side}Foot" not in joint_of_role for side in SIDES):
+    return _ankles_and_toes((humanoid_map or find_humanoid_map(skeleton)).indices(skeleton))
+
+
+def find_foot_points(
+    tracks: Tracks, humanoid_map: HumanoidMap | None = None
+) -> NDArray[np.intp] | None:
+    """Return the points of both feet, like `find_foot_joints`, by the names of joints."""
+    index_of_name = {name: index for index, name in enumerate(tracks.names)}
+    roles = humanoid_map.joints if humanoid_map else roles_by_name(tracks.names)
+    return _ankles_and_toes({
+        role: index_of_name[name] for role, name in roles.items() if name in index_of_name
+    })
+
+
+def _ankles_and_toes(index_of_role: Mapping[str, int]) -> NDArray[np.intp] | None:
+    """Return the indices of ankle and toes of both feet, shape (2, 2), if both exist."""
+    ankles = [index_of_role.get(f"{side}Foot") for side in SIDES]
+    if None in ankles:
         return None
-    ankles = [joint_of_role[f"{side}Foot"] for side in SIDES]
     toes = [
-        joint_of_role.get(f"{side}Toes", ankle)
+        index_of_role.get(f"{side}Toes", ankle)
         for side, ankle in zip(SIDES, ankles, strict=True)
     ]
-    return np.stack([ankles, toes], axis=1)
+    return np.array([ankles, toes], dtype=np.intp).T

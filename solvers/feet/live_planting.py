@@ -8,6 +8,7 @@ from ..arrays import Array, Flags
 from ..motion import Motion, WorldPoses, forward_kinematics, reach
 from ..motion.humanoid import (
     HUMAN_LEG_LENGTH_M,
+    SIDES,
     HumanoidMap,
     detect_contacts,
     foot_noise,
@@ -15,7 +16,7 @@ from ..motion.humanoid import (
     leg_length,
 )
 from ..motion_fitting.goals import BonePoint
-from .legs import SIDES, LegJoints, find_legs
+from .legs import LegJoints, find_legs
 from .live_contacts import LiveContacts, RunningLine
 from .sole import SPEED_FALLOFF, instant_loads, measure_standing_heights, sole_points
 

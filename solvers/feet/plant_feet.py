@@ -8,13 +8,13 @@ import numpy as np
 from ..arrays import Array, Flags
 from ..errors import InvalidMotionError
 from ..motion import Motion, forward_kinematics
-from ..motion.humanoid import HumanoidMap, find_humanoid_map
+from ..motion.humanoid import SIDES, HumanoidMap, find_humanoid_map
 from ..motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
 from ..motion_fitting import FittedMotion, fit_in_windows, fit_motion
 from ..progress import Progress, Remark, collect_remarks, unwatched, within
 from .body_supports import SUPPORTS, detect_supports
 from .foot_goals import planting_goals
-from .legs import SIDES, LegJoints, find_legs
+from .legs import LegJoints, find_legs
 from .limb_goals import LimbContact, find_limb_contacts, limb_tolerances
 from .plant_settings import PlantSettings
 from .sole_contact import FootContact, find_foot_contact

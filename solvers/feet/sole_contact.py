@@ -102,7 +102,7 @@ def _flatness(rotations: Array, contact: Flags, load: Array, rate: float) -> Arr
     rotation_changes = rotation_vector_from_quaternion(
         multiply(rotations[1:], inverse(rotations[:-1]))
     )
-    # It reflects ends; smooth_gaussian repeats them.
+    # This filter reflects the ends; smooth_gaussian repeats them.
     velocity = scipy.ndimage.gaussian_filter1d(
         rotation_changes * rate, SMOOTHING_S * rate, axis=0
     )

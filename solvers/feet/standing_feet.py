@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
-from ..motion.humanoid import HumanoidMap, detect_contacts, known_foot_points
+from ..motion.humanoid import SIDES, HumanoidMap, detect_contacts, known_foot_points
 from ..motion.skeletons import still_joints
 from ..signals import find_runs
-from .legs import SIDES, LegJoints
+from .legs import LegJoints
 
 MIN_HIP_HEIGHT = 0.2
 """Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
@@ -32,7 +32,7 @@ bodies whose hips leave the floor for some frames."""
 def detect_standing_feet(
     motion: Motion, humanoid_map: HumanoidMap, legs: Sequence[LegJoints]
 ) -> NDArray[np.bool_]:
-    """Return the contacts of both feet, without those of a leg that was not captured.
+    """Return the contacts of both feet, (n_frames, 2), without legs that were not captured.
 
     The leg of a suit that only captures the upper body hangs stiff from the hips. Its foot
     slides as the hips rotate; to plant it would flex the knee for nothing. Nor do the feet of
@@ -76,7 +76,7 @@ def rests_on_hips(
 
 
 def without_short_contacts(contacts: NDArray[np.bool_], min_frames: float) -> NDArray[np.bool_]:
-    """Return the contacts without shorter ones, except at the ends, where they may continue."""
+    """Return contacts (n_frames, n) without shorter ones, except at the ends of the take."""
     kept = contacts.copy()
     for foot in kept.T:
         for start, stop in find_runs(foot):

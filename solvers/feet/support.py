@@ -60,7 +60,7 @@ class Support:
 
 
 def both_in_contact(contact: Flags) -> Flags:
-    """Return the steps between frames that are both in contact."""
+    """Return the steps, (n_frames - 1, ...), between frames that are both in contact."""
     return np.asarray(contact[1:] & contact[:-1])
 
 

@@ -90,7 +90,7 @@ SIDE_MARKERS = (
     MarkerPrior("TOE", "Foot", "Foot", TIGHT_STD_M),
     MarkerPrior("MT5", "Foot", "Foot", TIGHT_STD_M),
 )
-SIDES = {"left": ("L", 1.0), "right": ("R", -1.0)}
+MARKER_SIDES = {"left": ("L", 1.0), "right": ("R", -1.0)}
 """First letter of a side's markers, and the sign of its X coordinate."""
 REQUIRED_MARKERS = (
     ("chest", ("C7", "CLAV", "T10", "STRN")),

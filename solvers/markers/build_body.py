@@ -9,10 +9,10 @@ from .body import MarkerBody, local_rotations
 from .body_tables import (
     CENTRAL_JOINTS,
     CENTRAL_MARKERS,
+    MARKER_SIDES,
     REQUIRED_MARKERS,
     SIDE,
     SIDE_MARKERS,
-    SIDES,
     JointPrior,
     MarkerPrior,
     Triple,
@@ -38,7 +38,7 @@ def joints_with(landmarks: Collection[str]) -> tuple[JointPrior, ...]:
         if bone in {"chest", "head"}:
             excluded |= set() if set(required) <= set(landmarks) else {bone}
             continue
-        for side, (letter, _) in SIDES.items():
+        for side, (letter, _) in MARKER_SIDES.items():
             if not {letter + landmark for landmark in required} <= set(landmarks):
                 excluded.add(side + bone)
     if "chest" in excluded:
@@ -57,7 +57,7 @@ def _joints_of_both_sides() -> list[JointPrior]:
             name=side + joint.name,
             parent=side + joint.parent if joint.parent in names else joint.parent,
         )
-        for side in SIDES
+        for side in MARKER_SIDES
         for joint in SIDE
     ]
 
@@ -73,7 +73,7 @@ def markers_with(
             anchor=side + marker.anchor,
             offset=None if marker.offset is None else _to_side(marker.offset, sign),
         )
-        for side, (letter, sign) in SIDES.items()
+        for side, (letter, sign) in MARKER_SIDES.items()
         for marker in SIDE_MARKERS
     ]
     return tuple(
@@ -109,8 +109,8 @@ def build_body(
 
 def _offset(joint: JointPrior, centers: JointCenters, frames: Mapping[str, Array]) -> Array:
     """Return the initial offset of a joint from its parent, in the T-pose."""
-    side = next((side for side in SIDES if joint.name.startswith(side)), "")
-    sign = SIDES[side][1] if side else 1.0
+    side = next((side for side in MARKER_SIDES if joint.name.startswith(side)), "")
+    sign = MARKER_SIDES[side][1] if side else 1.0
     part, scale = joint.name.removeprefix(side), centers.scale
     fixed = {
         "hips": np.zeros(3),

@@ -12,7 +12,7 @@ from ..rotations import (
     quaternion_from_rotation_vector,
     rotation_vector_from_quaternion,
 )
-from .body_tables import SIDES
+from .body_tables import MARKER_SIDES
 from .joint_centers import JointCenters
 from .vectors import frame, median, swing_frames
 
@@ -36,7 +36,7 @@ def bone_frames(
     if "chest" in frames:
         frames["spine"] = _halfway(frames["hips"], frames["chest"])
         frames["neck"] = _halfway(frames["chest"], frames.get("head", frames["chest"]))
-    for side, (letter, sign) in SIDES.items():
+    for side, (letter, sign) in MARKER_SIDES.items():
         _leg(centers, landmarks, frames, side, letter)
         if f"{side}UpperArm" in names:
             _arm(centers, landmarks, frames, side, letter, sign)
@@ -60,7 +60,7 @@ def _leg(
     hip, knee, ankle = (
         centers.positions[side + joint] for joint in ("UpperLeg", "LowerLeg", "Foot")
     )
-    lateral = SIDES[side][1] * (landmarks[f"{letter}KNE"] - knee)
+    lateral = MARKER_SIDES[side][1] * (landmarks[f"{letter}KNE"] - knee)
     frames[f"{side}UpperLeg"] = frame(2, hip - knee, 0, lateral)
     frames[f"{side}LowerLeg"] = frame(2, knee - ankle, 0, lateral)
     if f"{letter}HEE" in landmarks:

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..rotations import normalize
-from .body_tables import SIDES
+from .body_tables import MARKER_SIDES
 from .vectors import frame, perpendicular, swing_frames
 
 PositionsByJoint = dict[str, Array]
@@ -76,7 +76,7 @@ def joint_centers(landmarks: Mapping[str, Array]) -> JointCenters:
     frames = {"hips": _pelvis(landmarks, positions)}
     legs = [
         np.linalg.norm(positions[f"{side}UpperLeg"] - landmarks[f"{letter}ANK"], axis=-1)
-        for side, (letter, _) in SIDES.items()
+        for side, (letter, _) in MARKER_SIDES.items()
     ]
     if not np.isfinite(legs).any():
         raise InvalidMotionError(
@@ -84,11 +84,11 @@ def joint_centers(landmarks: Mapping[str, Array]) -> JointCenters:
             " their labels and the scale."
         )
     scale = float(np.nanmedian(legs) / ADULT_LEG_M)
-    for side in SIDES:
+    for side in MARKER_SIDES:
         _leg(landmarks, positions, frames["hips"], side, scale)
     if {"C7", "CLAV", "T10", "STRN"} <= set(landmarks):
         frames["chest"] = _trunk(landmarks, positions, frames["hips"], scale)
-        for side in SIDES:
+        for side in MARKER_SIDES:
             _arm(landmarks, positions, frames["chest"], side, scale)
     if {"LFHD", "RFHD", "LBHD", "RBHD"} <= set(landmarks):
         frames["head"] = _head(landmarks, positions, scale)
@@ -111,7 +111,7 @@ def _pelvis(landmarks: Mapping[str, Array], positions: PositionsByJoint) -> Arra
     lateral_offset = 0.33 * width + 7.3e-3
     backward_offset = 0.24 * depth + 9.9e-3
     down = 0.30 * width + 10.9e-3
-    for side, (_, sign) in SIDES.items():
+    for side, (_, sign) in MARKER_SIDES.items():
         positions[f"{side}UpperLeg"] = front + axes @ np.array([
             sign * lateral_offset,
             backward_offset,
@@ -135,7 +135,7 @@ def _leg(
     side: str,
     scale: float,
 ) -> None:
-    letter, sign = SIDES[side]
+    letter, sign = MARKER_SIDES[side]
     hip, knee, ankle = (
         positions[f"{side}UpperLeg"], landmarks[f"{letter}KNE"], landmarks[f"{letter}ANK"],
     )  # fmt: skip
@@ -229,7 +229,7 @@ def _arm(
     side: str,
     scale: float,
 ) -> None:
-    letter, sign = SIDES[side]
+    letter, sign = MARKER_SIDES[side]
     if not {f"{letter}SHO", f"{letter}ELB"} <= set(landmarks):
         return
     shoulder = landmarks[f"{letter}SHO"] - scale * SHOULDER_DEPTH_M * thorax[..., 2]

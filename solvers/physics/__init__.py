@@ -13,6 +13,7 @@ from ..import_on_demand import import_on_demand
 
 if TYPE_CHECKING:
     from .engine import NoPhysicsError
+    from .report import describe_first_failure
     from .settings import Ground, SimulateSettings
     from .simulate import Simulated, apply_strength, simulate
 
@@ -22,6 +23,7 @@ __all__ = [
     "SimulateSettings",
     "Simulated",
     "apply_strength",
+    "describe_first_failure",
     "simulate",
 ]
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import HumanoidMap, Motion, Skeleton, leg_length, t_pose_alignment
-from ..motion.humanoid import HUMAN_LEG_LENGTH_M
+from ..motion.humanoid import HUMAN_LEG_LENGTH_M, SIDES
 from ..motion.skeletons import still_joints
 from ..rotations import IDENTITY, multiply, rotate
 from .tables import (
@@ -26,7 +26,7 @@ from .tables import (
     role_without_side,
 )
 
-LEG_ROLES = {side + part for side in ("left", "right") for part in ("UpperLeg", "LowerLeg")}
+LEG_ROLES = {side + part for side in SIDES for part in ("UpperLeg", "LowerLeg")}
 MIN_MASS_KG = 0.05
 """Mass of a joint without a segment, for legs of 0.9 m. Chosen by hand; `make sensitivity`
 varies it."""

@@ -6,11 +6,11 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..motion import Motion, forward_kinematics
+from ..motion.humanoid import SIDES
 from ..rotations import rotate
 from ..signals import smooth_gaussian
 from .body import PhysicsBody
 
-SIDES = ("left", "right")
 LEG = ("UpperLeg", "LowerLeg", "Foot")
 MAX_CONTACT_M = 0.005
 """Meters, for legs of 0.9 m: a sole this near to the ground touches it. Chosen by hand;
@@ -128,6 +128,6 @@ def find_leg_chain(body: PhysicsBody, side: str) -> tuple[int, int, int] | None:
 
 
 def measure_foot_slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:
-    """Return the distance in meters that both feet cover over the ground during contact."""
+    """Return the distance, meters, that both feet cover during contacts (n_frames, 2)."""
     standing = contacts[1:] & contacts[:-1]
     return float(measure_sole_speeds(body, motion)[1:][standing].sum() / motion.frame_rate)

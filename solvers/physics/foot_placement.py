@@ -4,10 +4,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..motion import Motion, forward_kinematics, reach
-from ..motion.humanoid import UP
+from ..motion.humanoid import SIDES, UP
 from ..signals import smooth_gaussian
 from .body import PhysicsBody
-from .body_surface import SIDES, find_leg_chain, lowest_points, select_foot_ends
+from .body_surface import find_leg_chain, lowest_points, select_foot_ends
 
 MIN_SWING_CLEARANCE_M = 0.01
 """Minimum height of a swinging foot above the ground in meters, for legs of 0.9 m. Chosen by

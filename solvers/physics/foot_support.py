@@ -4,9 +4,10 @@ import numpy as np
 
 from ..arrays import Array, Flags
 from ..motion import HumanoidMap, Motion, detect_contacts
+from ..motion.humanoid import SIDES
 from ..signals import smooth_gaussian
 from .body import PhysicsBody
-from .body_surface import SIDES, lowest_points, measure_sole_speeds, select_foot_ends
+from .body_surface import lowest_points, measure_sole_speeds, select_foot_ends
 
 LOAD_SMOOTHING_S = 0.02
 """Standard deviation in seconds of the Gaussian that smooths loads, heights and speeds. Chosen

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..motion import Motion
-from ..motion.humanoid import UP
+from ..motion.humanoid import SIDES, UP
 from ..motion_fitting import FittedMotion, Goal, fit_in_windows, fit_motion
 from ..motion_fitting.goals import (
     BonePoint,
@@ -20,7 +20,7 @@ from ..motion_fitting.goals import (
 from ..progress import Progress
 from ..rotations import inverse, multiply, rotation_vector_from_quaternion
 from .body import PhysicsBody
-from .body_surface import SIDES, find_leg_chain, joints_of_ends, lowest_points, select_foot_ends
+from .body_surface import find_leg_chain, joints_of_ends, lowest_points, select_foot_ends
 from .foot_support import distribute_load
 
 BLEND_S = 0.35

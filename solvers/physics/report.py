@@ -17,19 +17,32 @@ def mean_distance(motion: Motion, other: Motion, joints: Sequence[int]) -> float
     return float(np.linalg.norm(other_positions - positions, axis=-1).mean())
 
 
-def describe_result(followed: NDArray[np.bool_], given_up: bool, smoothing: float) -> str:
-    """Describe where the body followed, and how much smoothing (seconds) that required."""
+def describe_result(followed: NDArray[np.bool_], smoothing: float) -> str:
+    """Describe how often the body followed, and how much smoothing (seconds) that required.
+
+    `followed`, shape (n_frames,), is False in all frames if the result is the take.
+    """
     n_failed, n_frames = int((~followed).sum()), len(followed)
-    if given_up:
+    if not followed.any():
         return "The simulated body could not follow the take, which is unchanged."
     smoothed = f" That required smoothing by {smoothing:.2g} s." if smoothing else ""
     if not n_failed:
         return f"The simulated body followed the complete take.{smoothed}"
-    first = int(np.flatnonzero(~followed)[0])
     return (
-        f"The simulated body could not follow in {n_failed} of {n_frames} frames, first in"
-        f" frame {first}; there the take is unchanged.{smoothed}"
+        f"The simulated body could not follow in {n_failed} of {n_frames} frames; there the"
+        f" take is unchanged.{smoothed}"
     )
+
+
+def describe_first_failure(followed: NDArray[np.bool_], frames: Sequence[float]) -> str:
+    """Describe which of the `frames` of a take the body failed to follow first.
+
+    `followed` has the shape (n_frames,). The text is empty if all are True, or none.
+    """
+    if followed.all() or not followed.any():
+        return ""
+    frame = frames[int(followed.argmin())]
+    return f"The first frame that it could not follow is {frame:g}."
 
 
 def is_near_ground(ground: float, under_feet: float, size: float) -> bool:

@@ -239,9 +239,7 @@ def _assemble_result(
         slide_after=measure_foot_slide(body, fill_motion_gaps(result), contacts),
         smoothing=smoothing,
         distance=mean_distance(complete, fill_motion_gaps(result), body.joints),
-        message=describe_result(
-            followed, given_up, smoothing if smoothing > settings.smoothing else 0.0
-        )
+        message=describe_result(followed, smoothing if smoothing > settings.smoothing else 0.0)
         + describe_ground(ground, foot_height, body.size, given_height),
     )
 

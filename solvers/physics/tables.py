@@ -1,10 +1,10 @@
 """Tables of a human body's masses, sizes and strengths by segment."""
 
-from ..motion.humanoid import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES
+from ..motion.humanoid import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES, SIDES
 
 ROLES = (
     *CENTRAL_ROLES,
-    *(side + part for side in ("left", "right") for part in (*LEG_ROLES, *ARM_ROLES)),
+    *(side + part for side in SIDES for part in (*LEG_ROLES, *ARM_ROLES)),
 )
 """Humanoid roles with a segment of their own, 22 at most; hands and feet are one segment
 each."""

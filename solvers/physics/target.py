@@ -141,7 +141,7 @@ def blend_motions(
 
 
 def fade_around(frames: NDArray[np.bool_], ease: float) -> Array:
-    """Return weights that are 0 at these frames and rise to 1 within `ease` frames."""
+    """Return weights, (n_frames,), 0 at these frames and rising to 1 within `ease` frames."""
     # A frame beyond each end, too far to matter, so that there is one to measure to.
     n_padding = int(ease) + 2
     is_clear = np.pad(~frames, n_padding, constant_values=True)

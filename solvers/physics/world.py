@@ -7,12 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion.humanoid import ARM_ROLES
+from ..motion.humanoid import ARM_ROLES, SIDES
 from .body import Capsule, PhysicsBody
 
 GRAVITY = 9.81
 """Meters per second squared, by definition."""
-SIDES = ("left", "right")
 WEAK_ROLES = {"neck", "head", *(side + part for side in SIDES for part in ARM_ROLES)}
 CONTACT_TIME_S = 0.01
 """Seconds in which the ground pushes out a penetrating body. Chosen by hand; `make sensitivity`

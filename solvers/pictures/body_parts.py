@@ -34,7 +34,7 @@ def left_joints(skeleton: Skeleton, roles: Mapping[str, int]) -> NDArray[np.bool
 def head_bone(skeleton: Skeleton, roles: Mapping[str, int]) -> tuple[int, int] | None:
     """Return both ends of the head, or of the highest bone of an unknown body.
 
-    None for few joints, which are no body.
+    None for few joints, which do not form a body.
     """
     if "head" in roles:
         head, lengths = roles["head"], np.linalg.norm(skeleton.offsets, axis=1)

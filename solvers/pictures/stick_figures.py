@@ -16,6 +16,7 @@ from ..motion import (
     find_humanoid_map,
     forward_kinematics,
 )
+from ..motion.humanoid import SIDES
 from ..rotations import rotate
 from ..settings import Choice, Settings, setting
 from .body_parts import head_bone, left_joints
@@ -29,7 +30,6 @@ MIN_WIDTH = 0.35
 """Minimum width of the cell of one figure, as a fraction of its height."""
 MAX_EXTENT = 1.3
 """Maximum extent of a figure to either side and upwards, in statures."""
-SIDES = ("left", "right")
 AVERAGING_S = 0.5
 """Seconds over which the heading of the figure is averaged."""
 

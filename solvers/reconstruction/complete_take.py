@@ -49,18 +49,21 @@ def complete_take(
     settings: PostureSettings,
     progress: Progress,
 ) -> CompletedTake:
-    """Replace unreliable and missing joints by those of library poses."""
+    """Replace unreliable and missing joints by those of library poses.
+
+    `reliability` has the shape (n_frames, n_joints), 0 to 1.
+    """
     rebuilt = complete_joints(recording, postures, reliability, settings, progress)
-    tracks, ahead = recording.tracks, not settings.causal
+    tracks, causal = recording.tracks, settings.causal
     observed = tracks.visible.any(axis=0)
-    smooth = fill_gaps(tracks.positions[:, observed], ahead=ahead)
-    smooth = smooth_gaussian(smooth, POSITION_SMOOTHING_S * tracks.frame_rate, ahead=ahead)
+    smooth = fill_gaps(tracks.positions[:, observed], causal=causal)
+    smooth = smooth_gaussian(smooth, POSITION_SMOOTHING_S * tracks.frame_rate, causal=causal)
     distance = np.zeros(reliability.shape)
     distance[:, observed] = np.linalg.norm(
         rebuilt.tracks.positions[:, observed] - smooth, axis=-1
     )
     replacement = replacement_weights(tracks.visible, reliability, distance)
-    if not settings.causal:
+    if not causal:
         used = tracks.visible & (replacement <= 0.0)
         bridged = blend_gaps(
             tracks.positions, used, rebuilt.tracks.positions, rebuilt.deviation,
@@ -73,7 +76,10 @@ def complete_take(
 def blend_rebuilt(
     recording: JointRecording, rebuilt: CompletedJoints, reliability: Array, replacement: Array
 ) -> CompletedTake:
-    """Blend observed joints and library poses by the weights of `replacement_weights`."""
+    """Blend observed joints and library poses by the weights of `replacement_weights`.
+
+    `reliability` and `replacement` have the shape (n_frames, n_joints), 0 to 1.
+    """
     return CompletedTake(
         replace(recording, tracks=_blend_tracks(recording.tracks, rebuilt.tracks, replacement)),
         rebuilt,

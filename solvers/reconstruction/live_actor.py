@@ -124,7 +124,7 @@ def measure_actor(
     corrected = predict_postures(
         blended, prior, weights, correction_settings(settings, is_known_sensor)
     )
-    smooth = smooth_postures(blended, float(prior.smoothing), weights, ahead=False)
+    smooth = smooth_postures(blended, float(prior.smoothing), weights, causal=True)
     if rebuilt.library is None or corrected.offsets is None:
         raise InvalidMotionError("The actor was not recognized in these frames.")
     progress(1.0, "Measured the actor")

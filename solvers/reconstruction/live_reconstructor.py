@@ -193,7 +193,7 @@ class LiveReconstructor:
         inputs = SmoothedPostures(smooth, normalized, features, actor.frame_rate)
         corrected = subtract_offsets(
             inputs,
-            actor.prior.predict(inputs, ahead=False),
+            actor.prior.predict(inputs, causal=True),
             actor.sensor_offsets,
             weights,
             actor.prior,

@@ -75,7 +75,7 @@ def open_as(
             "on_floor": floor is not FloorPlacement.NEVER,
         }
         format_ = format_._replace(open=partial(format_.open, **about))
-    unit = settings.unit.metres if scale is None else scale
+    unit = settings.unit.meters if scale is None else scale
     bodies = open_format(path, format_, unit, progress)
 
     def settled(recording: Tracked, progress: Progress) -> Tracked:

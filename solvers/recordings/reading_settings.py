@@ -46,12 +46,12 @@ class Unit(Choice):
     FEET = "feet", "Read lengths in the files as feet", "Feet (ft)"
 
     @property
-    def metres(self) -> float | None:
+    def meters(self) -> float | None:
         """Meters in one of these; None if the file states it or its reader estimates it."""
-        return METRES.get(self)
+        return METERS.get(self)
 
 
-METRES = {
+METERS = {
     Unit.METRES: 1.0, Unit.CENTIMETRES: 0.01, Unit.MILLIMETRES: 0.001, Unit.INCHES: 0.0254,
     Unit.FEET: 0.3048,
 }  # fmt: skip

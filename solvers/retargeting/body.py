@@ -11,7 +11,6 @@ from ..motion import HumanoidMap, Motion, Skeleton, t_pose_alignment
 from ..motion.humanoid import prolongs_shin
 from .map_checks import check_feet, check_roles
 
-SIDES = ("left", "right")
 SOURCE = "source's skeleton"
 TARGET = "target's skeleton"
 MOTION = "motion's skeleton"

@@ -7,8 +7,7 @@ import numpy as np
 
 from ..arrays import Array, Flags
 from ..motion import Motion, forward_kinematics
-from ..motion.humanoid import UP
-from .body import SIDES
+from ..motion.humanoid import SIDES, UP
 from .leg_lengths import TargetLeg, level_ankles
 from .limbs import Limb, Transfer, limb_extension
 from .placement import rests_on_ground

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..motion import WorldPoses
+from ..motion.humanoid import SIDES
 from ..signals import smooth_gaussian, smoothstep
-from .body import SIDES
 from .limbs import LIMB_SMOOTHING_S, Limb, Transfer
 from .placement import leg_length
 

@@ -7,10 +7,10 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import Motion, Skeleton, forward_kinematics
+from ..motion.humanoid import SIDES
 from ..rotations import angle_between
 
 Joints = dict[str, int]
-SIDES = ("left", "right")
 MIN_BACKWARD_ANGLE_RAD = np.radians(135.0)
 """Angle in radians between feet and hips from which the feet point backward. By definition:
 halfway between square and opposite."""

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Flags
-from .body import SIDES, HumanoidBody
+from ..motion.humanoid import SIDES
+from .body import HumanoidBody
 
 UP = np.array([0.0, 0.0, 1.0])
 ANKLE_HEIGHT_FRACTION = 0.08

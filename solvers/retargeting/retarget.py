@@ -15,11 +15,11 @@ from ..motion import (
     forward_kinematics,
     world_poses,
 )
-from ..motion.humanoid import with_standing_rest
+from ..motion.humanoid import SIDES, with_standing_rest
 from ..progress import Progress, Remark, unwatched, within
 from ..rotations import IDENTITY
 from ..settings import Choice, Settings, setting
-from .body import SIDES, SOURCE, TARGET, HumanoidBody, find_body, without_gaps
+from .body import SOURCE, TARGET, HumanoidBody, find_body, without_gaps
 from .limbs import Transfer
 from .map_checks import knees_bend_backward
 from .place_feet import place_feet

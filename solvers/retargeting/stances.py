@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arrays import Array, Flags
 from ..motion import Skeleton, WorldPoses
-from ..motion.humanoid import end_of_foot
+from ..motion.humanoid import SIDES, end_of_foot
 from ..rotations import (
     inverse,
     multiply,
@@ -16,7 +16,7 @@ from ..rotations import (
     rotation_vector_from_quaternion,
 )
 from ..signals import smooth_gaussian
-from .body import SIDES, HumanoidBody
+from .body import HumanoidBody
 from .placement import leg_length, rests_on_ground
 
 SPEED_SMOOTHING_S = 0.05

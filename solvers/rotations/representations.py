@@ -31,7 +31,7 @@ for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
 
 
 def multiply(a: Array, b: Array) -> Array:
-    """Return the rotation that applies `b` first, then `a` (the matrix product A B)."""
+    """Return the rotation, (..., 4), that applies `b` first, then `a`: the product A B."""
     a, b = np.asarray(a), np.asarray(b)
     product = np.broadcast(a, b)
     if product.size <= 4 * QUATERNIONS_PER_BLOCK:
@@ -45,7 +45,7 @@ def multiply(a: Array, b: Array) -> Array:
 
 
 def inverse(rotations: Array) -> Array:
-    """Return the inverse rotations."""
+    """Return the inverses of unit quaternions, shape (..., 4)."""
     return np.asarray(rotations) * (1.0, -1.0, -1.0, -1.0)
 
 
@@ -56,7 +56,7 @@ def rotate(rotations: Array, vectors: ArrayLike) -> Array:
 
 
 def normalize(rotations: Array) -> Array:
-    """Return quaternions or vectors of length 1; those of length 0 become NaN."""
+    """Return quaternions or vectors (last axis) of length 1; those of length 0 become NaN."""
     norms = np.linalg.norm(rotations, axis=-1, keepdims=True)
     return np.asarray(rotations / np.where(norms > 0.0, norms, np.nan))
 
@@ -187,7 +187,7 @@ def unwrap_euler(angles: Array) -> Array:
 def unroll(rotations: Array) -> Array:
     """Choose signs along the first axis so that consecutive quaternions share a hemisphere.
 
-    NaN frames are skipped.
+    Shape (n_frames, ..., 4). NaN frames are skipped.
     """
     result = np.array(rotations, dtype=np.float64)
     valid = np.isfinite(result).all(axis=-1)

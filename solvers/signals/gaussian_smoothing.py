@@ -12,7 +12,7 @@ TRUNCATION_SIGMAS = 4.0
 says."""
 
 
-def smooth_gaussian(values: Array, frames: float, *, ahead: bool = True) -> Array:
+def smooth_gaussian(values: Array, frames: float, *, causal: bool = False) -> Array:
     """Return the Gaussian-weighted mean of the frames around each frame, or of those up to it.
 
     Parameters
@@ -21,8 +21,8 @@ def smooth_gaussian(values: Array, frames: float, *, ahead: bool = True) -> Arra
         Without gaps.
     frames : float
         Standard deviation of the Gaussian; 0 changes nothing.
-    ahead : bool
-        True: a zero-phase filter that also uses later frames. False: a causal filter, the
+    causal : bool
+        False: a zero-phase filter, which uses later frames too. True: a causal filter, the
         earlier half of the Gaussian; its result lags by 0.8 `frames`.
     """
     from scipy.ndimage import convolve1d, gaussian_filter1d  # slow to import: only when needed
@@ -30,7 +30,7 @@ def smooth_gaussian(values: Array, frames: float, *, ahead: bool = True) -> Arra
     values = np.array(values, dtype=np.float64)
     if frames <= 0.0:
         return values
-    if ahead:
+    if not causal:
         return np.asarray(gaussian_filter1d(values, frames, axis=0, mode="nearest"))
     width = round(TRUNCATION_SIGMAS * frames)
     weights = np.exp(-0.5 * (np.arange(width + 1) / frames) ** 2)
@@ -54,7 +54,7 @@ class CausalSmoother:
     def update(self, values: Array) -> Array:
         """Return the mean of these values and those before, same shape; NaN stays NaN."""
         self._past.append(values)
-        return np.asarray(smooth_gaussian(np.stack(self._past), self._frames, ahead=False)[-1])
+        return np.asarray(smooth_gaussian(np.stack(self._past), self._frames, causal=True)[-1])
 
 
 def smooth_to_the_ends(values: Array, frames: float) -> Array:

@@ -6,7 +6,7 @@ from ..arrays import Array, Flags
 from ..rotations import IDENTITY, slerp
 
 
-def fill_gaps(values: Array, known: Flags | None = None, *, ahead: bool = True) -> Array:
+def fill_gaps(values: Array, known: Flags | None = None, *, causal: bool = False) -> Array:
     """Fill the gaps of each point by linear interpolation; hold the ends.
 
     Parameters
@@ -15,8 +15,8 @@ def fill_gaps(values: Array, known: Flags | None = None, *, ahead: bool = True) 
         Points over time; NaN: missing.
     known : shape (n_frames, ...), optional
         Valid mask: False treats a finite value as missing too.
-    ahead : bool
-        True: interpolate up to the value after the gap. False: use no later frame, but hold the
+    causal : bool
+        False: interpolate up to the value after the gap. True: use no later frame, but hold the
         last valid value; before the first valid value, hold that.
 
     Returns
@@ -38,7 +38,7 @@ def fill_gaps(values: Array, known: Flags | None = None, *, ahead: bool = True) 
         if not valid_frames.any():
             flat[:, point] = np.nan
             continue
-        if not ahead:
+        if causal:
             last_valid = np.maximum.accumulate(
                 np.where(valid_frames, frames, valid_frames.argmax())
             )

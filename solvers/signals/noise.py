@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
+from .linear_gaps import fill_gaps
 
 MAD_TO_SIGMA = 1.4826
 """Ratio of the standard deviation of a Gaussian to its median absolute deviation. By
@@ -95,20 +96,13 @@ def remove_outliers(values: Array, half_width: int) -> Array:
 
 
 def fill_channel_gaps(values: Array) -> Array:
-    """Return the channels with NaN replaced by linear interpolation.
+    """Return channels, shape (n_frames, n_channels), with NaN linearly interpolated.
 
     The first and the last valid value are held at the ends; channels without one become 0.
     """
-    result = values.copy()
-    frames = np.arange(len(values))
-    for channel in np.flatnonzero(np.isnan(values).any(axis=0)):
-        valid = np.isfinite(values[:, channel])
-        if valid.any():
-            interpolation = np.interp(frames, frames[valid], values[valid, channel])
-            result[:, channel] = interpolation
-        else:
-            result[:, channel] = 0.0
-    return result
+    filled = fill_gaps(values[..., np.newaxis])[..., 0]
+    filled[np.isnan(filled)] = 0.0
+    return filled
 
 
 def _nan_median(values: Array) -> Array:

@@ -85,7 +85,7 @@ class TwoStateFilter:
         return np.asarray(odds / (1.0 + odds))
 
     def odds(self, evidence: Array, elapsed_s: float) -> Array:
-        """Return the odds instead of the probability; see `update`."""
+        """Return the odds instead of the probability, same shape; see `update`."""
         if self._odds is None:
             odds: Array | float = self._rates[0] / self._rates[1]
         else:

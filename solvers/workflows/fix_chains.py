@@ -215,7 +215,7 @@ def _describe_cleaning(start: Motion | Tracks, denoised: Denoised) -> list[str]:
     n_gaps = _n_runs(filled) + _n_runs(denoised.held)
     n_spikes = _n_runs(denoised.outliers)
     corrected, gaps = _count_as_text(n_spikes, SPIKES), _count_as_text(n_gaps, GAPS)
-    # The first sentence says that there are no examples, which is so for every take here.
+    # The first sentence says that there are no examples. No take here has any.
     _, _, remarks = denoised.prior_used.partition(". ")
     return [
         f"Clean corrected {corrected} and filled {gaps}.",
@@ -225,7 +225,7 @@ def _describe_cleaning(start: Motion | Tracks, denoised: Denoised) -> list[str]:
 
 
 def _describe_convergence(denoised: Denoised) -> list[str]:
-    unfinished = "Clean stopped before the result converged; a part of the take may go better."
+    unfinished = "Clean stopped before the result converged; try a shorter range."
     return [] if denoised.converged else [unfinished]
 
 

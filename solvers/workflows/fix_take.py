@@ -10,8 +10,8 @@ from ..denoising import PlantSettings
 from ..depth_scene import DepthRecording
 from ..depth_tracking.tracking import PoseCallback, ignore_pose
 from ..errors import InvalidMotionError
-from ..feet import SIDES
 from ..motion import JointLimits, JointRecording, Motion, Tracks
+from ..motion.humanoid import SIDES
 from ..physics import NoPhysicsError, simulate
 from ..progress import Progress, unwatched, within
 from ..recordings.conventions import question_of_size

@@ -4,8 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..feet import SIDES, LegJoints, find_legs
+from ..feet import LegJoints, find_legs
 from ..motion import Motion, WorldPoses, forward_kinematics
+from ..motion.humanoid import SIDES
 from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between, slerp
 from ..signals import smooth_gaussian
 
@@ -27,7 +28,7 @@ MAX_DROP = 0.7
 whose feet hang, which measure a foot on tiptoe."""
 MIN_STANDING_FRAMES = 10
 """Minimum number of reliable standing frames to measure the pose of a foot. Chosen by hand: 0.3
-s at 30 Hz, so that a few wrong frames are no majority."""
+s at 30 Hz, so that a few wrong frames are not a majority."""
 BLEND_S, HEADING_SMOOTHING_S = 0.05, 0.5
 """Seconds over which the correction begins and ends, and over which the heading of the shin is
 smoothed. Chosen by hand: 1.5 frames at 30 Hz, so that toes do not jump, and 15 frames, in which

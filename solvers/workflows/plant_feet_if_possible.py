@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from ..denoising import Planted, PlantSettings, plant_feet
 from ..errors import InvalidMotionError
-from ..feet import SIDES, find_legs
+from ..feet import find_legs
 from ..motion import Motion
-from ..motion.humanoid import MIN_RELIABILITY, detect_contacts
+from ..motion.humanoid import MIN_JOINT_RELIABILITY, SIDES, detect_contacts
 from ..progress import Progress, unwatched
 from .flatten_toes import flatten_toes
 
@@ -61,6 +61,6 @@ def _ankle_weights(motion: Motion, reliability: NDArray[np.float64]) -> NDArray[
     """Return how firmly each ankle keeps its path, shape (n_frames, 2)."""
     weights = np.ones((motion.n_frames, len(SIDES)))
     for leg in find_legs(motion.skeleton):
-        is_reliable = np.nan_to_num(reliability[:, leg.ankle]) > MIN_RELIABILITY
+        is_reliable = np.nan_to_num(reliability[:, leg.ankle]) > MIN_JOINT_RELIABILITY
         weights[is_reliable, SIDES.index(leg.side)] = RELIABLE_WEIGHT
     return weights

@@ -23,7 +23,7 @@ from .library_clips import FIND_SETTINGS, Fetch, library_clips, read_origin
 from .reconstruct_motion import postures_recording
 
 RECONSTRUCT_SETTINGS = ReconstructSettings()
-MIN_RELIABILITY = 0.5
+MIN_QUERY_RELIABILITY = 0.5
 """Minimum reliability of a joint in the query. By definition that of a joint that a tracker
 inferred, 0.5 at most."""
 
@@ -114,7 +114,9 @@ def postures_from_library(
         recording = postures_recording(recording)
     reliability = measure_reliability(recording, progress=within(progress, 0.0, 0.2)).combined
     tracks = recording.tracks
-    reliable = np.where((reliability >= MIN_RELIABILITY)[..., None], tracks.positions, np.nan)
+    reliable = np.where(
+        (reliability >= MIN_QUERY_RELIABILITY)[..., None], tracks.positions, np.nan
+    )
     found = library_clips(
         replace(recording, tracks=tracks.with_positions(reliable)), library,
         settings=finding, ignore=ignore, fetch=fetch, min_score=0.0,

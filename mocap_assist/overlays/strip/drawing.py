@@ -166,7 +166,7 @@ def _make_batch(strip: Strip, width: float) -> Any:
 def rectangles_of(strip: Strip, width: float) -> tuple[Single, Single]:
     """Return corners, shape (n, 4, 2), and their colors, shape (n, 4, 4).
 
-    Columns are frames, of which the first and the last of a range are covered wholly; rows are
+    Columns are frames; the first and the last of a range are covered completely. Rows are
     counted from the bottom. Rectangles of the background, one for each row, come first. A range
     is at least `width` frames wide.
     """

@@ -55,7 +55,7 @@ def continuous_rotation_vectors(rotations: Array, frame_rate: float) -> tuple[Ar
 
 
 def nearest_equivalents(vectors: Array, near: Array) -> Array:
-    """Return the rotation vectors, longer by full turns, that are nearest to others."""
+    """Return equivalent rotation vectors (..., 3), radians, that are nearest to others."""
     angles = np.linalg.norm(vectors, axis=-1, keepdims=True)
     axes = vectors / np.maximum(angles, 1e-150)
     turns = np.round(((near - vectors) * axes).sum(axis=-1, keepdims=True) / FULL_TURN_RAD)

@@ -31,16 +31,16 @@ def encode_tracks(tracks: Tracks, references: Mapping[str, Array] | None = None)
         for name, mean_position in zip(tracks.names, shape, strict=True)
     }
     local = _to_path_frame(tracks.positions, path)
-    means_array = np.array([means[name] for name in tracks.names])
-    values = CENTIMETERS * (local - means_array)
+    mean_positions = np.array([means[name] for name in tracks.names])
+    values = CENTIMETERS * (local - mean_positions)
     return Channels(tracks.names, values, np.arange(tracks.n_points), means, path)
 
 
 def decode_tracks(tracks: Tracks, channels: Channels, values: Array) -> Tracks:
-    """Return the tracks with these channel values; inverts `encode_tracks`."""
+    """Return tracks of channel values (n_frames, n_points, 3); inverts `encode_tracks`."""
     path = channels.path
-    means_array = np.array([channels.references[key] for key in channels.keys])
-    local = values / CENTIMETERS + means_array
+    mean_positions = np.array([channels.references[key] for key in channels.keys])
+    local = values / CENTIMETERS + mean_positions
     positions = local.copy()
     for point in range(local.shape[1]):
         positions[:, point, :2] = (

@@ -116,12 +116,10 @@ def fit_local_lines(values: Array, width: float) -> Array:
     steps = np.arange(-reach, reach + 1.0)
     kernel = np.exp(-0.5 * (steps / width) ** 2)
     # Gaps have a small weight, so that a line bridges even those wider than the kernel.
-    interpolated_values = fill_channel_gaps(values)
+    filled = fill_channel_gaps(values)
     weight = np.where(np.isfinite(values), 1.0, GAP_WEIGHT)
     s0, s1, s2 = (_weighted_sum(weight, kernel * steps**power) for power in (0, 1, 2))
-    t0, t1 = (
-        _weighted_sum(weight * interpolated_values, kernel * steps**power) for power in (0, 1)
-    )
+    t0, t1 = (_weighted_sum(weight * filled, kernel * steps**power) for power in (0, 1))
     determinant = s0 * s2 - s1**2
     line = (s2 * t0 - s1 * t1) / np.where(determinant > 0.0, determinant, 1.0)
     return np.where(determinant > 1e-9 * s0 * s2, line, t0 / s0)

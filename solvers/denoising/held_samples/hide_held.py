@@ -8,7 +8,10 @@ from ...rotations import slerp
 
 
 def hide_held_samples(recording: Motion | Tracks, held: Flags) -> Motion | Tracks:
-    """Return the recording with these samples missing."""
+    """Return the recording with these samples missing.
+
+    `held` is (n_frames, n_points), or (n_frames, n_joints + 1) with the root's position last.
+    """
     if not held.any():
         return recording
     if isinstance(recording, Tracks):

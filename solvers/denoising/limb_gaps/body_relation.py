@@ -12,6 +12,7 @@ from ...archives import ArchiveLayout
 from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion
+from ...motion.humanoid import SIDES
 from ...npz_members import covariances, words
 from ...rotations import inverse, rotate
 from ..channels import BODY_POSITION, Channels, encode
@@ -43,10 +44,10 @@ LAYOUT = ArchiveLayout(
     holds="a damaged body relation",
     remedy="Learn it again.",
 )
-SIDES = ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
+SIDED_PARTS = ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 KEYS = (
     "hips", "spine", "chest", "neck", "head", "leftShoulder", "rightShoulder",
-    *(side + name for side in ("left", "right") for name in SIDES), BODY_POSITION,
+    *(side + name for side in SIDES for name in SIDED_PARTS), BODY_POSITION,
 )  # fmt: skip
 """Humanoid roles, and the position of the body: all that every recording has."""
 GAP_S, HOP_S = 1.0, 0.25

@@ -89,7 +89,7 @@ def extrapolate_boundary_errors(
 
 
 def estimate_gap_error(prediction: PredictedMarker, gap: Flags) -> Array:
-    """Return the expected error of a coordinate in all frames of the gaps, meters."""
+    """Return the expected error of a coordinate, meters, in each frame of the gaps."""
     n_frames = len(gap)
     frames = np.arange(n_frames)
     before = np.maximum.accumulate(np.where(gap, -n_frames, frames))

@@ -16,7 +16,7 @@ MIN_SPIKE_RATIO = 6.0
 """Minimum distance of a spike, relative to the typical distance. At 120 Hz the minimum in
 meters decides instead. Chosen by hand; `make sensitivity` varies it."""
 MIN_SPIKE_M = 0.02
-"""Meters: a shorter distance is no spike. Chosen by hand; `make sensitivity` varies it."""
+"""Meters: a shorter distance is not a spike. Chosen by hand; `make sensitivity` varies it."""
 
 
 def find_transient_outliers(positions: Array) -> NDArray[np.bool_]:

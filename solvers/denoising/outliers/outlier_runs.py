@@ -157,7 +157,7 @@ def confirm_outliers(
     mixture: MotionMixture,
     rate: float | None = None,
 ) -> NDArray[np.bool_]:
-    """Return the suspected outliers that are no movement, shape (n_frames, n_channels).
+    """Return the suspected outliers that are not movement, shape (n_frames, n_channels).
 
     Parameters
     ----------

@@ -81,7 +81,10 @@ def fit_inlier_probability(
 
 
 def outlier_rate(inlier_probability: Array, is_valid: NDArray[np.bool_]) -> float:
-    """Return the fraction of outliers among the valid samples, neither zero nor one."""
+    """Return the fraction of outliers among the valid samples, above 0 and below 1.
+
+    Both arrays have one shape, such as (n_frames, n_channels).
+    """
     n_valid = int(np.count_nonzero(is_valid))
     fraction = (n_valid - float(inlier_probability[is_valid].sum())) / max(n_valid, 1)
     return float(np.clip(fraction, MIN_OUTLIER_RATE, 1.0 - MIN_OUTLIER_RATE))

@@ -6,9 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from ...arrays import Array
-from ...feet import SIDES
 from ...motion import Tracks
-from ...motion.humanoid import roles_by_name
+from ...motion.humanoid import SIDES, roles_by_name
 
 MAX_SAMPLED_FRAMES = 1000
 """Frames used to decide which points are rigidly connected; the drift uses all frames. It

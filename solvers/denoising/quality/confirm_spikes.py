@@ -27,7 +27,7 @@ fewer, since it changes what it takes for an error."""
 def confirm_spikes(
     motion: Motion, signals: tuple[Signal, ...], cuts: tuple[int, ...]
 ) -> tuple[Signal, ...]:
-    """Return signals whose spikes are no movement, with errors of several frames added.
+    """Return signals whose spikes are not movement, with errors of several frames added.
 
     A trajectory that is smooth within a quarter of a second misses the turning points of fast
     movement and follows an error of several frames. The motion mixture explains the former

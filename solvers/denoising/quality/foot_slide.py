@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Flags
-from ...feet import SIDES, find_foot_joints, find_legs, sole_points
+from ...feet import find_foot_joints, find_foot_points, find_legs, sole_points
 from ...motion import Motion, Tracks, WorldPoses
-from ...motion.humanoid import HumanoidMap
+from ...motion.humanoid import SIDES, HumanoidMap
 from ...signals import find_runs
 
 
@@ -87,12 +87,12 @@ def foot_paths(
     tracks: Tracks, humanoid_map: HumanoidMap | None = None
 ) -> tuple[FootPoints, ...]:
     """Return ankle and toe of both feet, named as joints; none if one is missing."""
-    joints = find_foot_joints(tracks, humanoid_map)
-    if joints is None:
+    points = find_foot_points(tracks, humanoid_map)
+    if points is None:
         return ()
     return tuple(
         FootPoints(side, tracks.names[each[0]], tracks.positions[:, each])
-        for side, each in zip(SIDES, joints, strict=True)
+        for side, each in zip(SIDES, points, strict=True)
     )
 
 
@@ -100,7 +100,7 @@ def sole_paths(
     motion: Motion, poses: WorldPoses, humanoid_map: HumanoidMap | None = None
 ) -> tuple[FootPoints, ...]:
     """Return ankle, heel, ball and tip of both feet; none if one is missing."""
-    joints = find_foot_joints(motion, humanoid_map)
+    joints = find_foot_joints(motion.skeleton, humanoid_map)
     if joints is None:
         return ()
     soles = {leg.ankle: leg for leg in find_legs(motion.skeleton, humanoid_map)}

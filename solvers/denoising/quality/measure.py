@@ -8,9 +8,8 @@ import numpy as np
 
 from ...arrays import Array, Flags
 from ...errors import InvalidMotionError
-from ...feet import SIDES
 from ...motion import JointLimits, Motion, Tracks, forward_kinematics
-from ...motion.humanoid import HumanoidMap, contacts_of_points, detect_contacts
+from ...motion.humanoid import SIDES, HumanoidMap, contacts_of_points, detect_contacts
 from ...motion.skeletons import find_shot_boundaries
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting

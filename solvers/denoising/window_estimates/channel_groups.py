@@ -171,9 +171,10 @@ def _find_example_channels(channels: Channels, bases: FilterBases | None) -> NDA
 def group_channels(
     noisy: Array, rough: Array, in_examples: NDArray[np.bool_]
 ) -> list[NDArray[np.intp]]:
-    """Group the moving channels: those of the examples first.
+    """Return the columns of each group of moving channels: those of the examples first.
 
-    The channels of a joint stay together, except those that the examples lack.
+    The channels of a joint stay together, except those that the examples lack. `noisy` and
+    `rough` have the shape (n_frames, n_channels).
     """
     missing = np.isnan(noisy)
     moves = (np.ptp(rough, axis=0) > MAX_CONSTANT_RANGE) | missing.all(axis=0)

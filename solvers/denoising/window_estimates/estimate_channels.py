@@ -37,7 +37,7 @@ varies it."""
 MAX_LEVERAGE = 0.98
 """Largest fraction of its own weight in an estimate that a sample is corrected for. Chosen by
 hand: a limit of 0.99998 gains 0.1 %, one of 0.8 costs 0.1 %; 1 divides by zero."""
-FIRST_NOISE_SHARE = 0.5
+FIRST_NOISE_WEIGHT = 0.5
 """Weight of the first estimate of the noise in a take without outliers, relative to one: by
 definition, that of a mean of two estimates."""
 
@@ -210,8 +210,8 @@ class _PosteriorState:
         square = (inliers * (error**2 + self.variance)).sum(axis=0) / np.maximum(total, 1e-9)
         noise = np.where(total > 0.0, np.sqrt(square), self.first_noise)
         right = 1.0 - outlier_rate(inliers, self.may_be_right)
-        share = FIRST_NOISE_SHARE * right ** (DIFFERENCE_ORDER + 1)
-        noise = self.first_noise**share * np.maximum(noise, MIN_NOISE) ** (1.0 - share)
+        weight = FIRST_NOISE_WEIGHT * right ** (DIFFERENCE_ORDER + 1)
+        noise = self.first_noise**weight * np.maximum(noise, MIN_NOISE) ** (1.0 - weight)
         self.noise = shrink_noise(noise, total)
 
     def result(self, iterations: int, converged: bool) -> Estimate:

@@ -171,7 +171,7 @@ def _missing_samples(
 
 
 def find_long_gaps(observed: NDArray[np.bool_], min_frames: int) -> NDArray[np.bool_]:
-    """Return where a channel is unobserved for at least this many consecutive frames."""
+    """Return where channels, (n_frames, n), are missing for this many frames or more."""
     n_frames = len(observed)
     frames = np.arange(n_frames)[:, None]
     before = np.maximum.accumulate(np.where(observed, frames, -1), axis=0)

@@ -80,9 +80,9 @@ def build_examples_prior(
     smooth : SmoothPrior
         The prior of the channels without examples: not yet part of the result.
     """
-    scored_take = {str(key): index for index, key in enumerate(bases.keys)}
+    index_of_key = {str(key): index for index, key in enumerate(bases.keys)}
     moving = {int(channel): index for index, channel in enumerate(bases.moving)}
-    indices = [moving[3 * scored_take[keys[column // 3]] + column % 3] for column in columns]
+    indices = [moving[3 * index_of_key[keys[column // 3]] + column % 3] for column in columns]
     window, channels = bases.window, np.arange(len(columns))
     slow, fast = bases.slow[:, indices][:, :, :, indices], bases.fast[:, indices]
     variance = np.einsum("kckc->c", slow) + fast.sum(axis=0)
@@ -228,15 +228,13 @@ def score_leave_joint_out(
     )
     residual_power, joint_power = 0.0, 1e-12
     for joint in np.unique(joints):
-        (scored_take,) = np.nonzero(joints == joint)
-        indices = (np.arange(n_slow)[:, None] * n_channels + scored_take).ravel()
+        columns = np.flatnonzero(joints == joint)
+        indices = (np.arange(n_slow)[:, None] * n_channels + columns).ravel()
         block = -gains.slow[np.ix_(indices, indices)]
         block[np.diag_indices(len(indices))] += 1.0
         error = np.linalg.solve(block, solved[:, indices].T).T.reshape(
             len(coefficients), n_slow, -1
         )
-        residual_power += float(((error * gains.noise[scored_take]) ** 2).sum())
-        joint_power += float(
-            ((coefficients[:, :, scored_take] * gains.noise[scored_take]) ** 2).sum()
-        )
+        residual_power += float(((error * gains.noise[columns]) ** 2).sum())
+        joint_power += float(((coefficients[:, :, columns] * gains.noise[columns]) ** 2).sum())
     return residual_power / joint_power

@@ -85,13 +85,13 @@ class Windows:
         return np.asarray(self._cosines @ coefficients)
 
     def add(self, total: Array, frames: Array, starts: NDArray[np.intp]) -> None:
-        """Add windows of frames, or one window at all starts, to a sum over the take."""
+        """Add windows (n, length, n_channels), or one at all starts, to a sum over the take."""
         frames = np.broadcast_to(frames * self._taper, (len(starts), *frames.shape[-2:]))
-        positions = starts[:, None] + np.arange(self.length)
+        indices = starts[:, None] + np.arange(self.length)
         n_overlaps = np.searchsorted(starts, starts + self.length) - np.arange(len(starts))
         step = int(n_overlaps.max())
         for first in range(step):  # so many windows apart, none overlaps another
-            total[positions[first::step]] += frames[first::step]
+            total[indices[first::step]] += frames[first::step]
 
     def dct_basis(self, n_coefficients: int) -> Array:
         """Return the slowest cosines, (length, n_coefficients), whose sums are the frames."""

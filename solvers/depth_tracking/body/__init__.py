@@ -51,7 +51,6 @@ if TYPE_CHECKING:
         JOINTS,
         LENGTHS,
         SEGMENTS,
-        SIDES,
     )
 
 __all__ = [
@@ -71,7 +70,6 @@ __all__ = [
     "N_ROOT",
     "N_SEGMENTS",
     "SEGMENTS",
-    "SIDES",
     "BodyImage",
     "BodyModel",
     "BodySurface",

@@ -9,7 +9,7 @@ import numpy as np
 from ...archives import ArchiveLayout
 from ...arrays import Array
 from ...errors import InvalidFileError, InvalidMotionError
-from ...motion.humanoid import ADULT_STATURE_M
+from ...motion.humanoid import ADULT_STATURE_M, SIDES
 from ...npz_members import numbers, words
 from .tables import (
     CAPSULE_ENDS,
@@ -18,7 +18,6 @@ from .tables import (
     DEFAULT_RADII_M,
     LENGTHS,
     OFFSETS,
-    SIDES,
 )
 
 MIN_LENGTH_M, MAX_LENGTH_M = 1e-3, 100.0

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...arrays import Array, Integers
+from ...motion.humanoid import SIDES
 from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
 from .model import BodyModel
 from .normal_equations import (
@@ -177,7 +178,7 @@ def body_from_joints(body: BodyModel, joints: Array) -> BodyModel:
         The `JOINTS`; NaN: missing.
     """
     lengths = {}
-    for side in ("left", "right"):
+    for side in SIDES:
         for length, below in (
             ("UpperArm", "LowerArm"), ("LowerArm", "Hand"),
             ("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"),

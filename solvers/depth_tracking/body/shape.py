@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...arrays import Array, Integers
+from ...motion.humanoid import SIDES
 from .model import MAX_LENGTH_M, MIN_LENGTH_M, BodyModel
 from .normal_equations import SurfaceRows
 from .segment_kinematics import N_SEGMENTS
@@ -14,7 +15,6 @@ from .tables import (
     LENGTHS,
     OFFSETS,
     PARENTS,
-    SIDES,
 )
 
 

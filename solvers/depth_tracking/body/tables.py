@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
+from ...motion.humanoid import SIDES
 
 Vector = tuple[float, float, float]
 
-SIDES = ("left", "right")
 _LIMB_PARENTS = {
     "Shoulder": "chest", "UpperArm": "Shoulder", "LowerArm": "UpperArm",
     "UpperLeg": "hips", "LowerLeg": "UpperLeg", "Foot": "LowerLeg",

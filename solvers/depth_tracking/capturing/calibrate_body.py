@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidMotionError
-from ...motion.humanoid import ADULT_STATURE_M
+from ...motion.humanoid import ADULT_STATURE_M, SIDES
 from ...progress import Progress, unwatched, within
 from ...settings import setting
-from ..body import CAPSULES, SIDES, BodyModel, default_body
+from ..body import CAPSULES, BodyModel, default_body
 from ..detection import detect_pose, subsample_image
 from ..forest import PARTS, PixelForest, classify_pixels
 from .refine_body import refine_body

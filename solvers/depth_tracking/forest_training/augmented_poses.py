@@ -6,7 +6,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...motion import world_poses
-from ...motion.humanoid import LEG_ROLES
+from ...motion.humanoid import LEG_ROLES, SIDES
 from ...rotations import (
     inverse,
     multiply,
@@ -75,7 +75,7 @@ class PoseMixer:
             other = self.poses[rng.integers(len(self.poses))]
             legs = [
                 joints[f"{side}{role}"]
-                for side in ("left", "right")
+                for side in SIDES
                 for role in LEG_ROLES
                 if f"{side}{role}" in joints
             ]

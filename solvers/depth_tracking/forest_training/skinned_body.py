@@ -20,6 +20,7 @@ from ...motion import (
     from_canonical,
     world_poses,
 )
+from ...motion.humanoid import SIDES
 from ...npz_members import READABLE, integers, numbers, read_members, words
 from ...rotations import IDENTITY, matrix_from_quaternion
 from ..forest import PARTS, SPLIT_SEGMENTS, parts_of_joints
@@ -89,7 +90,7 @@ class SkinnedBody:
         parts = parts_of_joints(roles, self.skeleton.parents)
         found: NDArray[np.uint8] = parts[self.weights.argmax(axis=1)]
         rest = self.skeleton.rest_positions
-        for side in ("left", "right"):
+        for side in SIDES:
             for segment, end in zip(SPLIT_SEGMENTS, ("LowerLeg", "Foot"), strict=True):
                 if f"{side}{segment}" not in joints or f"{side}{end}" not in joints:
                     continue

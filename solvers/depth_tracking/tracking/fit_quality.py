@@ -18,11 +18,11 @@ _CONFIDENCE_STD_M = 0.06
 """Standard deviation of a joint position that halves its confidence. Chosen by hand;
 `make sensitivity` varies it."""
 _REFERENCE_PIXELS = 8.0
-"""Number of pixels at which the fitting fraction of a part is halved. Chosen by hand;
+"""Number of visible pixels at which the agreement of a segment is halved. Chosen by hand;
 `make sensitivity` varies it."""
 _CORRELATED_PIXELS = 30.0
-"""Number of pixels of a part with correlated errors; it scales the covariance. Chosen by hand;
-`make sensitivity` varies it."""
+"""Number of neighboring pixels with correlated errors; it scales the covariance. Chosen by
+hand; `make sensitivity` varies it."""
 
 
 class FitQuality(NamedTuple):
@@ -52,45 +52,55 @@ def quality_without_actor() -> FitQuality:
 def fit_quality(
     body: BodyModel, registered: Registered, observation: Observation, limit: float
 ) -> FitQuality:
-    """Measure the fit of a registered pose.
+    """Compare a registered pose with a depth image of the actor.
 
-    A joint has high confidence if the normal equations give it a small variance, and if most
-    visible pixels of its segment were observed at a depth within `limit`.
+    The confidence of a joint is a product of two factors. The first is the fraction of the
+    visible pixels of its segment where the depths differ by at most `limit`. The second falls
+    from 1 as the standard deviation of its position rises; at 6 cm it is one half.
 
     Parameters
     ----------
     body : BodyModel
     registered : Registered
+        The pose, its rendered image, and the normal equations that give the variances.
     observation : Observation
+        The depth image.
     limit : float, meters
+        Difference in depth above which body and image do not agree.
     """
     image = registered.hypothesis.image
     observed = observation.flat[image.pixels]
     both = observed > 0.0
-    overlap = int(both.sum())
-    if not overlap:
+    n_both, n_drawn, n_observed = int(both.sum()), len(image.pixels), len(observation.pixels)
+    if not n_both:
         return quality_without_actor()
-    behind = observed[both] - image.depths[both]
-    depth_errors = np.abs(behind)
-    union = len(image.pixels) + len(observation.pixels) - overlap
-    score = float(np.maximum(0.0, 1.0 - depth_errors / MAX_DEPTH_ERROR_M).sum()) / union
+    n_union = n_drawn + n_observed - n_both
+    depths_behind = observed[both] - image.depths[both]
+    depth_errors = np.abs(depths_behind)
+    fits = np.maximum(0.0, 1.0 - depth_errors / MAX_DEPTH_ERROR_M)
     agreement = _agreement(registered, observation, limit)[JOINT_SEGMENTS]
     deviations = np.sqrt(_joint_variances(body, registered))
-    confidence = agreement / (1.0 + (deviations / _CONFIDENCE_STD_M) ** 2)
-    n_drawn, n_observed = len(image.pixels), len(observation.pixels)
     return FitQuality(
-        float(depth_errors.mean()), overlap / union, score, 1.0 - overlap / n_drawn,
-        float((behind > limit).sum()) / n_drawn, 1.0 - overlap / n_observed, confidence,
-    )  # fmt: skip
+        residual=float(depth_errors.mean()),
+        coverage=n_both / n_union,
+        score=float(fits.sum()) / n_union,
+        off_actor=1.0 - n_both / n_drawn,
+        too_near=float((depths_behind > limit).sum()) / n_drawn,
+        unexplained=1.0 - n_both / n_observed,
+        confidence=agreement / (1.0 + (deviations / _CONFIDENCE_STD_M) ** 2),
+    )
 
 
 def _agreement(registered: Registered, observation: Observation, limit: float) -> Array:
-    """Return the fraction of each segment's visible pixels that fit, shrunk for few pixels."""
+    """Return the fraction of visible pixels that agree with the image, for each segment.
+
+    The fraction is lower for segments with few pixels (`_REFERENCE_PIXELS`).
+    """
     segments = registered.hypothesis.segments
     groups = group_pixels(registered.hypothesis, observation, limit)
     visible = np.bincount(segments, minlength=N_SEGMENTS)
-    fitting = np.bincount(segments[groups.comparable], minlength=N_SEGMENTS)
-    fraction: Array = fitting / (visible + _REFERENCE_PIXELS)
+    agreeing = np.bincount(segments[groups.comparable], minlength=N_SEGMENTS)
+    fraction: Array = agreeing / (visible + _REFERENCE_PIXELS)
     return fraction
 
 

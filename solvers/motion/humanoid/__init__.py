@@ -11,7 +11,7 @@ if TYPE_CHECKING:
         ADULT_STATURE_M,
         MAX_BODY_SCALE,
         MIN_BODY_SCALE,
-        MIN_RELIABILITY,
+        MIN_JOINT_RELIABILITY,
         MIN_RELIABLE_FRAMES,
         estimate_body_scale,
         estimate_bone_lengths,
@@ -52,7 +52,7 @@ if TYPE_CHECKING:
         probabilities_of_points,
     )
     from .missing_hips import UPPER_LEG_ROLES, fill_missing_hips
-    from .names import naming_scheme, roles_by_name
+    from .names import SIDE_OF_WORD, naming_scheme, roles_by_name
     from .points_motion import motion_from_points
     from .points_skeleton import skeleton_from_points
     from .posture_heading import (
@@ -71,7 +71,6 @@ if TYPE_CHECKING:
         N_JOINTS,
         PARENTS,
         POSTURE_JOINTS,
-        SIDES,
         SPINE,
         posture_joint_indices,
         posture_positions,
@@ -88,7 +87,7 @@ if TYPE_CHECKING:
     )
     from .roles import ESSENTIAL_ROLES, HUMANOID_ROLES, HumanoidMap, find_humanoid_map
     from .standing_rest import with_standing_rest
-    from .tables import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES
+    from .tables import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES, SIDES
 
 __all__ = [
     "ADULT_BONE_LENGTHS_M",
@@ -109,7 +108,7 @@ __all__ = [
     "MAX_BODY_SCALE",
     "MIN_BODY_SCALE",
     "MIN_CONFIDENCE",
-    "MIN_RELIABILITY",
+    "MIN_JOINT_RELIABILITY",
     "MIN_RELIABLE_FRAMES",
     "MIRROR_JOINTS",
     "N_JOINTS",
@@ -117,6 +116,7 @@ __all__ = [
     "PARENT_INDICES",
     "POSTURE_JOINTS",
     "SIDES",
+    "SIDE_OF_WORD",
     "SPEED_NOISE",
     "SPINE",
     "UP",

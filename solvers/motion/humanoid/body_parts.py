@@ -2,16 +2,14 @@
 
 from ..skeletons import Skeleton
 from .roles import find_humanoid_map
-from .tables import ARM_ROLES, FINGER_ROLES, LEG_ROLES
+from .tables import ARM_ROLES, FINGER_ROLES, LEG_ROLES, SIDES
 
 TRUNK, ARMS, LEGS, HEAD, HANDS = BODY_PARTS = ("trunk", "arms", "legs", "head", "hands")
 PART_OF_ROLE = {
     **dict.fromkeys(("neck", "head"), HEAD),
-    **{f"{side}{role}": LEGS for side in ("left", "right") for role in LEG_ROLES},
-    **{f"{side}{role}": ARMS for side in ("left", "right") for role in ARM_ROLES},
-    **{
-        f"{side}{role}": HANDS for side in ("left", "right") for role in ("Hand", *FINGER_ROLES)
-    },
+    **{f"{side}{role}": LEGS for side in SIDES for role in LEG_ROLES},
+    **{f"{side}{role}": ARMS for side in SIDES for role in ARM_ROLES},
+    **{f"{side}{role}": HANDS for side in SIDES for role in ("Hand", *FINGER_ROLES)},
 }
 """Part of the body of each humanoid role; the other roles are of the trunk."""
 

@@ -17,7 +17,7 @@ ADULT_STATURE_M = 1.75
 MAX_BODY_SCALE, MIN_BODY_SCALE = 3.0, 0.2
 """Scales of a body relative to that adult beyond which the unit must be wrong. They guard
 against wrong units (`test_invalid_recordings_are_reported_in_one_sentence`)."""
-MIN_RELIABILITY = 0.6
+MIN_JOINT_RELIABILITY = 0.6
 """Joints above this reliability determine the lengths, if there are enough of them. It guards
 actors who are hidden most of the time, with limbs of wrong lengths
 (`test_unreliable_frames_do_not_change_bone_lengths`)."""
@@ -40,8 +40,8 @@ def estimate_body_scale(positions: Array) -> float:
     ----------
     positions : shape (n_frames, 20, 3), meters
     """
-    bones = np.array(PARENTS) >= 0
-    ratios = segment_lengths(positions)[:, bones] / ADULT_BONE_LENGTHS_M[bones]
+    has_parent = np.array(PARENTS) >= 0
+    ratios = segment_lengths(positions)[:, has_parent] / ADULT_BONE_LENGTHS_M[has_parent]
     return float(np.nanmedian(ratios)) if np.isfinite(ratios).any() else np.nan
 
 
@@ -49,29 +49,36 @@ def estimate_bone_lengths(positions: Array, reliability: Array | None = None) ->
     """Return the bone lengths of an actor, shape (20,), meters: medians of reliable frames.
 
     A bone that is never observed has the adult's length, scaled by the other bones.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, 20, 3), meters
+        NaN: missing.
+    reliability : shape (n_frames, 20), optional
+        0 to 1. None: all frames count.
     """
-    lengths_per_frame = segment_lengths(positions)
+    lengths = segment_lengths(positions)
     if reliability is not None:
-        reliable = (
-            np.minimum(reliability, reliability[:, np.maximum(PARENTS, 0)]) > MIN_RELIABILITY
+        is_reliable = (
+            np.minimum(reliability, reliability[:, np.maximum(PARENTS, 0)])
+            > MIN_JOINT_RELIABILITY
         )
-        enough = (reliable & np.isfinite(lengths_per_frame)).sum(axis=0) >= MIN_RELIABLE_FRAMES
-        lengths_per_frame = np.where(reliable | ~enough, lengths_per_frame, np.nan)
-    observed = np.isfinite(lengths_per_frame).any(axis=0)
-    lengths = np.full(N_JOINTS, np.nan)
-    median = (
-        np.median if np.isfinite(lengths_per_frame).all() else np.nanmedian
-    )  # the first is faster
-    lengths[observed] = median(lengths_per_frame[:, observed], axis=0)
-    measured = observed & (ADULT_BONE_LENGTHS_M > 0.0)
+        n_reliable = (is_reliable & np.isfinite(lengths)).sum(axis=0)
+        has_enough = n_reliable >= MIN_RELIABLE_FRAMES
+        lengths = np.where(is_reliable | ~has_enough, lengths, np.nan)
+    is_observed = np.isfinite(lengths).any(axis=0)
+    median = np.median if np.isfinite(lengths).all() else np.nanmedian  # the first is faster
+    medians = np.full(N_JOINTS, np.nan)
+    medians[is_observed] = median(lengths[:, is_observed], axis=0)
+    is_measured = is_observed & (ADULT_BONE_LENGTHS_M > 0.0)
     scale = (
-        lengths[measured].sum() / ADULT_BONE_LENGTHS_M[measured].sum()
-        if measured.any()
+        medians[is_measured].sum() / ADULT_BONE_LENGTHS_M[is_measured].sum()
+        if is_measured.any()
         else 1.0
     )
-    lengths = np.where(observed, lengths, scale * ADULT_BONE_LENGTHS_M)
-    lengths[HIPS] = 0.0
-    return lengths
+    bone_lengths = np.where(is_observed, medians, scale * ADULT_BONE_LENGTHS_M)
+    bone_lengths[HIPS] = 0.0
+    return bone_lengths
 
 
 def resize_postures(postures: Array, lengths: Array, scale: float | None = None) -> Array:
@@ -89,24 +96,22 @@ def resize_postures(postures: Array, lengths: Array, scale: float | None = None)
     parents = np.maximum(PARENTS, 0)
     bones = postures - postures[..., parents, :]
     norms = np.linalg.norm(bones, axis=-1, keepdims=True)
-    result = lengths[:, None] * (bones / np.where(norms > 0.0, norms, 1.0))
-    result[..., 0, :] = postures[..., 0, :]
-    has_gaps = scale is not None and not np.isfinite(result).all()
+    resized = lengths[:, None] * (bones / np.where(norms > 0.0, norms, 1.0))
+    resized[..., HIPS, :] = postures[..., HIPS, :]
+    gap_scale = None if np.isfinite(resized).all() else scale
     for joint in range(1, N_JOINTS):
-        result[..., joint, :] += result[..., parents[joint], :]
-        if has_gaps:
-            _attach_to_ancestor(result, postures, joint, scale or 1.0)
-    return np.asarray(result)
+        resized[..., joint, :] += resized[..., parents[joint], :]
+        if gap_scale is not None:
+            _attach_to_ancestor(resized, postures, joint, gap_scale)
+    return np.asarray(resized)
 
 
-def _attach_to_ancestor(result: Array, postures: Array, joint: int, scale: float) -> None:
+def _attach_to_ancestor(resized: Array, postures: Array, joint: int, scale: float) -> None:
     """Place a joint with a missing parent relative to its nearest observed ancestor."""
-    parents = PARENTS[joint]
-    while parents > 0:
-        parents = PARENTS[parents]
-        displacement = postures[..., joint, :] - postures[..., parents, :]
-        lengths_per_frame = result[..., joint, :]
-        observed = result[..., parents, :] + scale * displacement
-        result[..., joint, :] = np.where(
-            np.isfinite(lengths_per_frame), lengths_per_frame, observed
-        )
+    ancestor = PARENTS[joint]
+    while ancestor > 0:
+        ancestor = PARENTS[ancestor]
+        displacement = postures[..., joint, :] - postures[..., ancestor, :]
+        estimate = resized[..., ancestor, :] + scale * displacement
+        position = resized[..., joint, :]
+        resized[..., joint, :] = np.where(np.isfinite(position), position, estimate)

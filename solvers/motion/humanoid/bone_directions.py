@@ -44,7 +44,7 @@ def bone_directions(postures: Array) -> Array:
 
 
 def rates_from_directions(directions: Array, frame_rate: float) -> Array:
-    """Return the rates of change of directions, or of other values over time, per second.
+    """Return the rates of change of values, shape (n_frames, ...), per second.
 
     The slope between the values a tenth of a second before and after; one-sided at the ends.
     """

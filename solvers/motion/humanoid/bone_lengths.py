@@ -6,6 +6,7 @@ from ...errors import InvalidMotionError
 from ..skeletons import Motion, Skeleton
 from .foot_contacts import leg_length
 from .roles import HumanoidMap, find_humanoid_map
+from .tables import SIDES
 
 
 def transfer_motion(
@@ -54,11 +55,7 @@ def transfer_motion(
 
 def _leg_ratio(old: Skeleton, new: Skeleton, humanoid: HumanoidMap) -> float:
     """Return the ratio of leg lengths; without legs, of heights; 1 without heights."""
-    legs = [
-        f"{side}{part}"
-        for side in ("left", "right")
-        for part in ("UpperLeg", "LowerLeg", "Foot")
-    ]
+    legs = [f"{side}{part}" for side in SIDES for part in ("UpperLeg", "LowerLeg", "Foot")]
     if humanoid.has(*legs):
         return leg_length(new, humanoid) / leg_length(old, humanoid)
     return new.height / old.height if old.height > 0.0 and new.height > 0.0 else 1.0

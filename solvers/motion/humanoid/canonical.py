@@ -22,6 +22,7 @@ from ...rotations import (
 from ..skeletons import Motion, Skeleton
 from .palms import with_palms_down
 from .roles import HumanoidMap
+from .tables import SIDES
 
 UP = np.array([0.0, 0.0, 1.0])
 FORWARD = np.array([0.0, -1.0, 0.0])
@@ -180,7 +181,7 @@ def _align_feet(
 ) -> None:
     """Align the feet level or tilted with the shins, whichever points both more forward."""
     feet, bones = [], []
-    for side in ("left", "right"):
+    for side in SIDES:
         if f"{side}Foot" in joints:
             feet.append(joints[f"{side}Foot"])
             bones.append(_foot_bone(skeleton, feet[-1], joints.get(f"{side}Toes")))
@@ -228,7 +229,7 @@ def end_of_foot(skeleton: Skeleton, foot: int, toes: int | None) -> int:
     """Return the joint of the toes, otherwise the farthest one below the ankle, or the ankle.
 
     The next joint may be at the sole, straight below the ankle, and show no direction. An end
-    that only prolongs the shin is no foot (`prolongs_shin`).
+    that only prolongs the shin is not a foot (`prolongs_shin`).
     """
     if toes is not None:
         return toes
@@ -262,7 +263,7 @@ def prolongs_shin(skeleton: Skeleton, foot: int) -> bool:
 
 def _split(role: str) -> tuple[str, str]:
     """Split "leftUpperLeg" into "left" and "UpperLeg"."""
-    for side in ("left", "right"):
+    for side in SIDES:
         if role.startswith(side):
             return side, role.removeprefix(side)
     return "", role

@@ -17,6 +17,7 @@ from ...signals import (
 from ..skeletons import Motion, Skeleton, forward_kinematics, ground_level
 from .canonical import ball_of_foot
 from .roles import HumanoidMap, find_humanoid_map
+from .tables import SIDES
 
 HUMAN_LEG_LENGTH_M = 0.9
 """Leg length, hip to ankle, for which the model is defined; it scales with the leg. By
@@ -122,7 +123,7 @@ def contact_probabilities(motion: Motion, humanoid_map: HumanoidMap | None = Non
 
 
 def contacts_of_points(positions: Array, frame_rate: float, size: float = 1.0) -> Flags:
-    """Return foot contacts from positions alone; see `probabilities_of_points`."""
+    """Return foot contacts, (n_frames, 2), from positions; see `probabilities_of_points`."""
     return probabilities_of_points(positions, frame_rate, size) > 0.5
 
 
@@ -175,7 +176,7 @@ def known_foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.i
     """Return the rows of `foot_points` whose foot has a role, (n_feet, 2)."""
     joints = humanoid.indices(skeleton)
     rows = []
-    for side in ("left", "right"):
+    for side in SIDES:
         foot = joints.get(f"{side}Foot")
         if foot is not None:
             rows.append([foot, joints.get(f"{side}Toes", ball_of_foot(skeleton, foot))])
@@ -189,7 +190,7 @@ def leg_length(skeleton: Skeleton, humanoid: HumanoidMap) -> float:
     """
     joints = humanoid.indices(skeleton)
     lengths = []
-    for side in ("left", "right"):
+    for side in SIDES:
         roles = [f"{side}UpperLeg", f"{side}LowerLeg", f"{side}Foot"]
         if all(role in joints for role in roles):
             leg = skeleton.rest_positions[[joints[role] for role in roles]]

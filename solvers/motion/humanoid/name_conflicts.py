@@ -9,7 +9,7 @@ from ...arrays import Array
 from ..skeletons import Skeleton
 from .limb_division import ARM_FRACTIONS, LEG_FRACTIONS
 from .structure import HEIGHT_FACTORS, Structure
-from .tables import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES
+from .tables import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES, SIDES
 
 MIN_HUMANNESS = 0.6
 """Humanness of the proportions, as a fraction, from which the structure may contradict names.
@@ -29,7 +29,7 @@ zero."""
 HINGES = {"Leg": ("UpperLeg", "LowerLeg", "Foot"), "Arm": ("UpperArm", "LowerArm", "Hand")}
 LENGTHS = {"Leg": LEG_FRACTIONS, "Arm": ARM_FRACTIONS}
 PARTS = {"Leg": LEG_ROLES, "Arm": ARM_ROLES}
-LIMBS = tuple((side, limb) for side in ("left", "right") for limb in HINGES)
+LIMBS = tuple((side, limb) for side in SIDES for limb in HINGES)
 
 
 def has_human_limbs(skeleton: Skeleton, joints: Mapping[str, str]) -> bool:

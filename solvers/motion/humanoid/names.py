@@ -9,9 +9,10 @@ from itertools import accumulate
 from operator import and_, eq
 from typing import NamedTuple
 
-from .tables import CENTRAL_ROLES, COLUMNS, FINGERS, TABLES
+from .tables import CENTRAL_ROLES, COLUMNS, FINGERS, SIDES, TABLES
 
-SIDES = {"left": "left", "right": "right", "l": "left", "r": "right"}
+SIDE_OF_WORD = {"left": "left", "right": "right", "l": "left", "r": "right"}
+"""Side that a word of a name stands for."""
 OPPOSITE = {"left": "right", "right": "left", "l": "r", "r": "l"}
 
 MIN_PREFIX_FRACTION = 0.75
@@ -115,7 +116,7 @@ def _match_table(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:
     """Return the joints that one table matches, by role."""
     roles: dict[str, str] = {}
     for column, spellings in zip(COLUMNS, row, strict=True):
-        for side in ("",) if column in CENTRAL_ROLES else ("left", "right"):
+        for side in ("",) if column in CENTRAL_ROLES else SIDES:
             for spelling in spellings.split():
                 joint = keys.get((side, "".join(_words(spelling))))
                 if joint is not None and joint not in roles.values():
@@ -206,20 +207,20 @@ def _side_and_words(name: str, spelling: _Spelling) -> tuple[str, list[str]]:
     """
     words = _words(re.split(r"[:|]", name)[-1])
     for index, word in enumerate(words):
-        if word in SIDES and (
+        if word in SIDE_OF_WORD and (
             len(word) > 1
             or _mirrored(words, index) in spelling.names
             or (index in spelling.letter_positions and max(map(len, words)) > 2)
         ):
-            return SIDES[word], words[:index] + words[index + 1 :]
+            return SIDE_OF_WORD[word], words[:index] + words[index + 1 :]
     for index, word in enumerate(words):
-        for side in SIDES:
+        for side in SIDE_OF_WORD:
             remainder = word.removeprefix(side)
             if remainder == word and len(side) > 1:
                 remainder = word.removesuffix(side)
             other = [*words[:index], _swapped(word, side, remainder), *words[index + 1 :]]
             if remainder not in {word, ""} and "".join(other) in spelling.names:
-                return SIDES[side], [*words[:index], remainder, *words[index + 1 :]]
+                return SIDE_OF_WORD[side], [*words[:index], remainder, *words[index + 1 :]]
     return "", words
 
 

@@ -6,6 +6,7 @@ from ...arrays import Array
 from ...rotations import inverse, multiply, quaternion_from_rotation_vector, rotate
 from ...signals import smoothstep
 from ..skeletons import Skeleton
+from .tables import SIDES
 
 MIN_PALM_ROLL_RAD, MAX_PALM_ROLL_RAD = np.radians([30.0, 60.0])
 """Roll of the palms from facing down below which they are unchanged, since all knuckles are a
@@ -32,7 +33,7 @@ def with_palms_down(alignment: Array, skeleton: Skeleton, joints: dict[str, int]
     skeleton : Skeleton
     joints : dict of role to joint
     """
-    left, right = (_roll(alignment, skeleton, joints, side) for side in ("left", "right"))
+    left, right = (_roll(alignment, skeleton, joints, side) for side in SIDES)
     if left is None or right is None:
         return alignment
     difference = (right - left + np.pi) % (2.0 * np.pi) - np.pi
@@ -44,7 +45,7 @@ def with_palms_down(alignment: Array, skeleton: Skeleton, joints: dict[str, int]
     half, full = (
         quaternion_from_rotation_vector(fraction * roll * ALONG_ARM) for fraction in (0.5, 1.0)
     )
-    for side in ("left", "right"):
+    for side in SIDES:
         hand = skeleton.subtree(joints[f"{side}Hand"])
         if f"{side}LowerArm" in joints:
             arm = [j for j in skeleton.subtree(joints[f"{side}LowerArm"]) if j not in hand]

@@ -65,7 +65,7 @@ class NormalizedPostures:
 
 
 def normalize_postures(
-    positions: Array, frame_rate: float, weights: Array | None = None, *, ahead: bool = True
+    positions: Array, frame_rate: float, weights: Array | None = None, *, causal: bool = False
 ) -> NormalizedPostures:
     """Remove heading and position from postures.
 
@@ -78,20 +78,20 @@ def normalize_postures(
     frame_rate : float, hertz
     weights : shape (n_frames, 20), 0 to 1, optional
         Reliability of each joint.
-    ahead : bool
-        Whether later frames are used for the heading and for missing hips.
+    causal : bool
+        Whether heading and missing hips of a frame depend on no later frame.
     """
     reliability = np.ones(positions.shape[:2]) if weights is None else weights
     hip_positions = np.nan_to_num(
-        fill_gaps(positions[:, HIPS], reliability[:, HIPS] > 0.0, ahead=ahead)
+        fill_gaps(positions[:, HIPS], reliability[:, HIPS] > 0.0, causal=causal)
     )
     unit, determined = _lateral_directions(positions, reliability)
     if not determined.any():
         unit[:], determined = (1.0, 0.0), np.ones(len(unit), bool)
-    unit = fill_gaps(unit, determined, ahead=ahead)
-    if ahead:
+    unit = fill_gaps(unit, determined, causal=causal)
+    if not causal:
         unit = fill_gaps(unit, ~_is_reversed(unit, frame_rate))
-    unit = smooth_gaussian(np.nan_to_num(unit), HEADING_SMOOTHING_S * frame_rate, ahead=ahead)
+    unit = smooth_gaussian(np.nan_to_num(unit), HEADING_SMOOTHING_S * frame_rate, causal=causal)
     return _without_heading(positions, hip_positions, unit)
 
 

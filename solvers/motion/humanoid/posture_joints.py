@@ -14,6 +14,7 @@ from ...errors import InvalidMotionError
 from ..skeletons import JointRecording, Motion, Skeleton, Tracks, forward_kinematics
 from .names import roles_by_name
 from .roles import HumanoidMap, find_humanoid_map
+from .tables import SIDES
 
 POSTURE_JOINTS = (
     "hips", "spine", "chest", "head",
@@ -34,7 +35,6 @@ HIPS, SPINE, CHEST = 0, 1, 2
 BETWEEN_SHOULDERS = ("SpineShoulder", "Chest", "SpineChest", "ShoulderCenter")
 """Names of the point between the shoulders; the first one present is used."""
 HAND_ENDS = ("HandLeft", "HandRight")
-SIDES = ("left", "right")
 MAX_HAND_END_M = 0.13
 """Maximum distance of the end of a hand from the wrist. It guards against hands without a palm;
 a hand is 0.108 of the height (Winter 2009)

@@ -9,13 +9,14 @@ from .name_conflicts import MIN_HUMANNESS, contradicted_roles, odd_limbs
 from .names import name_matches, with_fingers
 from .roles import MIN_MATCH, HumanoidMap
 from .structure import roles_by_structure
+from .tables import SIDES
 from .tree_agreement import missing_ends, role_faults
 
 TRUNK = {"spine", "chest", "upperChest", "neck"}
 """Rigs have different numbers of joints here, which names and structure may count otherwise."""
 HINGES = {
     f"{side}{part}"
-    for side in ("left", "right")
+    for side in SIDES
     for part in ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")
 }
 """Roles whose names are contradicted by the limb as a whole, if at all."""
@@ -98,7 +99,7 @@ def explain_roles(skeleton: Skeleton, humanoid: HumanoidMap) -> dict[str, RoleEv
             may_contradict=role in contradicted,
             counts_differ=role in TRUNK,
             is_human=structure.humanness >= MIN_HUMANNESS,
-            guesses_side=structure.guesses_sides and role.startswith(("left", "right")),
+            guesses_side=structure.guesses_sides and role.startswith(SIDES),
         )
         for role, joint in joints.items()
     }

@@ -14,7 +14,7 @@ from ..skeletons import Skeleton
 from .name_conflicts import has_human_limbs, without_contradictions
 from .names import name_matches, with_fingers
 from .structure import Structure, roles_by_structure
-from .tables import ARM_ROLES, CENTRAL_ROLES, FINGER_ROLES, LEG_ROLES
+from .tables import ARM_ROLES, CENTRAL_ROLES, FINGER_ROLES, LEG_ROLES, SIDES
 from .tree_agreement import tree_agreement
 
 HUMANOID_ROLES = (
@@ -26,14 +26,14 @@ HUMANOID_ROLES = (
 
 ESSENTIAL_ROLES = (
     "hips", "spine", "head",
-    *(f"{side}{role}" for side in ("left", "right")
+    *(f"{side}{role}" for side in SIDES
       for role in ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")),
 )  # fmt: skip
 """Roles that VRM requires of every humanoid."""
 
 BODY_ROLES = (
     *CENTRAL_ROLES,
-    *(f"{side}{role}" for side in ("left", "right") for role in (*LEG_ROLES, *ARM_ROLES)),
+    *(f"{side}{role}" for side in SIDES for role in (*LEG_ROLES, *ARM_ROLES)),
 )
 """All roles but the fingers."""
 
@@ -188,7 +188,7 @@ def _fingers_below_hands(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[
     """Return the map without fingers that do not descend from the hand of their side."""
     below = {
         side: {skeleton.names[joint] for joint in skeleton.subtree(skeleton.index(hand))}
-        for side in ("left", "right")
+        for side in SIDES
         if (hand := joints.get(f"{side}Hand"))
     }
     return {

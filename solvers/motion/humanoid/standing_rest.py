@@ -6,13 +6,14 @@ from ...arrays import Array, Flags, Integers
 from ...rotations import IDENTITY, inverse, multiply, quaternion_from_matrix, rotate
 from ..skeletons import MIN_BONE_M, Motion, Skeleton, WorldPoses, forward_kinematics
 from .roles import HumanoidMap
+from .tables import SIDES
 
 LEG_BONES = tuple(
     (f"{side}{upper}", f"{side}{lower}")
-    for side in ("left", "right")
+    for side in SIDES
     for upper, lower in (("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"))
 )
-FOOT_BONES = tuple((f"{side}Foot", f"{side}Toes") for side in ("left", "right"))
+FOOT_BONES = tuple((f"{side}Foot", f"{side}Toes") for side in SIDES)
 FRAME_ROLES = ("hips", "leftUpperLeg", "rightUpperLeg")
 SHOULDERS = ("leftUpperArm", "rightUpperArm")
 MIN_SIDE_COSINE = 0.5
@@ -26,7 +27,7 @@ TOPS = ("neck", "head", "chest", "spine")
 
 
 def with_standing_rest(motion: Motion, humanoid: HumanoidMap) -> Motion:
-    """Return the same motion with a standing rest pose, if that of its file is no person's.
+    """Return the same motion with a standing rest pose, if that of its file is not a person's.
 
     Files of some data sets have rest poses that no body can take: each bone lies along an axis
     of its joint, so that one leg points down and the other up, or the trunk lies on its side

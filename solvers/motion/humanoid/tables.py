@@ -5,6 +5,8 @@ UpLeg.L. Case and separators are ignored. Several names for one role are separat
 and the first one in the skeleton is used.
 """
 
+SIDES = ("left", "right")
+"""Prefixes of the roles with a side, and the order of columns with one value per side."""
 CENTRAL_ROLES = ("hips", "spine", "chest", "upperChest", "neck", "head")
 """Roles without a side, each the child of the one before."""
 ARM_ROLES = ("Shoulder", "UpperArm", "LowerArm", "Hand")

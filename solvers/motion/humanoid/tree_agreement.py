@@ -8,10 +8,10 @@ import numpy as np
 
 from ..skeletons import Skeleton
 from .limb_division import MIN_SPREAD_FRACTION, is_human_angle
+from .tables import SIDES
 
 LIMBS = (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand"))
 ALL_PARTS = (("Toes", *LIMBS[0]), ("Shoulder", *LIMBS[1]))
-SIDES = ("left", "right")
 TWIST_WORD = re.compile("twist|roll|bend|stretch|helper|correct|half|sub|捩", re.IGNORECASE)
 NO_LETTERS = re.compile(r"[\W\d_]+")
 

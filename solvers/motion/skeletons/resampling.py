@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from functools import lru_cache
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ ROWS_PER_BLOCK = 32
 N_NODES = 4
 """Frames from which one value is interpolated. Chosen by hand; `make sensitivity` varies it."""
 
-Recording = TypeVar("Recording", Motion, Tracks)
+Recording = TypeVar("Recording", bound=Motion | Tracks)
 
 
 def resample(recording: Recording, frame_rate: float) -> Recording:
@@ -63,7 +63,8 @@ def resample(recording: Recording, frame_rate: float) -> Recording:
     if isinstance(recording, Motion):
         rotations = _sample_rotations(recording.rotations, times, slowdown)
         root_positions = _sample(recording.root_positions, times, slowdown)
-        return Motion(recording.skeleton, rotations, root_positions, frame_rate)
+        motion = Motion(recording.skeleton, rotations, root_positions, frame_rate)
+        return cast(Recording, motion)
     confidence = recording.confidence
     if confidence is not None:
         frames = np.arange(recording.n_frames)

@@ -11,14 +11,21 @@ from ...motion import (
     forward_kinematics,
     local_rotations,
 )
-from ...motion.humanoid import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, postures_from_motion
+from ...motion.humanoid import (
+    CHEST,
+    HIPS,
+    N_JOINTS,
+    POSTURE_JOINTS,
+    SIDES,
+    postures_from_motion,
+)
 from ...motion.skeletons import MIN_BONE_M
 from ...rotations import fit_rotations, inverse, multiply, rotate, rotation_between, slerp
 from ...signals import fill_gaps, fill_rotation_gaps
 
 AIMS = {
     f"{side}{part}": f"{side}{end}"
-    for side in ("left", "right")
+    for side in SIDES
     for part, end in (
         ("Shoulder", "UpperArm"), ("UpperArm", "LowerArm"), ("LowerArm", "Hand"),
         ("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"), ("Foot", "Toes"),
@@ -85,9 +92,7 @@ class _PostureFit:
         joints = humanoid_map.indices(self.skeleton)
         self.roles = {joint: role for role, joint in joints.items()}
         self.joints = joints
-        arms = [
-            self.skeleton.ancestors(joints[f"{side}UpperArm"]) for side in ("left", "right")
-        ]
+        arms = [self.skeleton.ancestors(joints[f"{side}UpperArm"]) for side in SIDES]
         self.chest = next(joint for joint in arms[0] if joint in arms[1])
         chain = [self.chest, *self.skeleton.ancestors(self.chest)]
         self.hips = joints["hips"]

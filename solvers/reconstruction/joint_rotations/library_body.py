@@ -12,6 +12,7 @@ from ...motion.humanoid import (
     N_JOINTS,
     PARENT_INDICES,
     POSTURE_JOINTS,
+    SIDES,
     SPINE,
     positions_from_directions,
 )
@@ -19,7 +20,7 @@ from ...rotations import cross, nearest_rotations
 
 HEAD = POSTURE_JOINTS.index("head")
 ARMS, LEGS, SHINS, TOES = (
-    tuple(POSTURE_JOINTS.index(f"{side}{part}") for side in ("left", "right"))
+    tuple(POSTURE_JOINTS.index(f"{side}{part}") for side in SIDES)
     for part in ("UpperArm", "UpperLeg", "Foot", "Toes")
 )
 CORRECTED_BONES = (SPINE, CHEST, HEAD, *ARMS, *LEGS, *TOES)

@@ -13,7 +13,7 @@ MIN_LENGTH = 1e-9
 
 
 def unit_vectors(vectors: Array, fill: float = 0.0) -> Array:
-    """Return vectors of length 1; zero vectors become `fill`, and NaN stays NaN."""
+    """Return vectors (..., 3) of length 1; zero vectors become `fill`, and NaN stays NaN."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     is_zero = lengths <= MIN_LENGTH
     return np.asarray(np.where(is_zero, fill, vectors / np.where(is_zero, 1.0, lengths)))

@@ -146,7 +146,7 @@ def rotations_from_flexion(
 
 
 def flexion_weights(flexion: Array) -> Array:
-    """Return the weight of the plane of a flexion angle in radians: 0 to 1."""
+    """Return the weights, 0 to 1 and same shape, of the planes of flexion angles, radians."""
     return np.asarray(np.clip((flexion - MIN_FLEXION) / (FULL_FLEXION - MIN_FLEXION), 0, 1))
 
 

@@ -8,7 +8,7 @@ from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion, Skeleton, Tracks, local_rotations, skeleton_from_points
 from ...motion.humanoid import (
-    MIN_RELIABILITY,
+    MIN_JOINT_RELIABILITY,
     MIN_RELIABLE_FRAMES,
     posture_positions,
 )
@@ -132,8 +132,7 @@ def resize_skeleton(
     Returns
     -------
     Skeleton
-        Of the same joints at the same place; joints that are not among the points keep their
-        offsets.
+        The same joints; those that are not among the points keep their offsets.
     """
     measured = skeleton_from_points(_without_unreliable(tracks, reliability), parents)
     offsets = skeleton.offsets.copy()
@@ -175,6 +174,6 @@ def _points_of_joints(skeleton: Skeleton, names: Sequence[str]) -> list[int]:
 
 def _without_unreliable(tracks: Tracks, reliability: Array) -> Tracks:
     """Set unreliable positions to NaN, for joints with enough reliable ones."""
-    is_reliable = (reliability > MIN_RELIABILITY) & tracks.visible
+    is_reliable = (reliability > MIN_JOINT_RELIABILITY) & tracks.visible
     selected = is_reliable | (is_reliable.sum(axis=0) < MIN_RELIABLE_FRAMES)
     return tracks.with_positions(np.where(selected[..., None], tracks.positions, np.nan))

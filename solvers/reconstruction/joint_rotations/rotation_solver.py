@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...motion import Skeleton, roles_by_name
+from ...motion.humanoid import SIDES
 from ...motion.skeletons import MIN_BONE_M
 from ...rotations import IDENTITY, fit_rotations, multiply, rotate, rotation_between, slerp
 from .limb_twist import (
@@ -24,7 +25,7 @@ GRANDCHILD_WEIGHT = 0.3
 Chosen by hand; `make sensitivity` varies it."""
 LIMBS = {
     f"{side}{upper}": (f"{side}{lower}", f"{side}{end}")
-    for side in ("left", "right")
+    for side in SIDES
     for upper, lower, end in (
         ("UpperArm", "LowerArm", "Hand"),
         ("UpperLeg", "LowerLeg", "Foot"),
@@ -74,7 +75,7 @@ class RotationSolver:
 
     def legs(self) -> dict[int, Limb]:
         """Return the limbs that are legs, by their upper joints."""
-        uppers = [self.roles.get(f"{side}UpperLeg", -1) for side in ("left", "right")]
+        uppers = [self.roles.get(f"{side}UpperLeg", -1) for side in SIDES]
         return {upper: limb for upper, limb in self.limbs.items() if upper in uppers}
 
     def solve_rotations(self) -> None:
@@ -122,7 +123,7 @@ class RotationSolver:
     def _trunk_fractions(self) -> dict[int, float]:
         """Return the joints between hips and chest, each with its fraction of the remaining
         twist."""
-        arms = [self.roles.get(f"{side}UpperArm", -1) for side in ("left", "right")]
+        arms = [self.roles.get(f"{side}UpperArm", -1) for side in SIDES]
         if min(arms) < 0:
             return {}
         chains = [self.skeleton.ancestors(arm) for arm in arms]

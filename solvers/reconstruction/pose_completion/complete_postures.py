@@ -247,7 +247,7 @@ def synthesize(
 
 
 def confidence_from_deviation(deviation: Array) -> Array:
-    """Return the confidence of joints from their standard deviations, meters."""
+    """Return the confidence, same shape, from standard deviations of joints, meters."""
     return np.asarray(1.0 / (1.0 + (deviation / HALF_CONFIDENCE_M) ** 2))
 
 

@@ -129,7 +129,7 @@ def complete_joints(
     reliability = np.where(observed, posture_reliability(recording, combined), 0.0)
     _check_observed(recording, positions, reliability)
     rate = recording.frame_rate
-    body = normalize_postures(positions, rate, reliability, ahead=not settings.causal)
+    body = normalize_postures(positions, rate, reliability, causal=settings.causal)
     lengths = estimate_bone_lengths(body.postures, reliability)
     take = ObservedTake(body.postures, reliability, rate, lengths)
     completed = complete(take, library, settings, progress)

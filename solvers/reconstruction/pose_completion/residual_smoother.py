@@ -27,7 +27,7 @@ class _Process(NamedTuple):
 
 
 def measurement_deviation(reliability: Array, noise: float) -> Array:
-    """Return the standard deviation of observations; infinite for unreliable joints."""
+    """Return the standard deviation of observations, same shape; infinite if unreliable."""
     with np.errstate(divide="ignore"):
         return np.where(
             reliability > WRONG_RELIABILITY,

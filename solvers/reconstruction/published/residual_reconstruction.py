@@ -81,8 +81,8 @@ def reconstruct_published_residuals(
     )
     progress(0.5, "Correcting")
     weights = posture_reliability(recording, reliability.combined)
-    smooth = smooth_postures(recording, float(prior.smoothing), weights, ahead=True)
-    prediction = prior.predict(smooth, ahead=False)
+    smooth = smooth_postures(recording, float(prior.smoothing), weights, causal=False)
+    prediction = prior.predict(smooth, causal=True)
     mean = mean_offset(prediction, weights)
     predicted = smooth.positions.copy()
     if settings.change:

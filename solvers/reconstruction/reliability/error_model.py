@@ -51,12 +51,12 @@ class ErrorModel:
     spread: float
 
     def combine(self, indicators: "ErrorIndicators") -> Array:
-        """Return the logarithm of both indicators combined."""
+        """Return the logarithm of both indicators combined, shape (n_frames, n_joints)."""
         combined = np.hypot(indicators.deviation, self.length_weight * indicators.length_error)
         return np.asarray(np.log(combined + self.floor))
 
     def probability_within(self, indicators: "ErrorIndicators", tolerance: float) -> Array:
-        """Return the probability that the error of a joint is below a tolerance, in meters."""
+        """Return the probability, (n_frames, n_joints), of errors below a tolerance, meters."""
         expected = self.level + self.slope * self.combine(indicators)
         probability = scipy.special.ndtr(
             (np.log(tolerance + ONE_CENTIMETER) - expected) / self.spread

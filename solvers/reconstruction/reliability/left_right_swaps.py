@@ -26,7 +26,7 @@ MIN_GAIN_M = 0.08
 """Minimum reduction (m) of the mean step by swapping sides. It guards limbs side by side, whose
 steps say nothing (`test_legs_side_by_side_are_not_swapped`)."""
 LIMBS = ("UpperArm", "LowerArm", "UpperLeg", "LowerLeg")
-SIDE_WORDS = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"))
+SIDE_WORDS = (("Left", "Right"), SIDES, ("LEFT", "RIGHT"))
 
 
 def fix_left_right_swaps(recording: JointRecording) -> JointRecording:

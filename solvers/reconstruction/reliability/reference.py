@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Flags
-from ...motion.humanoid import MIN_RELIABILITY, posture_joint_indices
+from ...motion.humanoid import MIN_JOINT_RELIABILITY, SIDES, posture_joint_indices
 from .terms import vector_lengths
 
 OUT, DOWN = (1.0, 0.0), (0.0, -1.0)
@@ -39,8 +39,10 @@ def reference_lengths(lengths: Array, postures: Flags, reliability: Array) -> Ar
     reliability : shape (n_frames, n_joints)
         Reliability of each segment without the kinematics term.
     """
-    chosen = np.broadcast_to(postures[:, None], lengths.shape) & (reliability > MIN_RELIABILITY)
-    for wider in (reliability > MIN_RELIABILITY, np.ones_like(chosen)):
+    chosen = np.broadcast_to(postures[:, None], lengths.shape) & (
+        reliability > MIN_JOINT_RELIABILITY
+    )
+    for wider in (reliability > MIN_JOINT_RELIABILITY, np.ones_like(chosen)):
         is_rare = (chosen & np.isfinite(lengths)).sum(axis=0) < MIN_FRAMES
         chosen = np.where(is_rare, wider, chosen)
     reference = np.full(lengths.shape[1], np.nan)
@@ -65,10 +67,7 @@ def find_reference_postures(names: Sequence[str], positions: Array, tracked: Fla
     """
     roles = posture_joint_indices(names)
     needed = {"hips", "chest"} | {
-        f"{side}{part}"
-        for side in ("left", "right")
-        for bone in (*ARMS, *LEGS)
-        for part in bone
+        f"{side}{part}" for side in SIDES for bone in (*ARMS, *LEGS) for part in bone
     }
     if not needed <= roles.keys():
         return np.zeros(len(positions), bool)

@@ -85,10 +85,10 @@ def mean_at_joints(values: Array, parents: NDArray[np.intp]) -> Array:
 
 
 def tracking_term(recording: JointRecording, settings: ReliabilitySettings) -> Array:
-    """Return the tracking state as a reliability [SHJT13, eq. 7]; 1 without a state.
+    """Return the tracking state as a reliability [SHJT13, eq. 7], shape (n_frames, n_joints).
 
     A confidence, where the device reports one instead of a state, is mapped linearly to the
-    range from `settings.inferred` to 1.
+    range from `settings.inferred` to 1. Without either, all is 1.
     """
     state, confidence = recording.tracking_state, recording.tracks.confidence
     if state is not None:
@@ -100,7 +100,7 @@ def tracking_term(recording: JointRecording, settings: ReliabilitySettings) -> A
 
 
 def is_tracked(recording: JointRecording) -> NDArray[np.bool_]:
-    """Return which joints the device tracked, and did not only infer."""
+    """Return which joints the device did not only infer, shape (n_frames, n_joints)."""
     visible = recording.tracks.visible
     state, confidence = recording.tracking_state, recording.tracks.confidence
     if state is not None:
@@ -141,7 +141,7 @@ def _weighted_mean(values: Array, weights: Array, causal: bool) -> Array:
 
 
 def weighted_sum(values: Array, weights: Array, causal: bool) -> Array:
-    """Sum neighboring frames; if causal, the first weight is for the current frame."""
+    """Sum neighboring frames (axis 0); if causal, the first weight is for the current frame."""
     if causal:
         weights = np.concatenate([np.zeros(len(weights) - 1), weights])
     return np.asarray(scipy.ndimage.convolve1d(values, weights, axis=0, mode="constant"))

@@ -192,8 +192,8 @@ def predict_postures(
 ) -> CorrectedPostures:
     """Return corrected posture joints, given the reliability of each, (n_frames, 20)."""
     causal = settings.method is CorrectionMethod.CAUSAL
-    smooth = smooth_postures(recording, float(prior.smoothing), weights, ahead=not causal)
-    prediction = prior.predict(smooth, ahead=not causal)
+    smooth = smooth_postures(recording, float(prior.smoothing), weights, causal=causal)
+    prediction = prior.predict(smooth, causal=causal)
     fraction = settings.change * prediction.coverage.mean(axis=0)
     offsets = TakeOffsets(mean_offset(prediction, weights), fraction)
     frames = settings.smoothing * recording.frame_rate
@@ -214,7 +214,11 @@ def subtract_offsets(
     settings: CorrectionSettings,
     smoother: Callable[[Array, Array], Array],
 ) -> CorrectedPostures:
-    """Return posture joints without the sensor's offsets, smoothed with the given function."""
+    """Return posture joints without the sensor's offsets, smoothed with the given function.
+
+    `weights` has the shape (n_frames, 20), 0 to 1. `smoother` gets positions (n_frames, 20, 3),
+    meters, and their weights.
+    """
     mean, fraction = offsets
     predicted = smooth.positions + smooth.rotate_to_world(
         fraction[:, None] * (prediction.offsets - mean)

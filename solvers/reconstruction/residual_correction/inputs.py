@@ -61,19 +61,20 @@ def smooth_postures(
     seconds: float,
     weights: Array | None = None,
     *,
-    ahead: bool = True,
+    causal: bool = False,
 ) -> SmoothedPostures:
     """Smooth a recording with a Gaussian of `seconds`, fill gaps, and normalize it.
 
-    Without `ahead` a frame depends on no later one, except for the actor's size.
+    `weights`, (n_frames, 20), are 0 to 1. If `causal`, a frame depends on no later one, except
+    for the actor's size.
     """
-    positions = fill_gaps(posture_positions(recording), ahead=ahead)
+    positions = fill_gaps(posture_positions(recording), causal=causal)
     observed = np.isfinite(positions).all(axis=(0, 2))
     rate = recording.frame_rate
     positions[:, observed] = smooth_gaussian(
-        positions[:, observed], seconds * rate, ahead=ahead
+        positions[:, observed], seconds * rate, causal=causal
     )
-    normalized = normalize_postures(positions, rate, weights, ahead=ahead)
+    normalized = normalize_postures(positions, rate, weights, causal=causal)
     length = estimate_bone_lengths(positions).sum()
     if length == 0.0:
         raise InvalidMotionError(

@@ -134,20 +134,20 @@ class ResidualPrior:
         """Return the hyper-parameters of one of the joints."""
         return Kernel.from_logs(np.log(self.kernels[index]))
 
-    def predict(self, smoothed: SmoothedPostures, ahead: bool = True) -> Prediction:
+    def predict(self, smoothed: SmoothedPostures, *, causal: bool = False) -> Prediction:
         """Predict true minus observed position of every joint.
 
-        With `ahead`, some frames of each second are predicted and the others interpolated, and
-        the movement process contributes. Otherwise each frame is predicted separately. Joints
+        If `causal`, each frame is predicted separately. Otherwise some frames of each second
+        are predicted, the others interpolated, and the movement process contributes. Joints
         without training data, such as fingertips, are ignored.
         """
         has_model = (self.mean_pose != 0.0).any(axis=-1, keepdims=True)
         features = np.where(has_model, fill_missing(smoothed.features, self.mean_pose), 0.0)
-        step = max(round(smoothed.frame_rate / PREDICTION_RATE_HZ), 1) if ahead else 1
+        step = 1 if causal else max(round(smoothed.frame_rate / PREDICTION_RATE_HZ), 1)
         last = len(features) - 1
         frames = np.unique(np.append(np.arange(0, last + 1, step), last))
         prediction = self._predict_static(features[frames])
-        if ahead and self.movement is not None:
+        if not causal and self.movement is not None:
             prediction = self._blend_movement(
                 prediction, *self.movement.predict(features, smoothed.frame_rate, frames)
             )

@@ -63,7 +63,7 @@ def are_frame_numbers(numbers: Sequence[float]) -> bool:
 def rate_of_numbers(
     numbers: Sequence[float], rate: float | None, progress: Progress
 ) -> float | None:
-    """Return the rate of frames of which only each second, third and so on is there.
+    """Return the rate of frames if a file has only each second, third or so of them.
 
     Numbers are those of the video. Those that are a frame's duration apart are times, and its
     rate remains, as it does if all frames are there.

@@ -12,8 +12,8 @@ from ..conventions import ConstantRate
 from .images import NO_IMAGE
 
 MAX_LENGTH_RATIO = 4
-"""Number of frames per image from which numbers in names are no frames. It guards folders of
-images from several takes (`test_distant_numbers_are_no_gap`)."""
+"""Number of frames per image from which numbers in names do not count frames. It guards folders
+of images from several takes (`test_distant_numbers_are_no_gap`)."""
 MAX_TIME_OFFSET_S = 0.02
 """Maximum offset in seconds of color from depth. By definition of the scripts of the TUM data
 set."""

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Sensor, Tracks
+from ...motion.humanoid import SIDES
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
 from ...progress import READING, Progress, Remark, unwatched
 from ..containers import NPY_MAGIC, read_array
@@ -25,7 +26,7 @@ from ..point_bodies import points_of_array
 
 WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
-NOSE, ANKLES = [0], [BODY_POINTS.index(f"{side}_ankle") for side in ("left", "right")]
+NOSE, ANKLES = [0], [BODY_POINTS.index(f"{side}_ankle") for side in SIDES]
 MAX_EXTENT_M = 20.0
 """Maximum extent of a body in units of the file, for the units to be meters. By definition of
 the units: a body of 1 to 3 m is 1000 to 3000 units in millimeters."""
@@ -127,7 +128,7 @@ def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
     if n_points - WITH_HANDS not in FACES:
         return tuple(f"point_{number}" for number in range(1, n_points + 1))
     hands = [points[:, len(BODY_POINTS)], points[:, len(BODY_POINTS) + len(HAND_POINTS)]]
-    wrists = [points[:, BODY_POINTS.index(f"{side}_wrist")] for side in ("left", "right")]
+    wrists = [points[:, BODY_POINTS.index(f"{side}_wrist")] for side in SIDES]
     (first_left, first_right), (second_left, second_right) = (
         [_median_distance(hand, wrist) for wrist in wrists] for hand in hands
     )
@@ -135,7 +136,7 @@ def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
         first_left - first_right, first_left - second_left,
         second_right - second_left, second_right - first_right,
     )  # fmt: skip
-    sides = ("left", "right") if np.nansum(nearer_crossed) < 0.0 else ("right", "left")
+    sides = SIDES if np.nansum(nearer_crossed) < 0.0 else SIDES[::-1]
     named = (f"{side}_hand_{part}" for side in sides for part in HAND_POINTS)
     face = (f"face_{number}" for number in range(1, n_points - WITH_HANDS + 1))
     return (*BODY_POINTS, *named, *face)

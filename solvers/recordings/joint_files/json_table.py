@@ -213,7 +213,7 @@ def _of_records(
 
 
 def _of_columns(columns: Mapping[str, Mapping[Any, Any]]) -> Iterator[TitledRows]:
-    """Yield columns of which each has its values by the keys of the rows."""
+    """Yield columns that store their values by the keys of the rows."""
     index = [*dict.fromkeys(key for each in columns.values() for key in each)]
     if not columns or _is_sparse(columns.values(), index):
         return

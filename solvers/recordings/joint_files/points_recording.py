@@ -30,7 +30,7 @@ from ..point_bodies import (
 
 MIN_CONFIDENCE = 0.9
 """Confidence from which the bones decide on points whose names are those of no body. It guards
-optical markers, whose order is no body's."""
+optical markers, whose order is not that of a body."""
 
 
 def recording_of_points(

@@ -33,7 +33,7 @@ from .json_bodies import (
 HEAD = re.compile(rb'\s*[\[{].*"(body_list|is_tracked)"\s*:', re.DOTALL)
 KEYS = frozenset({"body_list", "is_tracked"})
 NANOSECOND = 1e-9
-SIDES = ("Left", "Right")
+SIDE_SUFFIXES = ("Left", "Right")
 MEANS = {"Pelvis": ("HipLeft", "HipRight"), "Head": ("EarLeft", "EarRight")}
 """Joints that some formats lack, each computed as the mean of two."""
 
@@ -106,9 +106,9 @@ def _recording(
     positions, confidence = stacked(body, frames)
     names = list(ZED_BODIES[positions.shape[1]])
     positions, confidence = _with_means(names, positions, confidence)
-    ankles = [names.index(f"Ankle{side}") for side in SIDES]
+    ankles = [names.index(f"Ankle{side}") for side in SIDE_SUFFIXES]
     positions = stand_along(positions, [names.index("Neck")], ankles)
-    left, right = (names.index(f"Shoulder{side}") for side in SIDES)
+    left, right = (names.index(f"Shoulder{side}") for side in SIDE_SUFFIXES)
     if is_mirrored(positions, left, right, names.index("Neck"), names.index("Nose")):
         positions = positions * (1.0, -1.0, 1.0)
         progress(0.0, Remark("The axes of the file are left-handed; the body is mirrored back"))

@@ -144,8 +144,8 @@ def _converted(
     body = body_of_named_points(names, points[:, observed])
     if body is None:
         raise InvalidFileError(
-            f"{path} has joints called {', '.join(names[:3])} ..., which are no body. Store"
-            " them as a joint CSV."
+            f"{path} has joints called {', '.join(names[:3])} ..., which do not form a body."
+            " Store them as a joint CSV."
         )
     _say_missing_rate(times, frame_rate, progress)
     joints = [LANDMARK_JOINTS.index(name) for name in body.names if name in LANDMARK_JOINTS]

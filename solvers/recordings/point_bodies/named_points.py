@@ -8,6 +8,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...motion import roles_by_name
+from ...motion.humanoid import SIDE_OF_WORD, SIDES
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS
 from .mediapipe_landmarks import landmark_columns
 
@@ -26,19 +27,18 @@ MIDDLE = {
     "headtop": "head_center", "centerhead": "head_center", "tophead": "head_center",
     "centershoulder": "neck_center",
 }  # fmt: skip
-SIDES = {"l": "left", "left": "left", "r": "right", "right": "right"}
 OTHER_SIDE = {"l": "r", "r": "l", "L": "R", "R": "L"}
 """Last letters of names such as `hand_r`."""
 LIMBS = tuple(
     f"{side}_{part}"
-    for side in ("left", "right")
+    for side in SIDES
     for part in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 )
 """Keypoints that a body must have."""
 NAMES_OF_ROLES = {
     "hips": "pelvis", "spine": "spine1", "chest": "spine2", "upperChest": "spine3",
     "neck": "neck", "head": "head",
-    **{f"{side}{role}": f"{side}_{name}" for side in ("left", "right") for role, name in (
+    **{f"{side}{role}": f"{side}_{name}" for side in SIDES for role, name in (
         ("Shoulder", "collar"), ("UpperArm", "shoulder"), ("LowerArm", "elbow"),
         ("Hand", "wrist"), ("UpperLeg", "hip"), ("LowerLeg", "knee"), ("Foot", "ankle"),
         ("Toes", "foot"),
@@ -47,7 +47,7 @@ NAMES_OF_ROLES = {
 """Names of SMPL, by role."""
 NEEDED_ROLES = frozenset(
     side + part
-    for side in ("left", "right")
+    for side in SIDES
     for part in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 )
 """Roles that a body must have."""
@@ -136,7 +136,9 @@ def without_prefix(names: Sequence[str]) -> list[str]:
         (at for at, (a, b) in enumerate(zip(first, last, strict=False)) if a != b), 0
     )
     shared = PREFIX.match(first[:n_shared])
-    if shared is None or not SIDES.keys().isdisjoint(re.findall("[a-z]+", shared[0].lower())):
+    if shared is None or not SIDE_OF_WORD.keys().isdisjoint(
+        re.findall("[a-z]+", shared[0].lower())
+    ):
         return list(names)
     return [name[shared.end() :] for name in names]
 
@@ -151,7 +153,7 @@ def _keypoints(names: Sequence[str]) -> dict[str, int]:
         keypoints.setdefault(_keypoint(name), column)
     keypoints.pop("", None)
     for end, joint in ENDS.items():
-        for side in ("left", "right"):
+        for side in SIDES:
             column = keypoints.pop(f"{side}_{end}", -1)
             if column < 0:
                 continue
@@ -181,10 +183,10 @@ def _keypoint(name: str) -> str:
         return MIDDLE[plain]
     for side in (words[0], words[-1]) if len(words) > 1 else ():
         rest = "".join(words[1:] if side is words[0] else words[:-1])
-        if side in SIDES and rest in PARTS:
-            return f"{SIDES[side]}_{PARTS[rest]}"
-    if plain[:1] in SIDES and plain[1:] in PARTS:  # such as rshoulder
-        return f"{SIDES[plain[0]]}_{PARTS[plain[1:]]}"
+        if side in SIDE_OF_WORD and rest in PARTS:
+            return f"{SIDE_OF_WORD[side]}_{PARTS[rest]}"
+    if plain[:1] in SIDE_OF_WORD and plain[1:] in PARTS:  # such as rshoulder
+        return f"{SIDE_OF_WORD[plain[0]]}_{PARTS[plain[1:]]}"
     return ""
 
 

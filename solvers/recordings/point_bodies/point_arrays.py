@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import AxisName, FileConventions, JointRecording, Sensor, roles_by_name
-from ...motion.humanoid import ADULT_STATURE_M
+from ...motion.humanoid import ADULT_STATURE_M, SIDES
 from ...progress import Progress, Remark
 from ..conventions import (
     DEFAULT_FRAME_RATE,
@@ -49,7 +49,6 @@ MIN_PIXELS = 10.0
 2D points, 0 to 1, from being read as depth."""
 MAX_STATURE_M, MIN_STATURE_M = 4.0, 0.5
 """Statures, meters, outside which lengths have no known unit. They guard normalized points."""
-LEGS = ("left", "right")
 MIN_FLEXION = 0.03
 """Distance of the knee from the line between hip and ankle, relative to the leg, that shows
 where the body faces. It guards straight legs, whose knees are noise."""
@@ -241,7 +240,7 @@ def _with_sides_corrected(recording: JointRecording, progress: Progress) -> Join
     named = roles_by_name(recording.names)
     joints = {role: points[:, recording.names.index(name)] for role, name in named.items()}
     front = _front(joints)
-    sides = [joints[f"{side}UpperLeg"] for side in LEGS]
+    sides = [joints[f"{side}UpperLeg"] for side in SIDES]
     shown = np.stack([*sides, np.zeros_like(front), front], axis=1)
     if not is_mirrored(shown, 0, 1, 2, 3):
         return recording
@@ -252,10 +251,10 @@ def _with_sides_corrected(recording: JointRecording, progress: Progress) -> Join
 
 def _front(joints: Mapping[str, Array]) -> Array:
     """Return where feet or, without toes, bent knees point; NaN where neither does."""
-    if {f"{side}Toes" for side in LEGS} <= joints.keys():
-        return np.asarray(sum(joints[f"{side}Toes"] - joints[f"{side}Foot"] for side in LEGS))
+    if {f"{side}Toes" for side in SIDES} <= joints.keys():
+        return np.asarray(sum(joints[f"{side}Toes"] - joints[f"{side}Foot"] for side in SIDES))
     front = np.zeros_like(joints["leftFoot"])
-    for side in LEGS:
+    for side in SIDES:
         hip, knee, ankle = (joints[side + part] for part in ("UpperLeg", "LowerLeg", "Foot"))
         flexion = knee - (hip + ankle) / 2.0
         is_bent = np.linalg.norm(flexion, axis=1) > MIN_FLEXION * np.linalg.norm(

@@ -75,7 +75,7 @@ def _singular(unit: str) -> str:
 
 
 def read_time(value: Any, second: float | None) -> tuple[float, float | None]:
-    """Return a time and its seconds per unit; NaN for what is no time.
+    """Return a time and its seconds per unit; NaN for what is not a time.
 
     A text may be a number, a date with a time of day as in ISO 8601, or a time of day.
 
@@ -128,7 +128,7 @@ def column_of_times(titles: Sequence[str], cells: Sequence[Sequence[str]] = ()) 
     """Return the column of times; None without one.
 
     Those that increase from frame to frame come first, then those that say more than a unit,
-    and of these, those that state it. Units are no times next to an hour, or another unit.
+    and of these, those that state it. Units are not times next to an hour, or another unit.
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ class TimeCells:
     def __call__(self, cell: bytes) -> bytes:
         """Return the number of a cell, blank if it has none.
 
-        What is no time is returned as it is, to be refused. So is a word where another time
+        What is not a time is returned as it is, to be refused. So is a word where another time
         follows it, for the line of that time.
         """
         text = decode_text(cell).strip()

@@ -11,6 +11,7 @@ from ...motion.humanoid import (
     ADULT_BONE_LENGTHS_M,
     MIRROR_JOINTS,
     POSTURE_JOINTS,
+    SIDES,
     posture_positions,
     segment_lengths,
 )
@@ -19,9 +20,10 @@ from ...motion.skeletons import COMPUTED_JOINTS, LAYOUTS
 N_SAMPLED_FRAMES = 200
 """Number of frames, evenly spaced, whose bones are measured. It bounds the run time."""
 MAX_MISFIT = 0.65
-"""Misfit, a ratio (`bone_misfit`), from which points are no body in that order. Chosen by hand
-on takes of CMU and HDM05: the right order has 0.1 to 0.3, and 0.3 to 0.6 with noise of 2 cm;
-one in a hundred random orders has less than 0.73; x0.5 and x2 fail tests of this module."""
+"""Misfit, a ratio (`bone_misfit`), from which points do not form a body in that order. Chosen
+by hand on takes of CMU and HDM05: the right order has 0.1 to 0.3, and 0.3 to 0.6 with noise of
+2 cm; one in a hundred random orders has less than 0.73; x0.5 and x2 fail tests of this
+module."""
 CLEAR_MISFIT = 0.35
 """Misfit, a ratio, up to which the confidence is full. Chosen by hand on the same takes."""
 CLEAR_LEAD = 1.5
@@ -31,7 +33,7 @@ MAX_BONE_MISFIT = 1.0
 """Misfit of one bone, a ratio, that counts. It guards against single points that are wrong."""
 LIMB_BONES = [
     POSTURE_JOINTS.index(side + part)
-    for side in ("left", "right")
+    for side in SIDES
     for part in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 ]
 """Joints at the lower ends of bones that every order has."""

@@ -33,7 +33,7 @@ SIDE_FILES = ("-journal", "-wal", "-shm")
 """Suffixes of the files that SQLite reads next to a database."""
 SUPER_JOURNAL = bytes.fromhex("d9d505f920a163d7")
 """Ends a journal that names another file, which SQLite deletes: part of a transaction over
-several databases, of which a library never is."""
+several databases. A library never takes part in one."""
 
 Part = tuple[str, str, str | None]
 """Kind, name and SQL of a table or an index."""

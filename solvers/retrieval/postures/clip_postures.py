@@ -23,7 +23,7 @@ Recording = Motion | Tracks | JointRecording
 
 MAX_BRIDGED_GAP_S = 0.3
 """Seconds; shorter gaps are interpolated linearly. It guards joints that flicker; over a longer
-gap a straight line is no movement."""
+gap a straight line is not a movement."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from ...motion.humanoid import N_JOINTS
 from .body_parts import JOINTS, N_PARTS, ROOTS
 from .mean_postures import MIN_OBSERVED_FRACTION, POSITION_NOISE_M, PostureDistribution
 
-MIN_RELIABILITY = 0.02
+MIN_PART_RELIABILITY = 0.02
 """Lower bound of the reliability of a part. It guards queries without an observed part."""
 MIN_VARIANCE_M2 = 1e-9
 """Minimum variance that is divided by. It guards a division."""
@@ -37,7 +37,7 @@ def part_reliability(observed: NDArray[np.bool_], distribution: PostureDistribut
         np.ix_(missing, missing)
     ] - cross_covariance.T @ np.linalg.solve(known_covariance, cross_covariance)
     unexplained = _variances(residual) / np.maximum(_variances(covariance), MIN_VARIANCE_M2)
-    return np.asarray(np.clip(1.0 - unexplained, MIN_RELIABILITY, 1.0))
+    return np.asarray(np.clip(1.0 - unexplained, MIN_PART_RELIABILITY, 1.0))
 
 
 def _variances(covariance: Array) -> Array:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from solvers.arrays import Flags
-from solvers.feet.legs import SIDES
+from solvers.motion.humanoid import SIDES
 from solvers.signals import find_runs
 
 from ..shared.tables import number

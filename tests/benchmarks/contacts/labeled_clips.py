@@ -10,9 +10,10 @@ from functools import cache
 import numpy as np
 
 from solvers.arrays import Array, Flags
-from solvers.feet.legs import SIDES, find_legs
+from solvers.feet.legs import find_legs
 from solvers.feet.sole import sole_points
 from solvers.motion import Motion, forward_kinematics
+from solvers.motion.humanoid import SIDES
 from solvers.recordings import read_acclaim
 from solvers.samples import CorruptionSettings, corrupt
 

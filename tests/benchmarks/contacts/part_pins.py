@@ -7,10 +7,11 @@ from time import perf_counter
 import numpy as np
 
 from solvers.arrays import Array, Flags
-from solvers.feet.legs import SIDES, LegJoints, find_legs
+from solvers.feet.legs import LegJoints, find_legs
 from solvers.feet.sole_contact import find_foot_contact
 from solvers.feet.standing_feet import detect_standing_feet
 from solvers.motion import Motion, find_humanoid_map, forward_kinematics
+from solvers.motion.humanoid import SIDES
 
 from ..peers.blender_ik import has_blender, pin_in_blender
 from ..shared.tables import number, table

@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterable, Mapping
 import numpy as np
 
 from solvers.arrays import Flags
-from solvers.feet import SIDES, PlantSettings, find_legs, plant_feet
+from solvers.feet import PlantSettings, find_legs, plant_feet
 from solvers.feet.body_supports import SUPPORTS, detect_supports
 from solvers.feet.limb_goals import find_limb_contacts
 from solvers.feet.support import Support
 from solvers.motion import Motion, WorldPoses, find_humanoid_map, forward_kinematics
+from solvers.motion.humanoid import SIDES
 from solvers.recordings import read_acclaim
 from solvers.rotations import angle_between
 from solvers.signals import find_runs

@@ -8,10 +8,11 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from solvers.arrays import Array, Flags
-from solvers.feet.legs import SIDES, LegJoints, find_legs
+from solvers.feet.legs import LegJoints, find_legs
 from solvers.feet.sole_contact import find_foot_contact
 from solvers.feet.standing_feet import detect_standing_feet
 from solvers.motion import Motion, find_humanoid_map, forward_kinematics
+from solvers.motion.humanoid import SIDES
 from solvers.rotations import (
     angle_between,
     inverse,

@@ -15,8 +15,9 @@ import numpy as np
 
 from solvers.arrays import Array, Flags
 from solvers.denoising import denoise, learn_filter_bases, plant_feet
-from solvers.feet.legs import SIDES, LegJoints, find_legs
+from solvers.feet.legs import LegJoints, find_legs
 from solvers.motion import Motion, ReachSettings, detect_contacts, forward_kinematics, reach
+from solvers.motion.humanoid import SIDES
 from solvers.rotations.representations import IDENTITY, angle_between
 from solvers.samples import CorruptionSettings, corrupt
 from solvers.signals.spikes import find_runs

@@ -75,7 +75,7 @@ def print_models(pairs: list[Pair]) -> None:
     """Print what reliability_error.py should say."""
     for causal in (False, True):
         signs = [signs_of(pair.recording, causal) for pair in pairs]
-        print("CAUSAL" if causal else "CENTRED", fit_model(signs, [p.error for p in pairs]))
+        print("CAUSAL" if causal else "CENTERED", fit_model(signs, [p.error for p in pairs]))
 
 
 def areas(pairs: list[Pair]) -> str:

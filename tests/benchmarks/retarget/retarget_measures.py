@@ -23,9 +23,9 @@ from solvers.motion import (
     forward_kinematics,
     leg_length,
 )
+from solvers.motion.humanoid import SIDES
 from solvers.rotations.representations import inverse, rotate, rotation_between
 
-SIDES = ("left", "right")
 MIN_SUNK_DEPTH_M = 0.01
 """Meters below its height in the rest pose at which the ball of a foot has sunk."""
 FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")

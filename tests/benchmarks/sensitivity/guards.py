@@ -147,7 +147,7 @@ GUARDS: dict[str, Guard] = {
         0.0,
         "retrieval/test_rank_clips.py::test_reciprocal_neighbor_counts_more_than_another_one",
     ),
-    "retrieval/postures/part_reliability.MIN_RELIABILITY": Guard(
+    "retrieval/postures/part_reliability.MIN_PART_RELIABILITY": Guard(
         0.0,
         "retrieval/test_missing_joints.py::test_parts_never_observed_have_a_low_reliability_above_zero",
     ),

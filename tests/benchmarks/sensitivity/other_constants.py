@@ -45,7 +45,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "recordings/conventions/points.METERS",
         "recordings/point_bodies/landmark_recording.PERCENT",
         "recordings/point_bodies/time_units.SECONDS",
-        "recordings/reading_settings.METRES",
+        "recordings/reading_settings.METERS",
         "recordings/streams/protocols/rokoko.HALF",
         "rotations/representations.FULL_TURN_RAD",
         "workflows/standard_joints.UNITS",

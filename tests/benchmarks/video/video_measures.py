@@ -37,7 +37,7 @@ def figures_of(motion: Motion, contacts: Flags, truth: Motion | None) -> dict[st
 
 def foot_joints(motion: Motion) -> NDArray[np.intp]:
     """Return the joints of ankle and toes, left and right."""
-    feet = find_foot_joints(motion)
+    feet = find_foot_joints(motion.skeleton)
     assert feet is not None
     return feet
 

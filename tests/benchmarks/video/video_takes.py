@@ -17,6 +17,7 @@ from scipy.interpolate import CubicSpline
 
 from solvers.arrays import Array
 from solvers.motion import Motion, Skeleton, find_humanoid_map
+from solvers.motion.humanoid import SIDES
 from solvers.recordings import read_acclaim, read_recording
 from solvers.recordings.conventions import put_on_floor, z_up_from_y_up
 from solvers.recordings.conventions.axes import rotations_y_up_from_z_up, y_up_from_z_up
@@ -158,7 +159,6 @@ def damage(motion: Motion, faults: Faults, rng: np.random.Generator) -> Motion:
     return motion.with_poses(rotations, start + rotate(tilt, path - start))
 
 
-SIDES = ("left", "right")
 SLOW_S = 0.7
 """Seconds between independent values of slow errors."""
 

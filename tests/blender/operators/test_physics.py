@@ -1,6 +1,7 @@
 """Physics: a new action in which nothing sinks into the ground."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +69,20 @@ def test_unfollowable_take_is_reported_and_unchanged(walker, blank, keys_of, loa
     assert {name[1:]: keys for name, keys in keys_of(action).items()} == {
         name[1:]: keys for name, keys in before.items()
     }
+
+
+def test_report_names_the_first_frame_of_the_action_that_was_not_followed(walker, blank, load):
+    """Frames of the action, which starts at frame 1, not rows of an array."""
+    simulating, scene = load("mocap_assist.physics.simulating"), blank.context.scene
+    settings = simulating.SimulateBundle(load("solvers.physics").SimulateSettings())
+    solved = simulating.read_simulating(scene, walker, settings)()
+    followed = solved.simulated.followed.copy()
+    followed[5:8] = False
+    partly = solved._replace(simulated=replace(solved.simulated, followed=followed))
+
+    message = simulating.write_simulated(scene, walker, settings, partly)
+
+    assert "The first frame that it could not follow is 6." in message
 
 
 def test_disabled_button_gives_a_reason(blank):

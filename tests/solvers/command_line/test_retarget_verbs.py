@@ -173,7 +173,7 @@ def test_unbake_refuses_points_and_invalid_tolerances(call, walk_file, tmp_path)
 
     assert [status for status, _, _ in failures] == [2, 2, 2]
     assert "Points without a skeleton" in failures[0][2]
-    assert "more than 0" in failures[1][2]
+    assert "not positive" in failures[1][2]
 
 
 def resting(skeleton: Skeleton) -> Motion:

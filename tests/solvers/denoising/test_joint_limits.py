@@ -1,5 +1,7 @@
 """Limits clamp any excess softly and change nothing else."""
 
+from dataclasses import astuple
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -168,6 +170,19 @@ def test_limits_learned_on_one_rig_apply_to_another(walk):
     other_rig = limit_excess(with_elbow_bent_back(lowered, "lowerarm_l"), limits)
     assert first_rig.max() > 0.5
     assert_allclose(other_rig, first_rig, atol=1e-6)
+
+
+def test_limits_of_roles_apply_next_to_those_of_other_joints(walk):
+    learned = learn_joint_limits([walk])
+    of_a_prop = euler_limits("prop", IDENTITY, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0])
+    both = JointLimits(*(
+        one + other if isinstance(one, tuple) else np.concatenate([one, other])
+        for one, other in zip(astuple(learned), astuple(of_a_prop), strict=True)
+    ))  # fmt: skip
+    bent = with_elbow_bent_back(walk, "LeftForeArm")
+
+    assert learned.by_role.any() and not both.by_role.all()
+    assert_allclose(limit_excess(bent, both), limit_excess(bent, learned))
 
 
 def with_other_rest_pose(motion: Motion) -> tuple[Motion, list[str]]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from drawn_bodies import CAMERA, NATURAL, observed, posed
+from drawn_bodies import CAMERA, NATURAL, drawn, observed, posed
 from numpy.testing import assert_allclose
 
 from solvers.depth_tracking.body.model import default_body
@@ -113,13 +113,77 @@ def test_terms_have_zero_residuals_at_the_true_pose():
 
     for term in (
         depth_image_term(hypothesis, observation, groups, 1.0),
-        extra_depth_term(hypothesis, observation, groups, 1.0, 0.08),
         silhouette_term(hypothesis, observation, 1.0),
         closest_surface_term(hypothesis, observation.points, 1.0, 0.05),
+    ):
+        assert len(term.residuals) > 300
+        assert_allclose(term.residuals, 0.0, atol=1e-9)
+
+
+def test_terms_of_disagreeing_pixels_have_no_rows_at_the_true_pose():
+    hypothesis, observation = render_hypothesis(BODY, NATURAL, CAMERA), observed(NATURAL)
+    groups = group_pixels(hypothesis, observation, 0.08)
+
+    for term in (
+        extra_depth_term(hypothesis, observation, groups, 1.0, 0.08),
         off_actor_term(hypothesis, observation, groups, 1.0, 0.05),
         too_near_term(hypothesis, observation, groups, 1.0, 0.05),
     ):
-        assert_allclose(term.residuals, 0.0, atol=1e-9)
+        assert not len(term.residuals)
+
+
+@pytest.mark.parametrize(("term", "axis", "offset"), [
+    (off_actor_term, 0, 0.05), (off_actor_term, 0, -0.05), (off_actor_term, 1, 0.05),
+    (too_near_term, 2, -0.12), (extra_depth_term, 0, 0.05), (extra_depth_term, 2, -0.12),
+])  # fmt: skip
+def test_terms_of_disagreeing_pixels_pull_a_displaced_body_back(term, axis, offset):
+    """By no more than the offset, but for one pixel: 2 cm at this distance."""
+    start = NATURAL.copy()
+    start[axis] += offset
+    hypothesis, observation = render_hypothesis(BODY, start, CAMERA), observed(NATURAL)
+    groups = group_pixels(hypothesis, observation, 0.08)
+
+    rows = term(hypothesis, observation, groups, 1.0, 0.08)
+
+    along = rows.residuals[rows.directions[:, axis] == 1.0]
+    assert len(along) > 100
+    assert along.mean() / offset < -0.25 and np.abs(along).max() < abs(offset) + 0.02
+
+
+@pytest.mark.parametrize(("term", "axis", "offset", "n_axes"), [
+    (off_actor_term, 0, 0.1, 2), (too_near_term, 2, -0.12, 3),
+])  # fmt: skip
+def test_weights_of_free_space_fall_with_the_distance(term, axis, offset, n_axes):
+    start = NATURAL.copy()
+    start[axis] += offset
+    hypothesis, observation = render_hypothesis(BODY, start, CAMERA), observed(NATURAL)
+    groups = group_pixels(hypothesis, observation, 0.08)
+
+    rows = term(hypothesis, observation, groups, 8.0, 0.05)
+
+    distances = np.linalg.norm(rows.residuals.reshape(-1, n_axes), axis=1)
+    order, weights = np.argsort(distances), rows.weights[::n_axes]
+    found = np.interp([0.05, 0.1], distances[order], weights[order])
+    assert_allclose(found, [8.0 / 4.0, 8.0 / 25.0], atol=0.05)
+
+
+def test_pairs_of_the_extra_depth_term_are_the_shortest_of_each_target():
+    """The legs are not observed, so that many points have the same closest target."""
+    picture = drawn(NATURAL)
+    picture[70:] = 0.0
+    hypothesis = render_hypothesis(BODY, NATURAL, CAMERA)
+    observation = Observation(CAMERA, picture)
+    groups = group_pixels(hypothesis, observation, 0.08)
+
+    rows = extra_depth_term(hypothesis, observation, groups, 1.0, 0.005)
+
+    targets = rows.points[::3] + rows.residuals.reshape(-1, 3)
+    _, reached = observation.tree.query(targets)
+    distances, nearest = observation.tree.query(hypothesis.points[groups.off_actor])
+    shortest = [distances[nearest == target].min() for target in reached]
+    assert len(set(reached)) == len(reached) < len(set(nearest))
+    assert_allclose(np.linalg.norm(rows.residuals.reshape(-1, 3), axis=1), shortest)
+    assert np.abs(rows.residuals[2::3]).max() <= 0.005
 
 
 def test_pixel_groups_equal_those_of_the_paper():

@@ -8,7 +8,7 @@ import pytest
 from solvers.arrays import Flags
 from solvers.feet import PlantSettings, find_legs, find_supports, plant_feet
 from solvers.feet.body_supports import SUPPORTS, detect_supports
-from solvers.motion import Motion, find_humanoid_map
+from solvers.motion import Motion, Skeleton, find_humanoid_map
 from solvers.recordings import read_acclaim
 from solvers.samples import walker_skeleton
 from tests.benchmarks.contacts.weightless_feet import made_takes
@@ -102,13 +102,15 @@ def test_surface_is_that_of_the_pelvis_whatever_way_the_rest_pose_faces():
     skeleton = walker_skeleton()
     offsets = {}
     for name, rotation in (("as it is", np.eye(3)), ("turned", np.diag([-1.0, -1.0, 1.0]))):
-        rotated = skeleton.__class__(
-            skeleton.names, skeleton.parents, skeleton.offsets @ rotation
-        )
+        rotated = Skeleton(skeleton.names, skeleton.parents, skeleton.offsets @ rotation)
         hips = find_supports(rotated, find_humanoid_map(rotated))[-1]
         offsets[name] = np.array([point.offset for point in hips.points]) @ rotation
 
     assert hips.name == "hips" and hips.chain == ()
     assert offsets["turned"] == pytest.approx(offsets["as it is"])
-    left_seat_bone = offsets["as it is"][0]
-    assert left_seat_bone[0] > 0.04 and left_seat_bone[2] < -0.05
+    child = Skeleton(skeleton.names, skeleton.parents, 0.5 * skeleton.offsets)
+    hips = find_supports(child, find_humanoid_map(child))[-1]
+    assert [point.offset for point in hips.points] == pytest.approx(0.5 * offsets["as it is"])
+    left, right = offsets["as it is"][::2], offsets["as it is"][1::2]
+    assert right == pytest.approx(left * [-1.0, 1.0, 1.0])
+    assert left[0, 2] < -0.05 < 0.04 < left[0, 0] < left[:, 0].max() < 0.2

@@ -8,7 +8,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.feet import LivePlanting, find_legs
 from solvers.feet.live_contacts import LiveContacts
-from solvers.motion import Motion, detect_contacts, find_humanoid_map, forward_kinematics
+from solvers.motion import (
+    Motion,
+    Skeleton,
+    detect_contacts,
+    find_humanoid_map,
+    forward_kinematics,
+)
 from solvers.motion.humanoid import CONTACT_MODEL, foot_points
 from solvers.samples import GaitSettings, walking_gait
 
@@ -84,6 +90,41 @@ def test_a_foot_returns_to_its_path_without_a_jump(sliding, planted):
     assert np.linalg.norm(before, axis=-1).max() > 0.03  # something is to be eased out
     change = np.linalg.norm(np.diff(shift, 2, axis=0), axis=-1)[released[:-1]]
     assert change.max() < 0.5 * np.linalg.norm(before, axis=-1).max()
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.25])
+def test_a_foot_that_slides_fast_is_not_held_whatever_the_contact(sliding, scale, monkeypatch):
+    """Speeds relative to the leg: 0.5 m/s is too fast for an adult."""
+    monkeypatch.setattr(LiveContacts, "update", lambda *_: np.ones(2))
+    small = scaled(sliding, scale)
+
+    _, contacts = held(small)
+
+    steps = np.diff(feet_of(small)[N_CALIBRATION - 1 :], axis=0) / scale
+    speeds = RATE * np.linalg.norm(steps, axis=-1).min(axis=-1)
+    assert speeds.max() > 2.0 and np.quantile(speeds[contacts], 0.97) < 0.7
+    assert contacts[speeds < 0.2].mean() > 0.8
+
+
+def test_a_released_foot_returns_as_a_critically_damped_spring(sliding, monkeypatch):
+    """So (a + b t) exp(-16 t): times exp(16 t), it is a straight line."""
+    contact = iter([1.0] * (N_CALIBRATION + 5) + [0.0] * 15)
+    monkeypatch.setattr(LiveContacts, "update", lambda *_: np.full(2, next(contact)))
+    walk = sliding.slice(0, N_CALIBRATION + 20)
+
+    motion, contacts = held(walk)
+
+    shift = (feet_of(motion) - feet_of(walk)[N_CALIBRATION:])[5:, :, 0]
+    line = shift * np.exp(16.0 * np.arange(len(shift)) / RATE)[:, None, None]
+    assert contacts[:5].any() and not contacts[5:].any()
+    assert np.abs(shift[0]).max() > 0.002
+    assert_allclose(np.diff(line, 2, axis=0), 0.0, atol=0.01 * np.abs(line).max())
+
+
+def scaled(motion, factor):
+    skeleton = motion.skeleton
+    small = Skeleton(skeleton.names, skeleton.parents, factor * skeleton.offsets)
+    return Motion(small, motion.rotations, factor * motion.root_positions, motion.frame_rate)
 
 
 def test_contacts_equal_those_of_complete_arrays(sliding):

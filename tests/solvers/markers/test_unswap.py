@@ -93,6 +93,20 @@ def test_marker_with_the_label_of_a_missing_one_is_renamed(take):
     assert result.swaps == (Swap(("LFHD", "LBHD"), range(80, 140)),)
 
 
+def test_marker_that_comes_back_after_a_gap_with_the_label_of_a_missing_one_is_renamed(take):
+    """Nothing but its distances shows which marker it is: no label is handed over."""
+    missing, found = take.names.index("LFHD"), take.names.index("LBHD")
+    truth = take.positions.copy()
+    truth[60:160, missing] = np.nan
+    truth[60:80, found] = truth[140:160, found] = np.nan
+    wrong = truth.copy()
+    wrong[80:140, missing], wrong[80:140, found] = truth[80:140, found], np.nan
+
+    result = unswap_markers(take.with_positions(wrong))
+
+    assert same(result.tracks, take.with_positions(truth))
+
+
 def test_confidence_follows_the_marker(take):
     confidence = np.linspace(0, 1, take.n_frames * take.n_points).reshape(take.n_frames, -1)
     certain = Tracks(take.names, take.positions, take.frame_rate, confidence)
@@ -127,11 +141,11 @@ def test_viterbi_finds_the_cheapest_sequence_of_labels(rng):
         rng.uniform(0, 3, 10),
         rng.normal(size=10),
     )
-    trajectories = (np.arange(2**10)[:, None] >> np.arange(10)) % 2
-    rotations = np.diff(trajectories, axis=1) != 0
-    cost = np.where(rotations, change[1:], stay[1:]).sum(axis=1) + trajectories @ swapped_cost
+    sequences = (np.arange(2**10)[:, None] >> np.arange(10)) % 2
+    changes = np.diff(sequences, axis=1) != 0
+    cost = np.where(changes, change[1:], stay[1:]).sum(axis=1) + sequences @ swapped_cost
 
-    assert np.array_equal(_viterbi(stay, change, swapped_cost), trajectories[cost.argmin()])
+    assert np.array_equal(_viterbi(stay, change, swapped_cost), sequences[cost.argmin()])
 
 
 @pytest.mark.parametrize("file", ["85_02.c3d", "HDM_bd_05-01_01_120.c3d"])

@@ -118,7 +118,7 @@ def test_movement_too_fast_for_the_new_rate_leaves_no_alias():
 def test_causal_smoothing_lags_as_documented():
     ramp = np.arange(200.0)
 
-    lag = ramp - smooth_gaussian(ramp, 10.0, ahead=False)
+    lag = ramp - smooth_gaussian(ramp, 10.0, causal=True)
 
     assert lag[100] == pytest.approx(0.8 * 10.0, abs=0.5)
 

@@ -1,5 +1,7 @@
 """Derivatives of goals agree with differences; a goal is met where nothing opposes it."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -216,16 +218,26 @@ def test_a_knee_that_bends_backward_by_a_few_degrees_does_not_bend_farther(walk,
     assert_allclose(limit.minimum, np.radians(bend_deg), atol=np.radians(1.5))
 
 
-class HalfSteps:
-    """A goal whose derivative is twice too large: each step goes half of the way."""
+@dataclass
+class WrongSlope:
+    """A goal whose derivative is wrong by a factor: with 2, each step goes half of the way."""
+
+    factor: float
 
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         moved = fitted.deviations()[:, :3]
         error = np.zeros((N_FRAMES, fitted.n_variables))
         error[:, :3] = moved - 1.0
-        derivative = 2.0 * np.tile(np.eye(fitted.n_variables), (N_FRAMES, 1, 1))
+        derivative = self.factor * np.tile(np.eye(fitted.n_variables), (N_FRAMES, 1, 1))
         equations.add_frames(error, derivative)
 
 
 def test_a_fit_that_hardly_decreases_has_converged(start):
-    assert fit_motion(start, [HalfSteps()]).has_converged
+    assert fit_motion(start, [WrongSlope(2.0)]).has_converged
+
+
+def test_a_fit_that_only_increases_has_not_converged(start):
+    fit = fit_motion(start, [WrongSlope(-1.0)])
+
+    assert not fit.has_converged
+    assert_allclose(fit.motion.root_positions, start.motion.root_positions)

@@ -10,7 +10,13 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Skeleton, forward_kinematics
-from solvers.physics import Ground, SimulateSettings, follow_target, simulate
+from solvers.physics import (
+    Ground,
+    SimulateSettings,
+    describe_first_failure,
+    follow_target,
+    simulate,
+)
 from solvers.physics.control import apply_control
 from solvers.samples import GaitSettings, walking_gait
 
@@ -26,6 +32,7 @@ def test_body_far_above_the_ground_is_unchanged_and_reported():
     assert np.array_equal(result.motion.rotations, sky.rotations)
     assert np.array_equal(result.motion.root_positions, sky.root_positions)
     assert not result.followed.any()
+    assert describe_first_failure(result.followed, range(WALK.n_frames)) == ""
     assert result.message.startswith("The simulated body could not follow the take, which is")
     assert "The take stands at a height of 10.0" in result.message
     assert "If that is wrong, set the ground to be under the feet" in result.message
@@ -44,7 +51,9 @@ def test_frames_not_followed_are_those_of_the_take():
     assert (np.diff(failed) == 1).mean() > 0.5, "it was lost before that was certain"
     assert np.array_equal(result.motion.root_positions[failed], roots[failed])
     assert not np.array_equal(result.motion.root_positions[10:50], roots[10:50])
-    assert f"in {len(failed)} of 240 frames, first in frame {failed[0]}" in result.message
+    assert f"in {len(failed)} of 240 frames; there the take is unchanged" in result.message
+    first = describe_first_failure(result.followed, range(1001, 1241))
+    assert first == f"The first frame that it could not follow is {1001 + failed[0]}."
     steps = np.abs(np.diff(result.motion.root_positions, axis=0)).max()
     assert steps < 2 * np.abs(np.diff(roots, axis=0)).max(), "it eases over"
 
@@ -56,6 +65,7 @@ def test_segments_between_jumps_are_simulated_separately():
     result = simulate(WALK.with_poses(root_positions=roots))
 
     assert result.followed.all()
+    assert describe_first_failure(result.followed, range(WALK.n_frames)) == ""
     assert np.abs(result.motion.root_positions - roots).max() < 0.05
     separate = simulate(WALK.slice(0, 12)).motion
     assert_allclose(result.motion.root_positions[:12], separate.root_positions, atol=0.01)

@@ -5,9 +5,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
+from solvers.motion.humanoid import SIDES
 from solvers.physics import SimulateSettings, simulate
 from solvers.physics.body import build_physics_body
-from solvers.physics.body_surface import SIDES, find_leg_chain, lowest_points, select_foot_ends
+from solvers.physics.body_surface import find_leg_chain, lowest_points, select_foot_ends
 from solvers.physics.foot_placement import (
     MIN_SWING_CLEARANCE_M,
     STANCE_DEPTH_M,

@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map
-from solvers.physics.body import Capsule, build_physics_body
-from solvers.physics.body_surface import select_foot_ends
+from solvers.physics.body import Capsule, PhysicsBody, build_physics_body
+from solvers.physics.body_surface import lowest_points, select_foot_ends
 from solvers.physics.contact_loads import add_loads
 from solvers.physics.control import ARM_REGULARIZATION, _ground_forces
 from solvers.physics.engine import load_engine
@@ -49,15 +49,7 @@ def test_ground_load_is_greater_at_the_heavier_end_of_a_beam():
 @pytest.mark.parametrize(("load", "least", "most"), [(0.15, 1.0, 1.0), (0.08, 0.1, 0.5)])
 def test_foot_of_the_free_leg_stands_and_one_that_touches_moves(load, least, most):
     """The other leg carries the rest of the weight; the feet of the target stand nowhere."""
-    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=60.0))
-    humanoid = find_humanoid_map(walk.skeleton)
-    body = add_soles(build_physics_body(walk, humanoid), walk, humanoid, 0.0)
-    standing = Motion(
-        walk.skeleton,
-        np.repeat(walk.rotations[:1], 20, axis=0),
-        np.repeat(walk.root_positions[:1], 20, axis=0),
-        60.0,
-    )
+    body, standing = standing_body()
     ends = select_foot_ends(body, "left")
     loads = np.tile(load * ends / ends.sum(), (20, 1))
 
@@ -65,6 +57,31 @@ def test_foot_of_the_free_leg_stands_and_one_that_touches_moves(load, least, mos
 
     assert (weights[:, 0] >= least - 1e-9).all()
     assert (weights[:, 0] <= most).all()
+
+
+@pytest.mark.parametrize(("height", "weight"), [(0.01, 1.0), (0.025, 0.5), (0.04, 0.0)])
+def test_foot_without_load_stands_where_the_target_does_near_the_ground(height, weight):
+    """Halfway between the heights at which it is held and free; of an adult, in meters."""
+    body, standing = standing_body()
+    target_weights = np.tile([1.0, 0.0], (20, 1))
+    lowest = lowest_points(body, standing)[0, select_foot_ends(body, "left"), 2].min()
+    ground = lowest - height * body.size
+    loads = np.zeros((20, len(select_foot_ends(body, "left"))))
+
+    weights = compute_support_weights(body, standing, loads, target_weights, ground)
+
+    assert_allclose(weights, weight * target_weights, atol=1e-9)
+
+
+def standing_body() -> tuple[PhysicsBody, Motion]:
+    """Return a body, and a third of a second in which it does not move."""
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=60.0))
+    humanoid = find_humanoid_map(walk.skeleton)
+    body = add_soles(build_physics_body(walk, humanoid), walk, humanoid, 0.0)
+    rotations, roots = (
+        np.repeat(each[:1], 20, axis=0) for each in (walk.rotations, walk.root_positions)
+    )
+    return body, Motion(walk.skeleton, rotations, roots, 60.0)
 
 
 def test_legs_carry_the_body_where_arms_touch_too():

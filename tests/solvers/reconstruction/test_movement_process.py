@@ -167,7 +167,7 @@ def test_interpolation_between_predictions_is_accurate(prior):
     all_frames = prior.predict(replace(smoothed, frame_rate=10.0))
     still = replace(prior, movement=None)
 
-    each = still.predict(smoothed, ahead=False)
+    each = still.predict(smoothed, causal=True)
     some = still.predict(smoothed)
 
     assert few.offsets.shape == all_frames.offsets.shape == each.offsets.shape
@@ -181,7 +181,7 @@ def test_causal_prediction_ignores_later_frames(prior):
     smoothed = smooth_postures(recording(simulate_bad_sensor(truth(1.3))), 0.0)
     cut = replace(smoothed, features=smoothed.features[:30])
 
-    complete, begun = (prior.predict(one, ahead=False).offsets for one in (smoothed, cut))
+    complete, begun = (prior.predict(one, causal=True).offsets for one in (smoothed, cut))
 
     assert_allclose(complete[:30], begun, atol=1e-9)
 

@@ -134,11 +134,13 @@ def test_gaps_remain_and_do_not_spread(walk):
 
 
 def test_in_place_removes_the_travel(walk):
+    walk = walk.with_poses(root_positions=walk.root_positions + np.array([5.0, -3.0, 0.0]))
     still = retargeted(walk, mixamo(), RetargetSettings(root_motion=RootMotion.IN_PLACE))
     default = retargeted(walk, mixamo())
 
     assert np.linalg.norm(np.ptp(default.root_positions[:, :2], axis=0)) > 2.0
     assert np.linalg.norm(np.ptp(still.root_positions[60:-60, :2], axis=0)) < 0.1
+    assert_allclose(still.root_positions[0], default.root_positions[0], atol=1e-9)
     assert_allclose(still.root_positions[:, 2], default.root_positions[:, 2], atol=1e-12)
 
 

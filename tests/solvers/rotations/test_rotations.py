@@ -174,6 +174,15 @@ def test_unwrapped_angles_give_the_same_rotations_without_jumps(rng):
     assert np.abs(np.diff(unwrapped, axis=0)).max() < np.pi < raw
 
 
+def test_unwrapped_angles_are_those_of_a_rotation_past_gimbal_lock():
+    """Two turns about the middle axis, whose angle alone changes."""
+    smooth = np.linspace([1.4, 0.1, -1.2], [1.4, 4.0 * np.pi, -1.2], 90)
+    folded = euler_from_quaternion(quaternion_from_euler(smooth, "ZYX"), "ZYX")
+
+    assert np.abs(np.diff(folded, axis=0)).max() > 3.0
+    assert_allclose(unwrap_euler(folded), smooth, atol=1e-9)
+
+
 def test_unwrapping_skips_gaps():
     angles = np.linspace(0, 4 * np.pi, 40)[:, None] * np.array([1.0, 0.0, 0.0])
     folded = (angles + np.pi) % (2 * np.pi) - np.pi

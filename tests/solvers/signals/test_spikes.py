@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.quality.joint_signals import estimate_local_noise
 from solvers.signals.spikes import find_runs, fit_lowess
 
 
@@ -99,18 +98,6 @@ def test_spikes_are_found_if_a_third_of_all_frames_are_spikes(rng):
 
     assert (found & hit).sum() > 0.75 * hit.sum()
     assert (found & ~hit).sum() < 0.01 * (~hit).sum()
-
-
-def test_local_noise_is_high_where_the_noise_is(rng):
-    """White noise of given deviation in the second half of a 2 Hz swing sampled at 30 Hz."""
-    time = np.arange(600) / 30.0
-    trajectory = np.sin(2 * np.pi * 2.0 * time)[:, None] * [1.0, 0.0, 0.0]
-    trajectory[300:] += rng.normal(scale=0.05, size=(300, 3))
-
-    shake = estimate_local_noise(trajectory, 30)
-
-    assert shake[:280].max() == 0.0
-    assert_allclose(np.median(shake[320:]), 0.05, rtol=0.2)
 
 
 def test_runs_are_half_open():

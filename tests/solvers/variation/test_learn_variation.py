@@ -148,6 +148,21 @@ def test_single_clip_varies_only_by_borrowed_variation(walks):
     assert_allclose(generic.joints.mean(axis=0), separate.joints[0], atol=1e-12)
 
 
+def test_borrowed_variation_shrinks_with_the_movement_of_the_clip(walks):
+    half = quaternion_from_rotation_vector(
+        0.5 * rotation_vector_from_quaternion(walks[0].rotations)
+    )
+    other = learn_variation_model(walks[1:])
+
+    found = [
+        borrow_variation(clip, [other])
+        for clip in (walks[0], replace(walks[0], rotations=half))
+    ]
+
+    spread, half_spread = (model.joints[1:].std(axis=0).mean() for model in found)
+    assert half_spread == pytest.approx(0.5 * spread, rel=0.1)
+
+
 def test_variation_of_hardly_moving_clips_is_not_scaled_up_to_that_of_a_walk(walks):
     quiet = [
         replace(each, rotations=quaternion_from_rotation_vector(

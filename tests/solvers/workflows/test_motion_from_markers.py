@@ -20,12 +20,12 @@ def corrupted(walk) -> Tracks:
     """Swapped wrists, a missing head marker, a missing arm, and points of other names."""
     take = markers_on(walk, noise=0.0005, skin=0.002)
     positions = take.positions.copy()
-    position = {name: index for index, name in enumerate(take.names)}
-    wrists = [position["LWRA"], position["LWRB"]]
+    index_of_name = {name: index for index, name in enumerate(take.names)}
+    wrists = [index_of_name["LWRA"], index_of_name["LWRB"]]
     positions[50:90, wrists] = positions[50:90, wrists[::-1]]
-    positions[20:80, position["LFHD"]] = np.nan
+    positions[20:80, index_of_name["LFHD"]] = np.nan
     for name in ("RELB", "RUPA", "RFRM", "RWRA", "RWRB", "RFIN"):
-        positions[100:130, position[name]] = np.nan
+        positions[100:130, index_of_name[name]] = np.nan
     other = np.zeros((take.n_frames, 1, 3)) + 5.0
     return Tracks((*take.names, "*0"), np.concatenate([positions, other], axis=1), 60.0)
 

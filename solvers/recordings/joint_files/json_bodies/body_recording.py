@@ -111,8 +111,8 @@ def recording_of_body(
             return read_body(path, unnamed, scale, progress, times, rate)
         if is_named:
             raise InvalidFileError(
-                f"{path} has joints called {', '.join(names[:3])} ..., which are no body. Store"
-                " them as a joint CSV."
+                f"{path} has joints called {', '.join(names[:3])} ..., which do not form a"
+                " body. Store them as a joint CSV."
             )
         raise InvalidFileError(
             f"{path} has {points.shape[1]} points without names, which form no body in a"

@@ -22,7 +22,7 @@ WITHOUT_IDENTITY = frozenset(("0", "untracked 0"))
 NAME_OF_PERSON = re.compile(
     r"(?i)\D*|\D*(person|people|body|actor|subject|track|player|human|user|skeleton|id)[\W_]*\d+"
 )
-"""Key of a member that is no frame: it has no number, or that of a person."""
+"""Key of a member that is not a frame: it has no number, or that of a person."""
 WORDS_OF_DATA = frozenset((
     "frames", "data", "pose", "poses", "tpose", "apose", "rest", "calibration", "reference",
     "raw", "original", "unfiltered", "filtered", "smooth", "smoothed", "clean", "cleaned",

@@ -70,7 +70,7 @@ def json_by_frame(members: Iterable[JsonMember], path: Path | str) -> Iterator[J
 
 
 def _path_of_body(positions: Mapping[str, list[Any]]) -> Iterator[JsonMember]:
-    """Yield where the body is in all frames, if that is among positions that are no joints."""
+    """Yield where the body is in all frames, if that is among positions that are not joints."""
     if key := key_of_root(positions):
         yield JsonMember(ROOT, {key: positions[key]}, 1.0)
 

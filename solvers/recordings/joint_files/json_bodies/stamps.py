@@ -104,7 +104,7 @@ class StatedRate(NamedTuple):
 
 
 def stated_rates(value: Any, depth: int = 0) -> Iterator[StatedRate]:
-    """Yield the rates that the members of what is no frame state, such as `metadata`."""
+    """Yield the rates that the members of what is not a frame state, such as `metadata`."""
     if not isinstance(value, Mapping) or depth >= MAX_RATE_DEPTH:
         return
     for order, key in enumerate(RATE_KEYS):

@@ -30,7 +30,7 @@ def named_arrays(lists: Sequence[Listed]) -> Iterator[TitledRows]:
     """Yield arrays of positions with the names of their joints, the likeliest first.
 
     Names with the most roles in a body come first, and arrays with a row for each frame before
-    flat ones. Times, rotations, rest poses and the like (`is_other_array`) are no positions,
+    flat ones. Times, rotations, rest poses and the like (`is_other_array`) are not positions,
     whatever their shape; of several arrays the best is taken (`rank_of_array`), and the remark
     of the table says which.
 

@@ -57,7 +57,7 @@ READ_ARRAYS = (
     *OF_EASYMOCAP,
 )  # fmt: skip
 OF_SMPL = frozenset((*POSITIONS, "betas"))
-"""Names of which one is next to a `pose` of SMPL."""
+"""Names; one of them is next to a `pose` of SMPL."""
 N_BODY = len(BODY)
 N_HAND = 9 * len(FINGERS)
 """Numbers of one hand: three joints of each finger, with an axis and angle each."""

@@ -37,7 +37,7 @@ ROWS: dict[str, Collection[int]] = {
 
 
 def rows_of_frames(arrays: Mapping[str, Array]) -> dict[str, Array]:
-    """Return arrays whose first axis are the frames, of which a row may hold one or all.
+    """Return arrays with frames on the first axis; a row may hold one frame or all.
 
     All frames are as many as the positions, or as those that change least from one to the next:
     bodies move little between frames. Rows of rotation matrices become rows of vectors.

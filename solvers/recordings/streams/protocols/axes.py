@@ -49,7 +49,7 @@ def checked_positions(positions: Array) -> Array:
     Raises
     ------
     InvalidMotionError
-        One is no number, or too far away.
+        One is not a number, or too far away.
     """
     if not (np.abs(positions) <= MAX_POSITION_M).all():
         limit = f"{MAX_POSITION_M:g}"
@@ -68,7 +68,7 @@ def checked_rotations(rotations: Array) -> Array:
     Raises
     ------
     InvalidMotionError
-        One is no number, or far from the norm 1.
+        One is not a number, or far from the norm 1.
     """
     norms = np.linalg.norm(rotations, axis=-1)
     if not ((norms >= MIN_NORM) & (norms <= MAX_NORM)).all():

@@ -6,9 +6,8 @@ import numpy as np
 
 from ....arrays import Array
 from ....motion import Skeleton
-from ....motion.humanoid import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES
+from ....motion.humanoid import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES, SIDES
 
-SIDES = ("left", "right")
 FINGERS = {
     "Thumb": ("Metacarpal", "Proximal", "Distal"),
     **dict.fromkeys(

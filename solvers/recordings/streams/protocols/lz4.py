@@ -13,7 +13,7 @@ MAX_OUTPUT_BYTES = 1 << 18
 and time."""
 MIN_MATCH = 4
 LONG_LENGTH = 15
-"""Length of which more follows, in bytes that add up as long as they are 255."""
+"""A length that continues in the next bytes; each 255 adds another byte."""
 FULL_BYTE = 255
 HAS_BLOCK_CHECKSUM, HAS_SIZE, HAS_CONTENT_CHECKSUM, HAS_DICTIONARY = 0x10, 0x08, 0x04, 0x01
 IS_RAW = 0x8000_0000

@@ -14,6 +14,7 @@ from ....arrays import Array
 from ....errors import InvalidFileError, InvalidMotionError
 from ....json_text import parse_json
 from ....motion import Sensor
+from ....motion.humanoid import SIDES
 from ...conventions import MAX_TIME_S, MILLISECOND, from_azure_space
 from ...joint_files import people_of_frame, time_of_frame
 from ...point_bodies import (
@@ -156,7 +157,7 @@ def encode_mediapipe(frame: LiveFrame, roles: Mapping[str, int]) -> bytes:
     roles : mapping of humanoid roles to joints
         With both upper legs.
     """
-    hips = [frame.positions[roles[f"{side}UpperLeg"]] for side in ("left", "right")]
+    hips = [frame.positions[roles[f"{side}UpperLeg"]] for side in SIDES]
     center = np.mean(hips, axis=0)
     landmarks = []
     for name in LANDMARK_JOINTS[:N_LANDMARKS]:

@@ -13,6 +13,7 @@ import numpy as np
 from ....arrays import Array
 from ....errors import InvalidMotionError
 from ....json_text import parse_json
+from ....motion.humanoid import SIDES
 from ....rotations import inverse, multiply
 from ...conventions import MAX_TIME_S
 from ..frames import PoseFrame
@@ -51,7 +52,7 @@ LIMBS = {
 }  # fmt: skip
 ROLES = TRUNK | {
     f"{side}{bone}": f"{side}{role}"
-    for side in ("left", "right") for bone, role in LIMBS.items()
+    for side in SIDES for bone, role in LIMBS.items()
 }  # fmt: skip
 """Humanoid roles of the bones."""
 BONES = {role: bone for bone, role in ROLES.items()}

@@ -57,9 +57,9 @@ def test_what_was_not_tracked_is_nan(read):
 
     recording = read(irds([(1, 33 * n, missing if n == 2 else {}) for n in range(5)]))
 
-    positions = [NAMES.index(name) for name in missing]
-    assert np.isnan(recording.tracks.positions[2, positions]).all()
-    assert (recording.tracking_state[2, positions] == 0).all()
+    indices = [NAMES.index(name) for name in missing]
+    assert np.isnan(recording.tracks.positions[2, indices]).all()
+    assert (recording.tracking_state[2, indices] == 0).all()
     assert recording.tracks.visible.sum() == recording.tracks.visible.size - 2
 
 

@@ -8,13 +8,13 @@ from exports.camera_bodies import mediapipe
 
 from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, forward_kinematics, roles_by_name
+from solvers.motion.humanoid import SIDES
 from solvers.motion.skeletons import BODY_POINTS
 from solvers.recordings import list_bodies, read_recording
 from solvers.samples import walking_gait
 
 F = 40
 RATE_HZ = 15.0
-SIDES = ("left", "right")
 VISION = {"root": "hips", "spine": "spine", "centerShoulder": "neck", "topHead": "head"} | {
     side + part: side + role for side in SIDES for part, role in {
         "Shoulder": "UpperArm", "Elbow": "LowerArm", "Wrist": "Hand", "Hip": "UpperLeg",

@@ -7,13 +7,13 @@ import pytest
 
 from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, forward_kinematics
+from solvers.motion.humanoid import SIDES
 from solvers.motion.skeletons import BODY_POINTS
 from solvers.recordings import folders, list_bodies, read_recording, recordings_in
 from solvers.recordings.containers import names_by_number
 from solvers.samples import walking_gait
 
 F = 24
-SIDES = ("left", "right")
 PARTS = {"UpperArm": "shoulder", "LowerArm": "elbow", "Hand": "wrist", "UpperLeg": "hip",
          "LowerLeg": "knee", "Foot": "ankle"}  # fmt: skip
 NAMES = {f"{side}_{part}": side + role for side in SIDES for role, part in PARTS.items()}

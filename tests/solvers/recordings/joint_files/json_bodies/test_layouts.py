@@ -7,11 +7,11 @@ import pytest
 
 from solvers.errors import InvalidFileError
 from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics, roles_by_name
+from solvers.motion.humanoid import SIDES
 from solvers.recordings import list_bodies, read_recording
 from solvers.samples import walking_gait
 
 F = 30
-SIDES = ("left", "right")
 PARTS = {"shoulder": "UpperArm", "elbow": "LowerArm", "wrist": "Hand", "hip": "UpperLeg",
          "knee": "LowerLeg", "ankle": "Foot"}  # fmt: skip
 LANDMARKS = {f"{side}_{part}": side + role for side in SIDES for part, role in PARTS.items()}

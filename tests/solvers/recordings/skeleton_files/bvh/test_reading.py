@@ -112,10 +112,10 @@ def test_any_skeleton_survives_writing_and_reading(rng, tmp_path):
 
     back = read_bvh(tmp_path / "take.bvh", scale=0.05, up="Y")
 
-    positions = [back.skeleton.index(name) for name in names]
-    theirs = forward_kinematics(back).positions[:, positions]
+    indices = [back.skeleton.index(name) for name in names]
+    theirs = forward_kinematics(back).positions[:, indices]
     assert_allclose(theirs, forward_kinematics(motion).positions, atol=1e-6)
-    assert_allclose(back.skeleton.offsets[positions], skeleton.offsets, atol=1e-7)
+    assert_allclose(back.skeleton.offsets[indices], skeleton.offsets, atol=1e-7)
 
 
 @pytest.mark.parametrize(
