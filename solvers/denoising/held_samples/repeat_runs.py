@@ -22,6 +22,8 @@ in steps (`test_poses_on_steps_are_not_held`)."""
 MAX_STRAIGHT_RAD = 1e-3
 """Angle to the rest pose at which a joint is straight, radians. It bounds the rounding of files
 with two decimals."""
+MIN_BODY_FRACTION = 0.5
+"""Fraction of the joints that move from which on they are the body. By definition."""
 MAX_EXPECTED_RUNS = 0.1
 """Number of runs of one length that the other repeats of a part lead to expect, from which on
 one is no evidence. Chosen by hand: 32 development takes in steps of 0.01 to 1 degree have 350
@@ -92,13 +94,18 @@ def connect_runs(
 ) -> NDArray[np.intp]:
     """Return a number for each run, which those share whose parts were lost together, if any.
 
-    They have the same frames, and in a motion each part hangs on another one of them, as in a
-    limb or the body. Joints that are still connect what hangs on them with what they hang on.
+    They have the same frames. In a motion they are most of the body, or each part hangs on
+    another one of them, as in a limb. Joints that are still connect what hangs on them with
+    what they hang on.
     """
     times = runs.starts * (len(repeats) + 2) + runs.stops
     if isinstance(recording, Tracks):
         return times
     is_still = are_still(repeats)
+    _, first, group, n_runs = np.unique(
+        times, return_index=True, return_inverse=True, return_counts=True
+    )
+    is_body = n_runs >= MIN_BODY_FRACTION * np.count_nonzero(~is_still)
     anchors = np.append(recording.skeleton.parents, 0)  # the position hangs on the root
     for joint in range(1, recording.skeleton.n_joints):
         parent = anchors[joint]
@@ -111,6 +118,7 @@ def connect_runs(
     found = order[np.minimum(place, len(order) - 1)]
     is_linked = (keys[found] == anchor_keys) & (anchors[runs.parts] >= 0)
     connected = np.where(is_linked, found, np.arange(len(keys)))
+    connected = np.where(is_body[group], first[group], connected)
     while (connected[connected] != connected).any():
         connected = connected[connected]
     return connected
