@@ -11,7 +11,7 @@ from ...errors import InvalidMotionError
 from ...feet import SIDES
 from ...motion import JointLimits, Motion, Tracks, forward_kinematics
 from ...motion.humanoid import HumanoidMap, contacts_of_points, detect_contacts
-from ...motion.skeletons import find_shot_boundaries
+from ...motion.skeletons import PathJump, find_path_jumps, find_shot_boundaries
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
 from ..held_samples import body_is_held, find_held_samples, hide_held_samples
@@ -22,7 +22,6 @@ from .figures import quality_figures
 from .foot_slide import FootPoints, FootSlide, foot_paths, measure_foot_slide, sole_paths
 from .jitter import measure_jitter
 from .joint_signals import Signal, SpikeRule, extract_signals
-from .path_jumps import PathJump, find_path_jumps
 from .report import quality_report
 
 

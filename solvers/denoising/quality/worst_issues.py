@@ -7,6 +7,7 @@ from itertools import islice
 import numpy as np
 
 from ...motion import Motion, Tracks
+from ...motion.skeletons import MIN_JUMP_M
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
 from ...signals import find_runs, merge_runs
@@ -14,7 +15,6 @@ from .gap_issues import gap_issues
 from .issue import Issue
 from .joint_signals import Signal
 from .measure import Quality, measure_quality
-from .path_jumps import MIN_JUMP_M
 
 CUT_SEVERITY = 10.0
 """Severity of a cut, chosen by hand: joined recordings should be split before any other edit.
@@ -155,7 +155,8 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
 
 def _path_jumps(quality: Quality) -> Iterator[Issue]:
     name = quality.names[0]
-    for frame, distance in quality.path_jumps:
+    for jump in quality.path_jumps:
+        frame, distance = jump.frame, jump.distance
         sentence = f"{name} jumps by {100 * distance:.0f} cm and stays there."
         yield Issue(name, frame - 1, frame + 1, "spike", distance / MIN_JUMP_M, sentence)
 

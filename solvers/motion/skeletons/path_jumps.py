@@ -4,8 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...motion import Motion, Tracks
-from ...motion.skeletons import MIN_SHOT_S, shot_ranges
+from ...arrays import Array
+from .motion import Motion
+from .shot_boundaries import shot_ranges
+from .tracks import Tracks
 
 N_NEIGHBORS = 3
 """Steps on each side whose median predicts a step. Chosen by hand: 3 at 30 Hz are 0.1 s, in
@@ -14,17 +16,25 @@ MIN_JUMP_M = 0.05
 """Smallest jump, meters. Chosen by hand: 5 cm at 120 Hz are 6 m/s."""
 MAX_ACCELERATION = 100.0
 """Largest acceleration of a body, m/s^2. Chosen by hand: ten times gravity, as in a landing."""
+MAX_RETURN_S = 0.3
+"""Seconds after which a body that comes back was not put elsewhere by an error. By definition:
+Clean returns it if it does so earlier."""
 
 
 class PathJump(NamedTuple):
-    """The first frame at the new position, and the distance from where the path led, meters."""
+    """The first frame at the new position, and the offset from where the path led, meters."""
 
     frame: int
-    distance: float
+    offset: Array
+
+    @property
+    def distance(self) -> float:
+        """Length of the offset, meters."""
+        return float(np.linalg.norm(self.offset))
 
 
 def find_path_jumps(recording: Motion | Tracks, cuts: tuple[int, ...]) -> tuple[PathJump, ...]:
-    """Return the jumps of the root that do not come back within a quarter of a second.
+    """Return the jumps of the root that do not come back within 0.3 seconds.
 
     Trackers in headsets and models of video put a body elsewhere when they find themselves
     again, in the same pose. No step before or after shows the speed of such a jump. Cuts are
@@ -33,7 +43,7 @@ def find_path_jumps(recording: Motion | Tracks, cuts: tuple[int, ...]) -> tuple[
     if isinstance(recording, Tracks):
         return ()
     limit = max(MIN_JUMP_M, MAX_ACCELERATION / recording.frame_rate**2)
-    brief = max(round(MIN_SHOT_S * recording.frame_rate), 1)
+    brief = max(round(MAX_RETURN_S * recording.frame_rate), 1)
     jumps = []
     for start, stop in shot_ranges(recording, cuts):
         steps = np.diff(recording.root_positions[start:stop], axis=0)
@@ -46,5 +56,18 @@ def find_path_jumps(recording: Motion | Tracks, cuts: tuple[int, ...]) -> tuple[
         for step in np.flatnonzero(sizes > limit):
             around = excess[max(step - brief, 0) : step + brief + 1]
             if np.linalg.norm(around.sum(axis=0)) > 0.5 * sizes[step]:
-                jumps.append(PathJump(start + int(step) + 1, float(sizes[step])))
+                jumps.append(PathJump(start + int(step) + 1, excess[step]))
     return tuple(jumps)
+
+
+def path_offsets(jumps: tuple[PathJump, ...], n_frames: int) -> Array:
+    """Return how far all jumps so far have put the root elsewhere, shape (n_frames, 3)."""
+    offsets = np.zeros((n_frames, 3))
+    for jump in jumps:
+        offsets[jump.frame :] += jump.offset
+    return offsets
+
+
+def move_root(motion: Motion, offsets: Array) -> Motion:
+    """Return the motion with the root moved, shape (n_frames, 3), meters."""
+    return motion.with_poses(root_positions=motion.root_positions + offsets)
