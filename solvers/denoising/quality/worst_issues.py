@@ -13,6 +13,7 @@ from ...settings import Settings, setting
 from ...signals import find_runs, merge_runs
 from .gap_issues import gap_issues
 from .issue import Issue
+from .joint_jumps import MIN_JUMP_RAD
 from .joint_signals import Signal
 from .measure import Quality, measure_quality
 
@@ -119,6 +120,7 @@ def find_worst_issues(
     issues = [
         *_spikes(quality, pause),
         *_path_jumps(quality),
+        *_joint_jumps(quality),
         *gap_issues(quality, pause),
         *_jitter(quality, settings, pause),
         *_slides(quality, settings),
@@ -141,7 +143,7 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
             sentence = (
                 f"{signal.joint} jumps {n_spikes} times, by up to {amount}."
                 if n_spikes > 1
-                else f"{signal.joint} jumps by {amount}."
+                else _describe_jump(signal, height)
             )
             yield Issue(
                 signal.joint,
@@ -151,6 +153,17 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
                 height / signal.spike_threshold,
                 sentence,
             )
+
+
+def _joint_jumps(quality: Quality) -> Iterator[Issue]:
+    for signal, frame, angle in quality.joint_jumps:
+        sentence = _describe_jump(signal, angle)
+        yield Issue(signal.joint, frame - 1, frame + 1, "spike", angle / MIN_JUMP_RAD, sentence)
+
+
+def _describe_jump(signal: Signal, height: float) -> str:
+    amount = _amount(signal, height)
+    return f"{signal.joint} jumps by {amount}."
 
 
 def _path_jumps(quality: Quality) -> Iterator[Issue]:
