@@ -14,6 +14,7 @@ from ..motion.skeletons import (
 )
 from .denoise_settings import DenoiseMethod, DenoiseSettings
 from .held_samples import find_held_samples, hide_held_samples
+from .observed_samples import restore_observed
 
 
 def find_held_and_cuts(
@@ -37,9 +38,13 @@ def remove_path_jumps(
     if isinstance(take, Tracks) or settings.method is DenoiseMethod.PUBLISHED:
         return take, np.zeros((take.n_frames, 3))
     offsets = path_offsets(find_path_jumps(take, cuts), take.n_frames)
-    return move_root(take, -offsets), offsets
+    return move_root(take, -offsets) if offsets.any() else take, offsets
 
 
-def restore_path_jumps(cleaned: Motion | Tracks, offsets: Array) -> Motion | Tracks:
-    """Return the take with the jumps of its root."""
-    return move_root(cleaned, offsets) if isinstance(cleaned, Motion) else cleaned
+def restore_path_jumps(
+    take: Motion | Tracks, cleaned: Motion | Tracks, offsets: Array, kept: Flags
+) -> Motion | Tracks:
+    """Return the cleaned take with the jumps of its root; kept joints are as in the take."""
+    if not (isinstance(cleaned, Motion) and offsets.any()):
+        return cleaned
+    return restore_observed(take, move_root(cleaned, offsets), kept)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.denoising import denoise, find_worst_issues, plant_feet
+from solvers.denoising import DenoiseSettings, denoise, find_worst_issues, plant_feet
 from solvers.motion import Motion, forward_kinematics
 from solvers.motion.humanoid import detect_contacts
 from solvers.motion.skeletons import find_path_jumps
@@ -69,6 +69,12 @@ def test_clean_and_plant_feet_put_the_body_elsewhere_as_it_is(walk, rng):
     assert np.abs(forward_kinematics(planted).positions - joints).max() < 0.03
     (jump,) = find_path_jumps(planted, ())
     assert jump.frame == frames.start
+
+
+def test_strength_of_zero_keeps_a_body_that_is_put_elsewhere_to_the_last_bit(walk):
+    jump = displaced(walk, slice(walk.n_frames // 2, None), (1.1, 0.7, 1e-3))
+    kept = denoise(jump, settings=DenoiseSettings(strength=0.0)).recording
+    assert np.array_equal(kept.root_positions, jump.root_positions)
 
 
 def test_take_of_a_few_frames_is_accepted(walk):
