@@ -124,8 +124,8 @@ def denoise(
     progress(1.0, "Done")
     result = join_segments(take, results, cuts) if cuts else results[0]
     kept = _strengths(recording, settings) == 0.0
-    whole = restore_path_jumps(seen, result.recording, offsets, kept)
-    complete, confidence = restore_edge_poses(seen, whole, result.confidence, edge_poses)
+    restored = restore_path_jumps(seen, result.recording, offsets, kept)
+    complete, confidence = restore_edge_poses(seen, restored, result.confidence, edge_poses)
     message = f"{result.prior_used} {describe_edge_poses(edge_poses)}".strip()
     result = replace(result, recording=complete, confidence=confidence, prior_used=message)
     possible = recording

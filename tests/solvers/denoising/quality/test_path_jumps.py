@@ -40,6 +40,17 @@ def test_spike_and_noise_are_no_jumps_of_the_path(walk, rng):
     assert not find_path_jumps(shaken, ())
 
 
+def test_jump_is_found_among_noise_and_outliers_but_they_are_none(walk, rng):
+    noise = rng.normal(scale=0.03, size=walk.root_positions.shape)
+    are_outliers = rng.random(walk.n_frames) < 0.1
+    noise[are_outliers] += rng.normal(scale=0.4, size=(are_outliers.sum(), 3))
+    noisy = walk.with_poses(root_positions=walk.root_positions + noise)
+    assert not find_path_jumps(noisy, ())
+    half = walk.n_frames // 2
+    jump = displaced(noisy, slice(half, None), (2.0, 0.0, 0.0))
+    assert half in [each.frame for each in find_path_jumps(jump, ())]
+
+
 def test_cut_is_no_jump_of_the_path(walk):
     assert not find_path_jumps(displaced(walk, slice(40, None), (0.3, 0.0, 0.0)), (40,))
 
