@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..arrays import Array, Flags
 from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
-from ..motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
+from ..motion.skeletons import is_short_shot, shot_ranges
 from ..progress import Progress, unwatched, within
 from .channels import CENTIMETERS, Channels, Estimate, decode, encode
 from .default_method import OUTLIER_THRESHOLD, apply_default_method
@@ -20,6 +20,7 @@ from .denoise_settings import (
     joint_factors,
 )
 from .denoised import Denoised, join_segments, unchanged
+from .discontinuities import find_held_and_cuts, remove_path_jumps, restore_path_jumps
 from .edge_poses import (
     describe_edge_poses,
     find_edge_poses,
@@ -28,7 +29,6 @@ from .edge_poses import (
 )
 from .held_samples import (
     describe_held_samples,
-    find_held_samples,
     held_joints,
     hide_held_samples,
     restore_held_samples,
@@ -72,6 +72,9 @@ def denoise(
     Samples that a tracker repeated while the body moved on are treated as missing, unless their
     strength is below 1: then they are blended like others (`find_held_samples`).
 
+    Where the body is put elsewhere in one frame, and stays, the path of its root is cleaned
+    without this jump (`find_path_jumps`).
+
     Parameters
     ----------
     recording : Motion or Tracks
@@ -113,28 +116,16 @@ def denoise(
         raise InvalidMotionError(
             "Nothing was observed in this take; there is nothing to clean."
         )
-    held, cuts = _find_held_and_cuts(recording, settings)
+    held, cuts = find_held_and_cuts(recording, settings)
     seen = hide_held_samples(recording, held)
     edge_poses = find_edge_poses(seen, cuts)
-    take = hide_edge_poses(seen, edge_poses)
-    results = []
-    for start, stop in shot_ranges(take, cuts):
-        segment = take.slice(start, stop) if cuts else take
-        step = within(progress, start / recording.n_frames, stop / recording.n_frames)
-        if cuts and is_short_shot(stop - start, recording.frame_rate):
-            unchanged_settings = replace(settings, strength=0.0)
-            results.append(
-                unchanged(segment)
-                if observed_mask(segment).all()
-                else _denoise_segment(segment, bases, None, unchanged_settings, step)
-            )
-        else:
-            results.append(_denoise_segment(segment, bases, limits, settings, step))
+    take, offsets = remove_path_jumps(hide_edge_poses(seen, edge_poses), cuts, settings)
+    results = _denoise_segments(take, cuts, bases, limits, settings, progress)
     progress(1.0, "Done")
     result = join_segments(take, results, cuts) if cuts else results[0]
-    complete, confidence = restore_edge_poses(
-        seen, result.recording, result.confidence, edge_poses
-    )
+    kept = _strengths(recording, settings) == 0.0
+    restored = restore_path_jumps(seen, result.recording, offsets, kept)
+    complete, confidence = restore_edge_poses(seen, restored, result.confidence, edge_poses)
     message = f"{result.prior_used} {describe_edge_poses(edge_poses)}".strip()
     result = replace(result, recording=complete, confidence=confidence, prior_used=message)
     possible = recording
@@ -143,18 +134,29 @@ def denoise(
     return _blend_held(possible, result, held, settings)
 
 
-def _find_held_and_cuts(
-    recording: Motion | Tracks, settings: DenoiseSettings
-) -> tuple[Flags, tuple[int, ...]]:
-    """Return what a tracker held, except in segments that are kept, and the cuts."""
-    held = find_held_samples(recording)
-    if settings.method is DenoiseMethod.PUBLISHED:
-        held[:] = False
-    cuts = find_shot_boundaries(hide_held_samples(recording, held))
-    for start, stop in shot_ranges(recording, cuts):
-        if cuts and is_short_shot(stop - start, recording.frame_rate):
-            held[start:stop] = False
-    return held, cuts
+def _denoise_segments(
+    take: Motion | Tracks,
+    cuts: tuple[int, ...],
+    bases: FilterBases | None,
+    limits: JointLimits | None,
+    settings: DenoiseSettings,
+    progress: Progress,
+) -> list[Denoised]:
+    """Denoise the segments of a take; one that is too short keeps its samples."""
+    results = []
+    for start, stop in shot_ranges(take, cuts):
+        segment = take.slice(start, stop) if cuts else take
+        step = within(progress, start / take.n_frames, stop / take.n_frames)
+        if cuts and is_short_shot(stop - start, take.frame_rate):
+            unchanged_settings = replace(settings, strength=0.0)
+            results.append(
+                unchanged(segment)
+                if observed_mask(segment).all()
+                else _denoise_segment(segment, bases, None, unchanged_settings, step)
+            )
+        else:
+            results.append(_denoise_segment(segment, bases, limits, settings, step))
+    return results
 
 
 def _denoise_segment(

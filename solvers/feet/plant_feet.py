@@ -9,7 +9,14 @@ from ..arrays import Array, Flags
 from ..errors import InvalidMotionError
 from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import SIDES, HumanoidMap, find_humanoid_map
-from ..motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
+from ..motion.skeletons import (
+    find_path_jumps,
+    find_shot_boundaries,
+    is_short_shot,
+    move_root,
+    path_offsets,
+    shot_ranges,
+)
 from ..motion_fitting import FittedMotion, fit_in_windows, fit_motion
 from ..progress import Progress, Remark, collect_remarks, unwatched, within
 from .body_supports import SUPPORTS, detect_supports
@@ -76,7 +83,8 @@ def plant_feet(
     root (`planting_goals`, `fit_motion`). Bones never stretch, and no joint of the
     trunk rotates.
     Segments of a joined take are planted separately; a segment of less than a quarter of a
-    second has no contact.
+    second has no contact. Where the body is put elsewhere in one frame, and stays, its feet are
+    put there with it (`find_path_jumps`).
 
     Parameters
     ----------
@@ -118,6 +126,8 @@ def plant_feet(
     remarks: list[Remark] = []
     progress = collect_remarks(progress, remarks)
     cuts, results = find_shot_boundaries(motion), []
+    offsets = path_offsets(find_path_jumps(motion, cuts), motion.n_frames)
+    motion = move_root(motion, -offsets)
     for start, stop in shot_ranges(motion, cuts):
         segment = motion.slice(start, stop) if cuts else motion
         given = None if contacts is None else contacts[start:stop]
@@ -135,7 +145,7 @@ def plant_feet(
         )
     progress(1.0, "Planted the feet")
     planted = _join_segments(motion, results) if cuts else results[0]
-    return replace(planted, remarks=tuple(remarks))
+    return replace(planted, motion=move_root(planted.motion, offsets), remarks=tuple(remarks))
 
 
 def _find_contacts(

@@ -132,7 +132,11 @@ def _bisquare(distance: Array) -> Array:
 
 
 def _local_fit(signal: Array, weights: Array, offsets: Array, window: Array) -> Array:
-    """Return the weighted parabola at each frame; the mean where too few frames are valid."""
+    """Return the weighted parabola at each frame.
+
+    Where too few frames are valid, it passes through those that are, such as two frames, and
+    the others get their mean.
+    """
 
     from scipy.ndimage import correlate1d  # slow to import: only when needed
 
@@ -149,7 +153,7 @@ def _local_fit(signal: Array, weights: Array, offsets: Array, window: Array) -> 
     well_posed = determinant > 1e-6 * np.maximum(s0, 1e-6) ** 3
     parabola = (c0 * t0 + c1 * t1 + c2 * t2) / np.where(well_posed, determinant, 1.0)
     mean = t0 / np.where(s0 > 1e-9, s0, 1.0)
-    fallback = np.where(s0 > 1e-9, mean, signal)
+    fallback = np.where((s0 > 1e-9) & (weights[:, None] == 0.0), mean, signal)
     return np.where(well_posed, parabola, fallback)
 
 

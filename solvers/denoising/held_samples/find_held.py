@@ -1,28 +1,27 @@
 """Find samples that a tracker repeated because it had lost a joint or the whole body."""
 
-from collections.abc import Iterator
-from typing import Any, NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Flags
 from ...motion import Motion, Tracks
 from ...motion.skeletons import find_shot_boundaries
-from ...rotations import unroll
+from .repeat_runs import (
+    MAX_REPEAT_RAD,
+    RepeatRuns,
+    are_still,
+    connect_runs,
+    find_repeat_runs,
+    part_steps,
+    part_trajectories,
+)
 
-MAX_REPEAT_RAD = 1e-5
-"""Largest step of a repeated sample, radians. It bounds the rounding of single precision: 1e-7
-of a quaternion, and 5e-7 of 5 m."""
-METERS_PER_RADIAN = 0.3
-"""Displacement in meters that counts like a rotation by one radian. Chosen by hand: 0.3 m is
-the length of a limb's bone, so that both move its end as far."""
 MIN_JITTER_RAD = 6e-5
 """Lowest jitter of a recording, radians; most have 9e-5 to 4e-3. It guards animation that was
 keyed by hand, whose curves are smooth (`test_anticipation_between_keys_is_not_held`)."""
 MIN_PARTS = 2
-"""Number of parts that repeat in the same frames only if they were lost together. Chosen by
-hand: 2 are an arm whose hand has no keys."""
+"""Number of connected parts that repeat in the same frames only if they were lost together.
+Chosen by hand: 2 are an arm whose hand has no keys."""
 MIN_GROUP_RATIO, MIN_RATIO = 0.5, 1.5
 """Jump after the repeats of several and of single parts, as a ratio to the step after it, and
 of single ones also to the step before. They guard poses that are left by steps that grow
@@ -38,9 +37,6 @@ which this value is wrong too. Chosen by hand: an arm that a tracker puts into i
 MIN_QUANTA = 5.0
 """Largest jump after the repeats in smallest steps of a joint, a ratio. It guards joints that
 are rounded (`test_fingers_of_a_glove_in_coarse_steps_are_not_held`)."""
-MAX_REPEATED_FRACTION = 0.7
-"""Fraction of repeated samples above which a joint counts as still. It guards joints that move
-in steps (`test_poses_on_steps_are_not_held`)."""
 MIN_DIRECTION, MAX_SPEED_RATIO = 0.1, 1.6
 """At what looks like a cut: cosine of the jump and of the movement before and after it, and
 mean speed of the jump as a ratio to the faster of both. They guard joined takes
@@ -50,33 +46,15 @@ N_JITTER_SAMPLES = 2000
 """Samples of a joint from which its jitter is estimated. It bounds the run time."""
 
 
-class _Runs(NamedTuple):
-    """Runs of repeats of single parts, each an entry of these arrays."""
-
-    parts: NDArray[np.intp]
-    starts: NDArray[np.intp]
-    stops: NDArray[np.intp]
-    """First frame that repeats the one before, and first that does not."""
-    jumps: Array
-    before: Array
-    after: Array
-    """Speeds of the changes before and after, per frame."""
-    earlier: Array
-    """Speed of the change before the one before; 0 if there is none."""
-    quanta: Array
-    """The jump in smallest steps of the part."""
-    at_limit: Flags
-    """Whether the part stops at this value most of the time, as at a limit of the joint."""
-
-
 def find_held_samples(recording: Motion | Tracks) -> Flags:
     """Return which samples repeat the one before although the body moves on.
 
     Formats of poses cannot leave a sample out, so a tracker that loses a limb, or a stream that
     loses packets, repeats the last value or a pose at rest, and then jumps. What was recorded
-    has some jitter, so several parts repeat in the same frames only if they were lost. A single
-    part may stop: it must jump farther than it moves from frame to frame, from a value at which
-    it does not stop most of the time. What looks like a cut after the repeats is one, unless
+    has some jitter, so several connected parts repeat in the same frames only if they were
+    lost. A single part may stop: it must jump farther than it moves from frame to frame, from a
+    value that is not straight and at which it does not stop most of the time; and rounded
+    values repeat anyhow. What looks like a cut after the repeats is one, unless
     the body moves on in its direction, and not faster. Curves without jitter were keyed by
     hand: there poses are held on purpose. Repeats at the start or the end of a take may be such
     a pose, and are kept.
@@ -87,47 +65,32 @@ def find_held_samples(recording: Motion | Tracks) -> Flags:
         Shape (n_frames, n_joints + 1) of a motion, the last for the position of the root, or
         (n_frames, n_points) of tracks.
     """
-    trajectories = _trajectories(recording)
+    trajectories = part_trajectories(recording)
     n_frames, n_parts = trajectories.shape[:2]
     held = np.zeros((n_frames, n_parts), dtype=np.bool_)
-    repeats = _steps(trajectories) <= MAX_REPEAT_RAD
+    repeats = part_steps(trajectories) <= MAX_REPEAT_RAD
     if not repeats.any() or not _jitter(trajectories, repeats) >= MIN_JITTER_RAD:
         return held
-    found = [run for part in range(n_parts) for run in _runs(part, trajectories, repeats)]
-    if not found:
+    runs = find_repeat_runs(recording, trajectories, repeats)
+    if runs is None:
         return held
-    runs = _Runs(*map(np.concatenate, zip(*found, strict=True)))
     _, first, group = np.unique(
-        runs.starts * (n_frames + 1) + runs.stops, return_index=True, return_inverse=True
+        connect_runs(recording, runs, repeats), return_index=True, return_inverse=True
     )
     starts = runs.starts - _are_entered_by_a_jump(runs, group)[group]
     are_held = _move_on(runs, group) & ~_are_cuts(
         recording, trajectories, starts[first], runs.stops[first]
     )
     is_single = np.bincount(group)[group] < MIN_PARTS
-    for run in np.flatnonzero(are_held[group] & ~(is_single & runs.at_limit)):
+    for run in np.flatnonzero(are_held[group] & ~(is_single & runs.are_stops)):
         held[starts[run] : runs.stops[run], runs.parts[run]] = True
     return held
 
 
 def body_is_held(recording: Motion | Tracks, held: Flags) -> Flags:
     """Return the frames in which most of what moves in this take is held, shape (n_frames,)."""
-    moving = (_steps(_trajectories(recording)) > MAX_REPEAT_RAD).any(axis=0)
+    moving = (part_steps(part_trajectories(recording)) > MAX_REPEAT_RAD).any(axis=0)
     return np.asarray(held.any(axis=1) & (held[:, moving].mean(axis=1) >= 0.5))
-
-
-def _trajectories(recording: Motion | Tracks) -> Array:
-    """Return rotations and positions whose distances are radians, (n_frames, n_parts, 4)."""
-    if isinstance(recording, Tracks):
-        return recording.positions / METERS_PER_RADIAN
-    root = np.pad(recording.root_positions / METERS_PER_RADIAN, ((0, 0), (0, 1)))
-    # Twice the quaternion: the distance of neighbors is then their angle in radians.
-    return np.concatenate([2.0 * unroll(recording.rotations), root[:, None]], axis=1)
-
-
-def _steps(trajectories: Array) -> Array:
-    """Return the distance of each part between frames, shape (n_frames - 1, n_parts)."""
-    return np.asarray(np.linalg.norm(np.diff(trajectories, axis=0), axis=-1))
 
 
 def _jitter(trajectories: Array, repeats: Flags) -> float:
@@ -137,7 +100,7 @@ def _jitter(trajectories: Array, repeats: Flags) -> float:
     which are polynomials of third degree, is 0. Repeats are left out.
     """
     jitter = []
-    for part in np.flatnonzero(repeats.mean(axis=0) <= MAX_REPEATED_FRACTION):
+    for part in np.flatnonzero(~are_still(repeats)):
         frames = np.flatnonzero(~repeats[:, part])[:N_JITTER_SAMPLES] + 1
         changes = np.diff(trajectories[frames, part], n=4, axis=0)
         sizes = np.linalg.norm(changes, axis=-1) / np.sqrt(70.0)
@@ -146,37 +109,7 @@ def _jitter(trajectories: Array, repeats: Flags) -> float:
     return float(np.median(jitter)) if jitter else 0.0
 
 
-def _runs(part: int, trajectories: Array, repeats: Flags) -> Iterator[tuple[NDArray[Any], ...]]:
-    """Yield the runs of repeats of a part, if there are any between two changes."""
-    frames = np.flatnonzero(~repeats[:, part]) + 1  # a missing sample ends a run
-    if len(frames) < 3 or repeats[:, part].mean() > MAX_REPEATED_FRACTION:
-        return
-    values = trajectories[:, part]
-    sizes = np.linalg.norm(values[frames] - values[frames - 1], axis=-1)
-    lengths = np.diff(frames, prepend=0)
-    speeds = sizes / lengths
-    which = np.flatnonzero(lengths[1:-1] > 1) + 1
-    which = which[np.isfinite(sizes[which] + sizes[which - 1] + sizes[which + 1])]
-    if len(which):
-        smallest = np.nanmin(sizes)
-        starts = frames[which - 1] + 1
-        yield (
-            np.full(len(which), part), starts, frames[which], sizes[which], speeds[which - 1],
-            speeds[which + 1], np.append(0.0, speeds)[which - 1], sizes[which] / smallest,
-            _recur(values[starts]),
-        )  # fmt: skip
-
-
-def _recur(values: Array) -> Flags:
-    """Return which of these values make up half of all, shape (n_values,)."""
-    if len(values) < 2:
-        return np.zeros(len(values), dtype=np.bool_)
-    rounded = np.round(values / MAX_REPEAT_RAD)
-    _, which, counts = np.unique(rounded, axis=0, return_inverse=True, return_counts=True)
-    return np.asarray(counts[which.reshape(-1)] > max(0.5 * len(values), 1.0))
-
-
-def _move_on(runs: _Runs, group: NDArray[np.intp]) -> Flags:
+def _move_on(runs: RepeatRuns, group: NDArray[np.intp]) -> Flags:
     """Return in which groups of runs with the same frames the parts moved on."""
 
     jumps, before, after = (
@@ -192,7 +125,7 @@ def _move_on(runs: _Runs, group: NDArray[np.intp]) -> Flags:
     return np.asarray(moved & (jumps >= MIN_JUMP_RAD) & (quanta >= MIN_QUANTA))
 
 
-def _are_entered_by_a_jump(runs: _Runs, group: NDArray[np.intp]) -> Flags:
+def _are_entered_by_a_jump(runs: RepeatRuns, group: NDArray[np.intp]) -> Flags:
     """Return in which groups of runs the parts jumped to the repeated value, too."""
     before, earlier, after = (
         _together(values, group) for values in (runs.before, runs.earlier, runs.after)

@@ -10,7 +10,7 @@ from ...arrays import Array, Flags
 from ...errors import InvalidMotionError
 from ...motion import JointLimits, Motion, Tracks, forward_kinematics
 from ...motion.humanoid import SIDES, HumanoidMap, contacts_of_points, detect_contacts
-from ...motion.skeletons import find_shot_boundaries
+from ...motion.skeletons import PathJump, find_path_jumps, find_shot_boundaries
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
 from ..held_samples import body_is_held, find_held_samples, hide_held_samples
@@ -20,8 +20,8 @@ from .confirm_spikes import confirm_spikes
 from .figures import quality_figures
 from .foot_slide import FootPoints, FootSlide, foot_paths, measure_foot_slide, sole_paths
 from .jitter import measure_jitter
+from .joint_jumps import JointJump, find_joint_jumps
 from .joint_signals import Signal, SpikeRule, extract_signals
-from .path_jumps import PathJump, find_path_jumps
 from .report import quality_report
 
 
@@ -86,6 +86,8 @@ class Quality:
         nowhere.
     path_jumps : tuple of PathJump
         Where the root is put elsewhere and stays.
+    joint_jumps : tuple of JointJump
+        Where a joint is turned elsewhere and stays.
     bones_searched : bool
         False where tracks have too many points without names of joints to search for bones.
     """
@@ -102,6 +104,7 @@ class Quality:
     cuts: tuple[int, ...] = ()
     body_held: Flags | None = None
     path_jumps: tuple[PathJump, ...] = ()
+    joint_jumps: tuple[JointJump, ...] = ()
     bones_searched: bool = True
 
     @cached_property
@@ -219,8 +222,10 @@ def measure_quality(
     seen = hide_held_samples(recording, held)
     cuts = find_shot_boundaries(seen)
     signals = extract_signals(seen, held, rule, within(progress, 0.0, 0.8), cuts)
+    joint_jumps: tuple[JointJump, ...] = ()
     if isinstance(seen, Motion):
         signals = confirm_spikes(seen, signals, cuts)
+        joint_jumps = find_joint_jumps(seen, signals, cuts)
     quality = Quality(
         names=names,
         parents=parents,
@@ -234,6 +239,7 @@ def measure_quality(
         cuts=cuts,
         body_held=body_is_held(recording, held) if held.any() else None,
         path_jumps=find_path_jumps(seen, cuts),
+        joint_jumps=joint_jumps,
         bones_searched=isinstance(recording, Motion) or bones_are_searched(recording),
     )
     progress(1.0, "Measured")

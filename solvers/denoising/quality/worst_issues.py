@@ -7,14 +7,15 @@ from itertools import islice
 import numpy as np
 
 from ...motion import Motion, Tracks
+from ...motion.skeletons import MIN_JUMP_M
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
 from ...signals import find_runs, merge_runs
 from .gap_issues import gap_issues
 from .issue import Issue
+from .joint_jumps import MIN_JUMP_RAD
 from .joint_signals import Signal
 from .measure import Quality, measure_quality
-from .path_jumps import MIN_JUMP_M
 
 CUT_SEVERITY = 10.0
 """Severity of a cut, chosen by hand: joined recordings should be split before any other edit.
@@ -119,6 +120,7 @@ def find_worst_issues(
     issues = [
         *_spikes(quality, pause),
         *_path_jumps(quality),
+        *_joint_jumps(quality),
         *gap_issues(quality, pause),
         *_jitter(quality, settings, pause),
         *_slides(quality, settings),
@@ -141,7 +143,7 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
             sentence = (
                 f"{signal.joint} jumps {n_spikes} times, by up to {amount}."
                 if n_spikes > 1
-                else f"{signal.joint} jumps by {amount}."
+                else _describe_jump(signal, height)
             )
             yield Issue(
                 signal.joint,
@@ -153,9 +155,21 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
             )
 
 
+def _joint_jumps(quality: Quality) -> Iterator[Issue]:
+    for signal, frame, angle in quality.joint_jumps:
+        sentence = _describe_jump(signal, angle)
+        yield Issue(signal.joint, frame - 1, frame + 1, "spike", angle / MIN_JUMP_RAD, sentence)
+
+
+def _describe_jump(signal: Signal, height: float) -> str:
+    amount = _amount(signal, height)
+    return f"{signal.joint} jumps by {amount}."
+
+
 def _path_jumps(quality: Quality) -> Iterator[Issue]:
     name = quality.names[0]
-    for frame, distance in quality.path_jumps:
+    for jump in quality.path_jumps:
+        frame, distance = jump.frame, jump.distance
         sentence = f"{name} jumps by {100 * distance:.0f} cm and stays there."
         yield Issue(name, frame - 1, frame + 1, "spike", distance / MIN_JUMP_M, sentence)
 

@@ -16,6 +16,13 @@ if TYPE_CHECKING:
     from .limb_ik import ReachSettings, reach
     from .mediapipe import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
     from .motion import Motion
+    from .path_jumps import (
+        MIN_JUMP_M,
+        PathJump,
+        find_path_jumps,
+        move_root,
+        path_offsets,
+    )
     from .point_layouts import LAYOUTS
     from .resampling import resample
     from .shot_boundaries import (
@@ -40,6 +47,7 @@ __all__ = [
     "MAX_CLIMB_M",
     "MAX_FRAME_RATE_HZ",
     "MIN_BONE_M",
+    "MIN_JUMP_M",
     "MIN_SHOT_S",
     "NUITRACK",
     "ROTATION_VECTOR",
@@ -53,6 +61,7 @@ __all__ = [
     "JointLimits",
     "JointRecording",
     "Motion",
+    "PathJump",
     "ReachSettings",
     "Sensor",
     "Skeleton",
@@ -60,12 +69,15 @@ __all__ = [
     "WorldPoses",
     "check_frame_rate",
     "describe_shots",
+    "find_path_jumps",
     "find_shot_boundaries",
     "forward_kinematics",
     "ground_level",
     "is_short_shot",
     "joint_parents",
     "local_rotations",
+    "move_root",
+    "path_offsets",
     "reach",
     "resample",
     "rest_direction",

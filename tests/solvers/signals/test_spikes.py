@@ -17,6 +17,14 @@ def test_parabola_has_no_residual(rng):
     assert result.scale < 1e-7
 
 
+def test_two_frames_contain_no_spike():
+    """A line passes through both, however far apart they are."""
+    result = fit_lowess(np.array([[0.0, 0.0], [3.0, 1.0]]), 4, min_scale=0.1)
+
+    assert_allclose(result.residual, 0.0)
+    assert not result.spikes(0.1).any()
+
+
 def test_gaps_do_not_affect_other_frames():
     trajectory = np.sin(np.arange(200.0) / 20.0)[:, None] * [1.0, 0.5, 0.2]
     gapped = trajectory.copy()

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
-from solvers.denoising import find_worst_issues
-from solvers.denoising.quality.path_jumps import find_path_jumps
-from solvers.motion import Motion
+from solvers.denoising import DenoiseSettings, denoise, find_worst_issues, plant_feet
+from solvers.motion import Motion, forward_kinematics
+from solvers.motion.humanoid import detect_contacts
+from solvers.motion.skeletons import find_path_jumps
 from solvers.recordings import read_acclaim
+from solvers.rotations import multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
 
@@ -38,6 +40,17 @@ def test_spike_and_noise_are_no_jumps_of_the_path(walk, rng):
     assert not find_path_jumps(shaken, ())
 
 
+def test_jump_is_found_among_noise_and_outliers_but_they_are_none(walk, rng):
+    noise = rng.normal(scale=0.03, size=walk.root_positions.shape)
+    are_outliers = rng.random(walk.n_frames) < 0.1
+    noise[are_outliers] += rng.normal(scale=0.4, size=(are_outliers.sum(), 3))
+    noisy = walk.with_poses(root_positions=walk.root_positions + noise)
+    assert not find_path_jumps(noisy, ())
+    half = walk.n_frames // 2
+    jump = displaced(noisy, slice(half, None), (2.0, 0.0, 0.0))
+    assert half in [each.frame for each in find_path_jumps(jump, ())]
+
+
 def test_cut_is_no_jump_of_the_path(walk):
     assert not find_path_jumps(displaced(walk, slice(40, None), (0.3, 0.0, 0.0)), (40,))
 
@@ -52,6 +65,27 @@ def test_fast_bodies_make_no_jumps(recordings, step):
             motion.frame_rate / step,
         )  # fmt: skip
         assert not find_path_jumps(motion, ()), path.name
+
+
+def test_clean_and_plant_feet_put_the_body_elsewhere_as_it_is(walk, rng):
+    """Before, hips bent over by 50 cm at 120 Hz, and a foot was held where it stood before."""
+    vectors = np.radians(0.5) * rng.normal(size=(*walk.rotations.shape[:2], 3))
+    noisy = walk.with_poses(multiply(walk.rotations, quaternion_from_rotation_vector(vectors)))
+    frames, offset = slice(walk.n_frames // 2, None), (1.5, 0.5, 0.0)
+    assert detect_contacts(noisy)[frames.start - 1 : frames.start + 1].all(axis=0).any()
+    expected = plant_feet(denoise(noisy).recording).motion
+    cleaned = denoise(displaced(noisy, frames, offset)).recording
+    planted = plant_feet(cleaned).motion
+    joints = forward_kinematics(displaced(expected, frames, offset)).positions
+    assert np.abs(forward_kinematics(planted).positions - joints).max() < 0.03
+    (jump,) = find_path_jumps(planted, ())
+    assert jump.frame == frames.start
+
+
+def test_strength_of_zero_keeps_a_body_that_is_put_elsewhere_to_the_last_bit(walk):
+    jump = displaced(walk, slice(walk.n_frames // 2, None), (1.1, 0.7, 1e-3))
+    kept = denoise(jump, settings=DenoiseSettings(strength=0.0)).recording
+    assert np.array_equal(kept.root_positions, jump.root_positions)
 
 
 def test_take_of_a_few_frames_is_accepted(walk):
