@@ -225,7 +225,7 @@ def _describe_cleaning(start: Motion | Tracks, denoised: Denoised) -> list[str]:
 
 
 def _describe_convergence(denoised: Denoised) -> list[str]:
-    unfinished = "Clean stopped before the result converged; try a shorter range."
+    unfinished = "Clean stopped before the result converged; press Clean on a shorter range."
     return [] if denoised.converged else [unfinished]
 
 

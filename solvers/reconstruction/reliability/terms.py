@@ -100,7 +100,7 @@ def tracking_term(recording: JointRecording, settings: ReliabilitySettings) -> A
 
 
 def is_tracked(recording: JointRecording) -> NDArray[np.bool_]:
-    """Return which joints the device did not only infer, shape (n_frames, n_joints)."""
+    """Return which joints the device tracked and did not only infer, (n_frames, n_joints)."""
     visible = recording.tracks.visible
     state, confidence = recording.tracking_state, recording.tracks.confidence
     if state is not None:

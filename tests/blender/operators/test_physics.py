@@ -82,7 +82,7 @@ def test_report_names_the_first_frame_of_the_action_that_was_not_followed(walker
 
     message = simulating.write_simulated(scene, walker, settings, partly)
 
-    assert "The first frame that it could not follow is 6." in message
+    assert "The first frame that the body could not follow is 6." in message
 
 
 def test_disabled_button_gives_a_reason(blank):

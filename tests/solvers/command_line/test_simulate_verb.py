@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from solvers.motion import Tracks, forward_kinematics
+from solvers.physics import simulate
 from solvers.recordings import read_bvh, write_bvh, write_trc
 from solvers.samples import GaitSettings, walking_gait
 
@@ -42,6 +43,21 @@ def test_simulate_uses_settings_and_reports_the_result(call, sunk, tmp_path):
     assert status == 0
     assert "The simulated body followed the complete take." in out
     assert "Joints moved by" in out
+
+
+def test_simulate_counts_frames_from_one(call, tmp_path):
+    """A walker is lifted by more than 1 m for half a second."""
+    walk = walking_gait(GaitSettings(duration=4.0, frame_rate=30.0))
+    lift = np.interp(np.arange(120), [50, 58, 75, 83], [0.0, 1.2, 1.2, 0.0])
+    lifted = walk.with_poses(root_positions=walk.root_positions + np.outer(lift, [0, 0, 1]))
+    write_bvh(lifted, tmp_path / "lifted.bvh")
+
+    status, out, _ = call("simulate", tmp_path / "lifted.bvh", tmp_path / "follows.bvh")
+
+    assert status == 0
+    failed = np.flatnonzero(~simulate(read_bvh(tmp_path / "lifted.bvh")).followed)
+    assert len(failed)
+    assert f"The first frame that the body could not follow is {failed[0] + 1}." in out
 
 
 def test_simulate_refuses_points(call, tmp_path):

@@ -53,7 +53,7 @@ def test_frames_not_followed_are_those_of_the_take():
     assert not np.array_equal(result.motion.root_positions[10:50], roots[10:50])
     assert f"in {len(failed)} of 240 frames; there the take is unchanged" in result.message
     first = describe_first_failure(result.followed, range(1001, 1241))
-    assert first == f"The first frame that it could not follow is {1001 + failed[0]}."
+    assert first == f"The first frame that the body could not follow is {1001 + failed[0]}."
     steps = np.abs(np.diff(result.motion.root_positions, axis=0)).max()
     assert steps < 2 * np.abs(np.diff(roots, axis=0)).max(), "it eases over"
 
