@@ -68,14 +68,16 @@ def find_held_samples(recording: Motion | Tracks) -> Flags:
     trajectories = part_trajectories(recording)
     n_frames, n_parts = trajectories.shape[:2]
     held = np.zeros((n_frames, n_parts), dtype=np.bool_)
-    repeats = part_steps(trajectories) <= MAX_REPEAT_RAD
+    steps = part_steps(trajectories)
+    repeats = steps <= MAX_REPEAT_RAD
     if not repeats.any() or not _jitter(trajectories, repeats) >= MIN_JITTER_RAD:
         return held
     runs = find_repeat_runs(recording, trajectories, repeats)
     if runs is None:
         return held
+    is_still = are_still(repeats) | np.isnan(steps).all(axis=0)
     _, first, group = np.unique(
-        connect_runs(recording, runs, repeats), return_index=True, return_inverse=True
+        connect_runs(recording, runs, is_still), return_index=True, return_inverse=True
     )
     starts = runs.starts - _are_entered_by_a_jump(runs, group)[group]
     are_held = _move_on(runs, group) & ~_are_cuts(

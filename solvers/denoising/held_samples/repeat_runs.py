@@ -90,18 +90,17 @@ def find_repeat_runs(
 
 
 def connect_runs(
-    recording: Motion | Tracks, runs: RepeatRuns, repeats: Flags
+    recording: Motion | Tracks, runs: RepeatRuns, is_still: Flags
 ) -> NDArray[np.intp]:
     """Return a number for each run, which those share whose parts were lost together, if any.
 
     They have the same frames. In a motion they are most of the body, or each part hangs on
-    another one of them, as in a limb. Joints that are still connect what hangs on them with
-    what they hang on.
+    another one of them, as in a limb. Joints that are still, or never observed, connect what
+    hangs on them with what they hang on.
     """
-    times = runs.starts * (len(repeats) + 2) + runs.stops
+    times = runs.starts * (recording.n_frames + 1) + runs.stops
     if isinstance(recording, Tracks):
         return times
-    is_still = are_still(repeats)
     _, first, group, n_runs = np.unique(
         times, return_index=True, return_inverse=True, return_counts=True
     )

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...motion import Motion
 from ...motion.skeletons import shot_ranges
 from ...rotations import inverse, multiply, rotation_vector_from_quaternion
@@ -53,9 +53,8 @@ def find_joint_jumps(
         steps = rotation_vector_from_quaternion(
             multiply(inverse(rotations[:-1]), rotations[1:])
         )
-        for step, joint in zip(
-            *np.nonzero(np.linalg.norm(steps, axis=-1) > limit), strict=True
-        ):
+        candidates = np.nonzero(_exceed_neighbors(np.linalg.norm(steps, axis=-1), limit))
+        for step, joint in zip(*candidates, strict=True):
             frame, signal = start + int(step) + 1, signal_of.get(int(joint))
             if signal is None or not reach <= step < len(steps) - reach:
                 continue
@@ -63,6 +62,18 @@ def find_joint_jumps(
             if angle > limit and not signal.spikes[frame - 1 : frame + 1].any():
                 jumps.append(JointJump(signal, frame, angle))
     return tuple(jumps)
+
+
+def _exceed_neighbors(sizes: Array, limit: float) -> Flags:
+    """Return which steps can be jumps, shape (n_steps, n_joints), without their directions."""
+    exceed = np.zeros(sizes.shape, dtype=np.bool_)
+    if len(sizes) > 2 * N_NEIGHBORS:
+        windows = np.lib.stride_tricks.sliding_window_view(sizes, 2 * N_NEIGHBORS + 1, axis=0)
+        neighbors = np.delete(windows, N_NEIGHBORS, axis=-1).max(axis=-1)
+        middle = windows[..., N_NEIGHBORS]
+        is_large = (middle > limit) & (middle >= (MIN_RATIO - 1.0) * neighbors)
+        exceed[N_NEIGHBORS:-N_NEIGHBORS] = is_large
+    return exceed
 
 
 def _jump(steps: Array) -> float:

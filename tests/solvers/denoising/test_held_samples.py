@@ -94,6 +94,14 @@ def test_lost_arm_is_held_where_it_repeats(walk, arm, degrees):
     assert set(parts) <= set(arm)
 
 
+def test_hand_of_a_lost_arm_is_held_though_its_forearm_was_never_observed(walk, arm):
+    motion = hold(noisy(walk, 0.5), LOST, arm)
+    rotations = motion.rotations.copy()
+    rotations[:, arm[1]] = np.nan
+    held = find_held_samples(walk.with_poses(rotations))
+    assert held[LOST.start + 1 : LOST.stop, [arm[0], arm[2]]].all()
+
+
 def test_arm_that_a_tracker_puts_into_its_rest_pose_is_held_from_the_first_frame_on(walk, arm):
     rotations = noisy(walk, 0.3).rotations.copy()
     rotations[LOST, arm[:3]] = [1.0, 0.0, 0.0, 0.0]
