@@ -35,8 +35,8 @@ def apply_default_method(
     1. The motion mixture finds errors of several frames.
     2. Patterns of the take, and of examples if given, fill gaps and find single outliers. The
        mixture rejects those that people's movement explains, such as a kick.
-    3. A smoothing spline and the mixture smooth what remains. Each joint is the mean of the
-       three, weighted to have the least expected error.
+    3. A smoothing spline and the mixtures of joints and of pairs smooth what remains. Each
+       joint is the mean of the three, weighted to have the least expected error.
     4. Without examples, joints that are missing for long are predicted from the others.
 
     Parameters
@@ -69,7 +69,7 @@ def apply_default_method(
     smooth_by_mixtures = MixtureSmoother(
         covariances * np.square(factors[::3])[:, None, None],
         frame_rate,
-        (mixture, load_motion_mixture(SHIPPED_PAIRS)),
+        (mixture, load_motion_mixture(SHIPPED_PAIRS, 2)),
         channels.parents,
     )
     smoothed = [spline, smooth_by_mixtures(complete)]

@@ -105,8 +105,10 @@ class MotionMixture:
 
 
 @lru_cache(maxsize=4)
-def load_motion_mixture(path: Path | str = SHIPPED) -> MotionMixture:
+def load_motion_mixture(path: Path | str = SHIPPED, n_joints: int = 1) -> MotionMixture:
     """Read what `MotionMixture.save` wrote; without a path, the shipped mixture of joints.
+
+    `n_joints` is 1 for a mixture of joints and 2 for one of pairs.
 
     Raises
     ------
@@ -114,8 +116,8 @@ def load_motion_mixture(path: Path | str = SHIPPED) -> MotionMixture:
         The file is missing, damaged, or holds something else.
     """
     arrays = LAYOUT.read(path)
-    if arrays["covariances"].shape[1] not in (N_CHANNELS, 2 * N_CHANNELS):
-        raise LAYOUT.damaged(path, "the axes are not those of one or two joints")
+    if arrays["covariances"].shape[1] != N_CHANNELS * n_joints:
+        raise LAYOUT.damaged(path, "it describes another number of joints")
     if not np.isclose(arrays["weights"].sum(), 1.0, atol=MAX_MISSING_WEIGHT):
         raise LAYOUT.damaged(path, "the weights do not add up to 1")
     return MotionMixture(

@@ -13,17 +13,19 @@ from .joint_noise import MAX_CONSTANT_RANGE
 from .motion_mixture import N_CHANNELS, MotionMixture
 from .smooth_groups import GroupSmoother
 
+MIN_VARIANCE = np.finfo(float).tiny
+"""Guards a division."""
 MAX_LEVERAGE = 1.0 - 1e-9
 """Largest weight of a sample in its own estimate. Guards a division."""
 
 
 @dataclass(frozen=True, eq=False)
 class MixtureSmoother:
-    """Estimate every joint as the mean over all groups that it belongs to.
+    """Estimate every joint as the weighted mean over all groups that it belongs to.
 
     With a mixture of joints and one of pairs, a joint is estimated alone, with its parent, and
-    with each of its children: movement of one hints at movement of the other. Their errors
-    differ, so that the mean is better than each.
+    with each of its children: movement of one hints at movement of the other. Their weights
+    are inverse to the mean variance of their errors over the take.
 
     Attributes
     ----------
@@ -54,7 +56,7 @@ class MixtureSmoother:
         moves = (np.ptp(joints, axis=0) > MAX_CONSTANT_RANGE).any(axis=-1)
         parents = np.full(len(moves), -1) if self.parents is None else self.parents
         total, variance = np.zeros_like(joints), np.zeros_like(joints)
-        n_groups = np.zeros((len(moves), 1), dtype=int)
+        total_weight = np.zeros((len(moves), 1))
         for mixture in self.mixtures:
             n_joints, size = mixture.n_joints, N_CHANNELS * mixture.n_joints
             groups = find_joint_groups(parents, moves, n_joints)
@@ -65,13 +67,15 @@ class MixtureSmoother:
             found = smooth(joints[:, groups].reshape(len(samples), len(groups), size))
             shape = len(samples), len(groups), n_joints, N_CHANNELS
             values, variances = (each.reshape(shape) for each in found)
+            weights = 1.0 / np.maximum(variances.mean(axis=(0, 3)), MIN_VARIANCE)
             for index, members in enumerate(groups):
-                total[:, members] += values[:, index]
-                variance[:, members] += variances[:, index]
-                n_groups[members] += 1
-        n_groups = np.maximum(n_groups, 1)
-        smoothed = (total / n_groups).reshape(samples.shape) + average
-        variance = (variance / n_groups).reshape(samples.shape)
+                weight = weights[index, :, None]
+                total[:, members] += weight * values[:, index]
+                variance[:, members] += weight * variances[:, index]
+                total_weight[members] += weight
+        total_weight = np.where(total_weight > 0.0, total_weight, 1.0)
+        smoothed = (total / total_weight).reshape(samples.shape) + average
+        variance = (variance / total_weight).reshape(samples.shape)
         leverage = variance / np.einsum("jcc->jc", self.noise).ravel()
         error = (samples - smoothed) / (1.0 - np.minimum(leverage, MAX_LEVERAGE))
         return Smoothed(smoothed, error, variance)

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from solvers.denoising import default_method, denoise
 from solvers.denoising.motion_model import (
     SHIPPED_PAIRS,
-    MotionMixture,
+    MixtureSmoother,
     learn_motion_mixture,
     load_motion_mixture,
 )
@@ -53,17 +54,28 @@ def test_damaged_file_is_refused(tmp_path):
         load_motion_mixture(tmp_path / "bad.npz")
 
 
-def test_mixture_of_a_joint_and_a_third_is_refused(tmp_path):
-    covariances = np.tile(np.eye(8), (2, 4, 1, 1))
-    MotionMixture(np.full(2, 0.5), covariances, 30.0).save(tmp_path / "odd.npz")
-
-    with pytest.raises(InvalidFileError, match="one or two joints"):
-        load_motion_mixture(tmp_path / "odd.npz")
+def test_mixture_of_pairs_is_refused_where_joints_are_asked_for():
+    with pytest.raises(InvalidFileError, match="another number of joints"):
+        load_motion_mixture(SHIPPED_PAIRS)
 
 
 def test_shipped_mixtures_name_their_training_data():
-    joints, pairs = load_motion_mixture(), load_motion_mixture(SHIPPED_PAIRS)
+    joints, pairs = load_motion_mixture(), load_motion_mixture(SHIPPED_PAIRS, 2)
 
     assert (joints.n_joints, pairs.n_joints) == (1, 2)
     assert "CMU" in joints.trained_on
     assert "CMU" in pairs.trained_on
+
+
+def test_clean_smooths_joints_alone_and_with_their_parents(swinging_leg, monkeypatch):
+    used = {}
+
+    def smoother(noise, frame_rate, mixtures, parents):
+        used.update(mixtures=mixtures, parents=parents)
+        return MixtureSmoother(noise, frame_rate, mixtures, parents)
+
+    monkeypatch.setattr(default_method, "MixtureSmoother", smoother)
+    denoise(swinging_leg)
+
+    assert [mixture.n_joints for mixture in used["mixtures"]] == [1, 2]
+    assert used["parents"].tolist() == [-1, 0, 1, -1]  # the position has none

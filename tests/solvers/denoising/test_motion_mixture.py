@@ -172,24 +172,34 @@ def test_variance_has_that_between_the_components(mixture, rng):
 
 
 def test_joint_is_the_mean_over_itself_its_parent_and_its_children(mixture, rng):
+    """The weights are inverse to the variances; so a noisy child hardly counts."""
     pairs, noise = random_mixture(rng, 6), equal_noise(4, 0.7)
+    noise[3] *= 100.0
     parents = np.array([-1, 0, 1, 1])
     samples = np.cumsum(rng.normal(size=(4 * WINDOW, 12)), axis=0)
 
     smoothed = MixtureSmoother(noise, 30.0, [mixture, pairs], parents)(samples)
 
-    alone = MixtureSmoother(noise, 30.0, [mixture])(samples)
     assert smoothed is not None
-    assert alone is not None
-    with_others = []
+    estimates = [MixtureSmoother(noise, 30.0, [mixture])(samples)]
     for pair in ([0, 1], [1, 2], [1, 3]):
         columns = [3 * joint + axis for joint in pair for axis in range(3)]
-        of_pair = MixtureSmoother(noise[:2], 30.0, [pairs], np.array([-1, 0]))
-        found = of_pair(samples[:, columns])
-        assert found is not None
-        with_others.append(found.values[:, 3:] if pair == [0, 1] else found.values[:, :3])
-    expected = np.mean([alone.values[:, 3:6], *with_others], axis=0)
-    assert_allclose(smoothed.values[:, 3:6], expected, atol=1e-9)
+        of_pair = MixtureSmoother(noise[pair], 30.0, [pairs], np.array([-1, 0]))
+        estimates.append(of_pair(samples[:, columns]))
+    of_joint = [slice(3, 6), slice(3, 6), slice(0, 3), slice(0, 3)]
+    values, variances = (
+        np.stack([
+            getattr(each, name)[:, part] for each, part in zip(estimates, of_joint, strict=True)
+        ])
+        for name in ("values", "variance")
+    )
+    weights = 1.0 / variances.mean(axis=(1, 2))
+    assert_allclose(
+        smoothed.values[:, 3:6], np.average(values, axis=0, weights=weights), atol=1e-9
+    )
+    assert_allclose(
+        smoothed.variance[:, 3:6], np.average(variances, axis=0, weights=weights), atol=1e-9
+    )
 
 
 def test_groups_skip_joints_that_stand_still():
