@@ -36,6 +36,7 @@ from .held_samples import (
 from .limb_gaps import keep_standing_feet
 from .limits import clamp_to_limits, find_impossible_rotations
 from .marker_gaps import FilledMarkers, fill_markers
+from .noise_sections import clean_sections
 from .observed_samples import max_per_joint, observed_mask, restore_observed
 from .published import filter_as_published
 from .window_priors import FilterBases
@@ -143,6 +144,10 @@ def _denoise_segments(
     progress: Progress,
 ) -> list[Denoised]:
     """Denoise the segments of a take; one that is too short keeps its samples."""
+
+    def clean(segment: Motion | Tracks, progress: Progress) -> Denoised:
+        return _denoise_segment(segment, bases, limits, settings, progress)
+
     results = []
     for start, stop in shot_ranges(take, cuts):
         segment = take.slice(start, stop) if cuts else take
@@ -154,8 +159,10 @@ def _denoise_segments(
                 if observed_mask(segment).all()
                 else _denoise_segment(segment, bases, None, unchanged_settings, step)
             )
+        elif isinstance(segment, Motion) and settings.method is DenoiseMethod.DEFAULT:
+            results.append(clean_sections(segment, clean, step))
         else:
-            results.append(_denoise_segment(segment, bases, limits, settings, step))
+            results.append(clean(segment, step))
     return results
 
 

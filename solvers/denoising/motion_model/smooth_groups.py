@@ -90,6 +90,47 @@ class GroupSmoother:
         variance = np.einsum("tja,ja,jca->tjc", leverage, axes.variance, axes.to_channels**2)
         return values, variance
 
+    def log_likelihoods(self, samples: Array, windows: Windows, factors: Array) -> Array:
+        """Return how likely each window is if its noise has these factors.
+
+        Parameters
+        ----------
+        samples : shape (n_frames, n_groups, n_axes)
+            About their mean, without NaN; a window or longer.
+        windows : Windows
+        factors : shape (n_factors,)
+            Of the standard deviation of the noise.
+
+        Returns
+        -------
+        shape (n_windows, n_groups, n_factors)
+            Logarithms, without constants.
+        """
+        axes, basis = principal_axes(samples, self.noise), self._basis
+        along_axes = np.einsum("tjc,jac->tja", samples, axes.from_channels)
+        along_axes = along_axes.reshape(len(samples), -1)
+        found = np.empty((len(windows.starts), len(self.noise), len(factors)))
+        for first in range(0, len(found), MAX_BLOCK_WINDOWS):
+            block = slice(first, first + MAX_BLOCK_WINDOWS)
+            frames = windows.extract(along_axes, windows.starts[block]).transpose(0, 2, 1)
+            coefficients = frames @ self._cosines / self._density
+            coefficients = coefficients.reshape(len(frames), *axes.variance.shape, -1)
+            for group, variance in enumerate(axes.variance / self._density):
+                projected = coefficients[:, group].transpose(1, 0, 2) @ basis.vectors
+                squares = np.square(projected)
+                squares = squares.reshape(*projected.shape[:2], *basis.variances.shape[1:])
+                for index, factor in enumerate(factors):
+                    total = basis.variances + factor**2 * variance[:, None, None]
+                    exponents = np.einsum("awkn,akn->wk", squares, 1.0 / total)
+                    exponents += np.log(total).sum(axis=(0, 2))
+                    log_density = np.log(self.mixture.weights) - 0.5 * exponents
+                    found[block, group, index] = np.logaddexp.reduce(log_density, axis=1)
+        return found
+
+    def windows(self, n_frames: int, n_overlaps: int = N_OVERLAPS) -> Windows:
+        """Return the windows of a take."""
+        return Windows(n_frames, self.length, self._density, n_overlaps)
+
     def _average_windows(
         self, samples: Array, filters: Sequence[_GroupFilters]
     ) -> tuple[Array, Array]:
@@ -101,8 +142,7 @@ class GroupSmoother:
             Along the principal axes.
         filters : sequence of _GroupFilters, length n_groups
         """
-        windows = Windows(len(samples), self.length, self._density, N_OVERLAPS)
-        n_axes = self.noise.shape[1]
+        windows, n_axes = self.windows(len(samples)), self.noise.shape[1]
         total, leverage = np.zeros_like(samples), np.zeros_like(samples)
         weight = np.zeros((len(samples), 1))
         windows.add(weight, np.ones((windows.length, 1)), windows.starts)
@@ -162,8 +202,8 @@ class GroupSmoother:
         """Return a group's posterior mean coefficients, and how far they follow noise.
 
         The weight of samples in their own estimate is their posterior variance, relative to
-        the noise (Tweedie's formula [1]_). It has two parts: the mean variance of the
-        components, which follows from their probabilities, and the variance of their means.
+        the noise, for given axes (Tweedie's formula [1]_). It has two parts: the mean variance
+        of the components, which follows from their probabilities, and that of their means.
 
         Parameters
         ----------

@@ -37,6 +37,8 @@ class Condition:
     """Fraction of single samples that lie 20 to 60 degrees off."""
     bursts: float = 0.0
     """Fraction of frames in which a joint is off by 20 to 60 degrees, for 2 to 8 frames."""
+    quiet: float = 1.0
+    """Factor of the noise of the second half."""
     drift: float = 0.0
     """Standard deviation of 1/f noise, degrees."""
     limb: str = ""
@@ -65,6 +67,7 @@ CONDITIONS = (
     Condition("sigma 1", sigma=1.0),
     Condition("sigma 3", sigma=3.0),
     Condition("3, 10 % outliers", sigma=3.0, outliers=0.10),
+    Condition("sigma 3, then 0.3", sigma=3.0, quiet=0.1),
     Condition("bursts", sigma=0.3, bursts=0.02),
     Condition("1/f drift", drift=3.0),
     Condition("arm lost 1 s", limb="arm"),
@@ -110,6 +113,8 @@ class Case:
                 self.clean, condition.sigma, condition.bursts, self._groups, rng
             )
         result = corrupt(self.clean, condition.sigma, condition.outliers, rng)
+        half = len(result) // 2
+        result[half:] = self.clean[half:] + condition.quiet * (result - self.clean)[half:]
         if condition.drift:
             result += condition.drift * _one_over_f(result.shape, rng)
         for joints, frames in self._repeats:
