@@ -1,4 +1,4 @@
-"""Clean sections of a take apart where its noise changes, as when a camera loses the body."""
+"""Clean sections of a take separately where its noise changes."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -29,7 +29,7 @@ BLEND_S = 0.2
 """Seconds on each side of a change over which sections blend. Chosen by hand: less than half
 of the shortest section."""
 N_SMOOTHED = 3
-"""Windows of which the median counts. They span one second."""
+"""Number of windows whose median counts. Chosen by hand: they span one second."""
 
 
 def find_noise_changes(motion: Motion) -> tuple[int, ...]:
@@ -62,7 +62,7 @@ def find_noise_changes(motion: Motion) -> tuple[int, ...]:
 def clean_sections(
     motion: Motion, clean: Callable[[Motion, Progress], Denoised], progress: Progress
 ) -> Denoised:
-    """Clean a motion; apart, and blended, where its noise changes.
+    """Clean a motion, in sections that are blended where its noise changes.
 
     Noise is estimated once for a section. That of a quiet half would leave all of the noise of
     the other half, and that of a noisy half would take movement out of a quiet one.
@@ -96,7 +96,7 @@ def clean_sections(
         positions[shared.stop : last] = cleaned.root_positions[own.stop :]
         results.append(_crop(result, start - first, stop - first))
     joined = join_segments(motion, results, ())
-    sentence = f"The noise changes: {len(results)} sections were cleaned apart."
+    sentence = f"The noise changes: {len(results)} sections were cleaned separately."
     complete = motion.with_poses(rotations, positions)
     message = f"{joined.prior_used} {sentence}".strip()
     return replace(joined, recording=complete, prior_used=message)

@@ -21,7 +21,8 @@ N_OVERLAPS = 2
 MIN_OBSERVED = 0.75
 """Fraction of a window from which a joint counts there. It guards gaps, which have no noise."""
 SPIKE_HALF_WIDTH = 4
-"""Frames to either side among which a spike is found, as in the first guess of Clean."""
+"""Frames to either side among which a spike is found. Chosen by hand, as in the first guess of
+Clean."""
 
 
 def noise_levels(

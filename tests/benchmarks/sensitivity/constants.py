@@ -22,6 +22,7 @@ FAMILIES: dict[str, tuple[str, ...]] = {
         "solvers/denoising/denoise.py",
         "solvers/denoising/edge_poses.py",
         "solvers/denoising/held_samples",
+        "solvers/denoising/noise_sections.py",
         "solvers/denoising/default_method.py",
         "solvers/denoising/observed_samples.py",
         "solvers/denoising/channels",

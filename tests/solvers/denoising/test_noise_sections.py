@@ -34,12 +34,12 @@ def mean_error(motion: Motion, truth: Motion) -> float:
 
 
 @pytest.mark.parametrize("noise", [(3.0, 0.3), (0.3, 3.0), (3.0, 0.0)])
-def test_halves_are_cleaned_as_if_they_were_apart(walk, noise):
+def test_halves_are_cleaned_as_well_as_alone(walk, noise):
     noisy = with_noise(walk, *noise)
 
     cleaned = denoise(noisy)
 
-    assert "2 sections were cleaned apart." in cleaned.prior_used
+    assert "2 sections were cleaned separately." in cleaned.prior_used
     assert isinstance(cleaned.recording, Motion)
     for start, stop in ((0, HALF), (HALF, walk.n_frames)):
         truth = walk.slice(start, stop)
