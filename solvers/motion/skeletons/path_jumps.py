@@ -19,8 +19,6 @@ MAX_ACCELERATION = 100.0
 MAX_RETURN_S = 0.3
 """Seconds after which a body that comes back was not put elsewhere by an error. By definition:
 Clean returns it if it does so earlier."""
-
-
 MIN_NOISE_RATIO = 6.0
 """Smallest jump as a ratio to the median deviation of steps from their neighbors. Chosen by
 hand: without it, and the median position, hands and feet of development takes with noise and
