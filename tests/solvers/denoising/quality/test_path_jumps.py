@@ -51,6 +51,13 @@ def test_jump_is_found_among_noise_and_outliers_but_they_are_none(walk, rng):
     assert half in [each.frame for each in find_path_jumps(jump, ())]
 
 
+def test_noise_of_one_half_makes_no_jumps(walk, rng):
+    """The median over the take is that of the quiet part."""
+    noise = rng.normal(scale=0.03, size=walk.root_positions.shape)
+    noise[: round(0.6 * walk.n_frames)] *= 0.02
+    assert not find_path_jumps(walk.with_poses(root_positions=walk.root_positions + noise), ())
+
+
 def test_cut_is_no_jump_of_the_path(walk):
     assert not find_path_jumps(displaced(walk, slice(40, None), (0.3, 0.0, 0.0)), (40,))
 
