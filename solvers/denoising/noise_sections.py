@@ -5,13 +5,12 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 from ..arrays import Array
 from ..motion import Motion
 from ..progress import Progress, within
 from ..rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion, slerp
-from ..signals import smoothstep
+from ..signals import local_median, smoothstep
 from .denoised import Denoised, join_segments
 from .motion_model import load_motion_mixture, noise_levels
 from .observed_samples import observed_mask
@@ -44,7 +43,7 @@ def find_noise_changes(motion: Motion) -> tuple[int, ...]:
     if not is_known.any():
         return ()
     levels = np.interp(middles, middles[is_known], levels[is_known])
-    smooth = median_filter(np.log(levels), N_SMOOTHED, mode="nearest")
+    smooth = local_median(np.log(levels), N_SMOOTHED // 2)
     low, high = smooth.min(), smooth.max()
     if np.exp(high) < MIN_NOISE_DEG or high - low < np.log(MIN_RATIO):
         return ()

@@ -2,6 +2,7 @@
 
 from .gaussian_smoothing import CausalSmoother, smooth_gaussian, smooth_to_the_ends
 from .linear_gaps import fill_gaps, fill_rotation_gaps
+from .local_median import local_median
 from .noise import (
     DIFFERENCE_EFFICIENCY,
     DIFFERENCE_GAIN,
@@ -30,6 +31,7 @@ __all__ = [
     "fill_rotation_gaps",
     "find_runs",
     "fit_lowess",
+    "local_median",
     "lower_block_bands",
     "merge_runs",
     "remove_outliers",

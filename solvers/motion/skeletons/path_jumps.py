@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
+from ...signals import local_median
 from .motion import Motion
 from .shot_boundaries import shot_ranges
 from .tracks import Tracks
@@ -59,7 +60,7 @@ def find_path_jumps(recording: Motion | Tracks, cuts: tuple[int, ...]) -> tuple[
         excess = steps - np.median(np.delete(windows, N_NEIGHBORS, axis=-1), axis=-1)
         sizes = np.linalg.norm(excess, axis=-1)
         known = np.nan_to_num(sizes)
-        noise = MIN_NOISE_RATIO * np.maximum(_local_median(known, brief), np.median(known))
+        noise = MIN_NOISE_RATIO * np.maximum(local_median(known, brief), np.median(known))
         for step in np.flatnonzero(sizes > np.maximum(limit, noise)):
             around = excess[max(step - brief, 0) : step + brief + 1]
             if np.linalg.norm(around.sum(axis=0)) > 0.5 * sizes[step] and _stays(
@@ -67,13 +68,6 @@ def find_path_jumps(recording: Motion | Tracks, cuts: tuple[int, ...]) -> tuple[
             ):
                 jumps.append(PathJump(start + int(step) + 1, excess[step]))
     return tuple(jumps)
-
-
-def _local_median(sizes: Array, half_width: int) -> Array:
-    """Return the median over so many values on each side, shape (n,)."""
-    padded = np.pad(sizes, half_width, mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * half_width + 1)
-    return np.asarray(np.median(windows, axis=-1))
 
 
 def _stays(path: Array, step: int, jump: Array, brief: int) -> bool:
