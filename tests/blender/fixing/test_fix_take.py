@@ -78,7 +78,9 @@ def test_issues_left_are_those_that_check_lists(sample, fix, blank):
 
     assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
 
-    assert [(each.name, each.start, each.sentence) for each in listed.issues] == left
+    # Rounded keys may change the order of slides that are equally long.
+    issues = [(each.name, each.start, each.sentence) for each in listed.issues]
+    assert sorted(issues) == sorted(left)
 
 
 def test_revert_plays_the_recorded_action_and_closes_the_card(sample, fix, blank, draw):
