@@ -30,7 +30,8 @@ def noise_levels(
 ) -> tuple[NDArray[np.intp], Array] | None:
     """Return the likeliest noise of the body over time, the median of its joints.
 
-    Fast movement is no noise: the mixture explains it.
+    Fast movement is no noise: the mixture explains it. It takes all coefficients of a window to
+    distinguish them, which takes below the frame rate of the mixture do not have.
 
     Parameters
     ----------
@@ -45,7 +46,8 @@ def noise_levels(
     frames : shape (n_windows,)
         Middle of each window.
     levels : shape (n_windows,), degrees
-        NaN where too little was observed. None for a take shorter than a window.
+        NaN where too little was observed. None for a take shorter than a window, or below the
+        frame rate of the mixture.
     """
     n_frames = len(rotations)
     flat = remove_outliers(rotations.reshape(n_frames, -1), SPIKE_HALF_WIDTH)
@@ -57,7 +59,7 @@ def noise_levels(
     smoother = GroupSmoother(
         np.tile(np.eye(N_CHANNELS), (len(chosen), 1, 1)), frame_rate, mixture
     )
-    if not len(chosen) or n_frames < smoother.length:
+    if not len(chosen) or not mixture.window <= smoother.length <= n_frames:
         return None
     centered = complete[:, chosen] - complete[:, chosen].mean(axis=0)
     windows = smoother.windows(n_frames, N_OVERLAPS)

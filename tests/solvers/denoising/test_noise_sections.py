@@ -54,6 +54,13 @@ def test_take_of_equal_noise_is_one_section(walk, noise):
     assert find_noise_changes(with_noise(walk, noise, noise)) == ()
 
 
+@pytest.mark.parametrize("frame_rate", [12.0, 24.0])
+def test_slow_recording_is_one_section(frame_rate):
+    """At these rates a kick cannot be distinguished from noise."""
+    walk = walking_gait(GaitSettings(duration=180.0 / frame_rate, frame_rate=frame_rate))
+    assert find_noise_changes(with_noise(walk, 3.0, 0.3)) == ()
+
+
 def test_change_is_found_where_it_is(walk):
     (change,) = find_noise_changes(with_noise(walk, 3.0, 0.3))
 
