@@ -184,11 +184,18 @@ class RunDensity:
     def as_movement(self) -> float:
         """Log-density if the samples are right: the movement around them goes on, or another
         one begins."""
-        log_weights, (both, _) = self.predictive.log_weights, self._both
-        continued = _log_sum(both) - _log_sum(self._others)
-        # The run may be of another kind of movement than the frames around it.
-        begun = np.log(NEW_MOVEMENT_RATE) + _log_sum(log_weights + both - self._others)
-        return float(np.logaddexp(continued, begun))
+        return self._as_movement(self._both[0])
+
+    def movement_of(self, right: NDArray[np.bool_]) -> float:
+        """Return the same of some of the tested samples, without the others.
+
+        Parameters
+        ----------
+        right : shape (length, 3)
+        """
+        valid = self.valid & (right | ~self.tested)
+        both, _ = self.predictive.log_marginals(self.frames, self.channels, valid)
+        return self._as_movement(both)
 
     @property
     def with_offset(self) -> float:
@@ -203,6 +210,12 @@ class RunDensity:
         """
         both, with_offset = self._both
         return _log_sum(with_offset) - _log_sum(both) if self.may_be_off else -np.inf
+
+    def _as_movement(self, both: Array) -> float:
+        continued = _log_sum(both) - _log_sum(self._others)
+        # The run may be of another kind of movement than the frames around it.
+        begun = _log_sum(self.predictive.log_weights + both - self._others)
+        return float(np.logaddexp(continued, np.log(NEW_MOVEMENT_RATE) + begun))
 
     @cached_property
     def _both(self) -> tuple[Array, Array]:

@@ -9,6 +9,8 @@ from ...signals import MAD_TO_SIGMA
 OUTLIER_DENSITY = 1.0 / 120.0
 """Density of an outlier's error, per degree or centimeter: uniform within +-60. Chosen by hand;
 `make sensitivity` varies it."""
+LOG_OUTLIER_DENSITY = float(np.log(OUTLIER_DENSITY))
+"""Its natural logarithm. By definition."""
 INLIER_STD_FLOOR = 0.5
 """Degrees or centimeters: standard deviation of an inlier, in addition to noise and prediction.
 Chosen by hand; `make sensitivity` varies it."""

@@ -20,9 +20,9 @@ class Guard(NamedTuple):
 
 WITHOUT: dict[str, Any] = {
     "denoising/averaging/average_estimates.POOLED_JOINTS": 0.0,
-    "denoising/outliers/outlier_runs.BURST_PRIOR_PSEUDOCOUNT": 1.0,
-    "denoising/outliers/outlier_runs.RUN_PRIOR_PSEUDOCOUNT": 1e4,
-    "denoising/outliers/outlier_runs.SPIKE_PRIOR_PSEUDOCOUNT": 1e3,
+    "denoising/outliers/likeliest_errors.BURST_PRIOR_PSEUDOCOUNT": 1.0,
+    "denoising/outliers/likeliest_errors.RUN_PRIOR_PSEUDOCOUNT": 1e4,
+    "denoising/outliers/likeliest_errors.SPIKE_PRIOR_PSEUDOCOUNT": 1e3,
     "denoising/window_estimates/estimate_channels.MAX_LEVERAGE": 1.0 - 1e-9,
     "denoising/window_estimates/prior_selection.N_TRIAL_ITERATIONS": 1,
     "denoising/window_estimates/smoothness.POOLED_WINDOWS": 0.0,
@@ -53,11 +53,11 @@ GUARDS: dict[str, Guard] = {
     "denoising/limb_gaps/adapt_relation.MAX_TRIALS": Guard(
         10**9, "denoising/limb_gaps/test_limb_gaps.py::test_many_gaps_need_no_more_trials"
     ),
-    "denoising/outliers/outlier_runs.PRIOR_SPIKES": Guard(
+    "denoising/outliers/likeliest_errors.PRIOR_SPIKES": Guard(
         1e-20,
         "denoising/test_outlier_runs.py::test_suspected_kick_is_cleared_and_a_spike_is_not",
     ),
-    "denoising/outliers/outlier_runs.PRIOR_RUNS": Guard(
+    "denoising/outliers/likeliest_errors.PRIOR_RUNS": Guard(
         1.0,
         "denoising/test_outlier_runs.py::test_second_error_of_a_take_need_not_be_as_likely_as_the_first",
     ),

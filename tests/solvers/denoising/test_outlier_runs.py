@@ -179,3 +179,64 @@ def test_density_of_the_others_needs_no_factorization_of_its_own(tested, rng):
         np.log(MIXTURE.weights) + both - alone
     )
     assert density.as_movement == pytest.approx(np.logaddexp(continued, begun), abs=1e-9)
+
+
+def interpolate(samples: np.ndarray, suspected: np.ndarray) -> np.ndarray:
+    """The samples with straight lines where they are suspected."""
+    complete = samples.copy()
+    for column, is_suspected in zip(complete.T, suspected.T, strict=True):
+        right = np.flatnonzero(~is_suspected)
+        column[is_suspected] = np.interp(np.flatnonzero(is_suspected), right, column[right])
+    return complete
+
+
+@pytest.mark.parametrize("wrong", [[50, 51], [50, 54], [50, 51, 54], [50, 52, 53, 54]])
+def test_right_frames_between_spikes_are_kept_where_spikes_are_frequent(wrong, rng):
+    samples = walk_like(30.0, rng)
+    errors = np.zeros(samples.shape, dtype=bool)
+    errors[3:110:4, 4] = errors[2:110:5, 5] = True
+    errors[wrong, 1] = True
+    samples += errors * 40.0 * rng.choice([-1.0, 1.0], size=samples.shape)
+    suspected = errors.copy()
+    suspected[50:55, 1] = True
+
+    confirmed = confirm_outliers(
+        samples, suspected, interpolate(samples, suspected), 30.0, MIXTURE
+    )
+
+    assert (confirmed == errors).all()
+
+
+def test_unrelated_frames_are_one_error_where_there_are_no_spikes(rng):
+    samples = walk_like(30.0, rng)
+    samples[50:55, 1] += [40.0, -30.0, 0.0, 50.0, -40.0]
+    suspected = np.zeros(samples.shape, dtype=bool)
+    suspected[50:55, 1] = True
+
+    confirmed = confirm_outliers(
+        samples, suspected, interpolate(samples, suspected), 30.0, MIXTURE
+    )
+
+    assert (confirmed == suspected).all()
+
+
+def test_density_of_all_tested_samples_is_that_of_the_run_and_of_none_is_one(rng):
+    samples = np.cumsum(5.0 * rng.normal(size=(16, 3)), axis=0)
+    windows = Windows(16, MIXTURE.window, 1.0)
+    predictive = PredictiveDensity(samples, np.full(3, 2.0), windows, MIXTURE, np.eye(3))
+
+    density = predictive.of_run(slice(6, 9), np.array([True, True, False]), samples < np.inf)
+
+    assert density.movement_of(density.tested) == pytest.approx(density.as_movement, abs=1e-9)
+    nothing = density.movement_of(np.zeros_like(density.tested))
+    assert nothing == pytest.approx(np.log1p(NEW_MOVEMENT_RATE), abs=1e-9)
+
+
+def test_joint_that_is_suspected_in_all_frames_gets_the_noise_of_the_others(rng):
+    samples = walk_like(30.0, rng) + 4.0 * rng.normal(size=(120, 6))
+    suspected = np.zeros(samples.shape, dtype=bool)
+    suspected[:, 3:] = True
+
+    confirmed = confirm_outliers(samples, suspected, samples, 30.0, MIXTURE)
+
+    assert not confirmed.any()
