@@ -17,14 +17,14 @@ from ..motion.skeletons import (
     path_offsets,
     shot_ranges,
 )
-from ..motion_fitting import FittedMotion, fit_in_windows, fit_motion
+from ..motion_fitting import fit_in_windows
 from ..progress import Progress, Remark, collect_remarks, unwatched, within
 from .body_supports import SUPPORTS, detect_supports
-from .foot_goals import planting_goals
 from .legs import LegJoints, find_legs
-from .limb_goals import LimbContact, find_limb_contacts, limb_tolerances
+from .limb_goals import find_limb_contacts
+from .plant_in_window import plant_in_window
 from .plant_settings import PlantSettings
-from .sole_contact import FootContact, find_foot_contact
+from .sole_contact import find_foot_contact
 from .standing_feet import detect_standing_feet
 
 DEFAULT_SETTINGS = PlantSettings()
@@ -80,8 +80,9 @@ def plant_feet(
     its contact is given, with `settings.hands_and_knees`; a pelvis rolls with the root. The
     rotations of the legs, of such arms, and the position of the root in all frames are found
     at once: they hold what is loaded with the least smooth change of knees, feet, arms and
-    root (`planting_goals`, `fit_motion`). Bones never stretch, and no joint of the
-    trunk rotates.
+    root (`planting_goals`, `fit_motion`). A foot that is detected in contact, but could only be
+    held by moving leg or root far, is held less (`plant_in_window`). Bones never stretch, and
+    no joint of the trunk rotates.
     Segments of a joined take are planted separately; a segment of less than a quarter of a
     second has no contact. Where the body is put elsewhere in one frame, and stays, its feet are
     put there with it (`find_path_jumps`).
@@ -141,7 +142,9 @@ def plant_feet(
         step = within(progress, start / motion.n_frames, stop / motion.n_frames)
         weights = ankle_weights[start:stop]
         results.append(
-            _plant_segment(segment, humanoid_map, legs, found, weights, settings, step)
+            _plant_segment(
+                segment, humanoid_map, legs, found, weights, settings, given is None, step
+            )
         )
     progress(1.0, "Planted the feet")
     planted = _join_segments(motion, results) if cuts else results[0]
@@ -182,6 +185,7 @@ def _plant_segment(
     contacts: Flags,
     ankle_weights: Array,
     settings: PlantSettings,
+    may_yield: bool,
     progress: Progress,
 ) -> Planted:
     """Plant what bears on the floor of a motion without cuts; contacts are (n_frames, 7)."""
@@ -202,7 +206,9 @@ def _plant_segment(
         on_limbs = [limb.slice(start, stop) for limb in limbs]
         weights = ankle_weights[start:stop]
         window = motion.slice(start, stop)
-        return _plant_window(window, windows, on_limbs, weights, settings, progress)
+        return plant_in_window(
+            window, windows, on_limbs, weights, settings, may_yield, progress
+        )
 
     result = fit_in_windows(motion, plant_window, progress)
     before_and_after = poses, forward_kinematics(result)
@@ -219,26 +225,6 @@ def _planted(
     before, after = slides
     supports = contacts[:, N_FEET:] if settings.hands_and_knees else None
     return Planted(motion, contacts[:, :N_FEET], before, after, supports)
-
-
-def _plant_window(
-    motion: Motion,
-    feet: Sequence[FootContact],
-    limbs: Sequence[LimbContact],
-    ankle_weights: Array,
-    settings: PlantSettings,
-    progress: Progress,
-) -> Motion:
-    """Return the window of a take with all that bears on the floor planted."""
-    legs = [foot.leg for foot in feet]
-    joints = [joint for leg in legs for joint in (*leg.chain, leg.toe) if joint is not None]
-    joints += limb_tolerances(limbs)
-    start = FittedMotion(motion, motion, tuple(joints), settings.move_root)
-    weights = [ankle_weights[:, SIDES.index(leg.side)] for leg in legs]
-    goals = planting_goals(start, feet, limbs, settings, weights)
-    fit = fit_motion(start, goals, progress, "Planting the feet")
-    progress(1.0, "Planted the feet")
-    return fit.motion
 
 
 def _join_segments(motion: Motion, results: Sequence[Planted]) -> Planted:

@@ -59,6 +59,17 @@ class FootContact(Support):
             flat=self.flat[start : stop - 1],
         )
 
+    def held_less(self, factors: Array) -> Self:
+        """Return the contact with the loaded points held less firmly.
+
+        Parameters
+        ----------
+        factors : shape (n_frames,), 1 or more
+            How much less.
+        """
+        weakest = np.maximum(factors[1:], factors[:-1])
+        return replace(self, steps=self.steps / weakest[:, None])
+
 
 def find_foot_contact(
     motion: Motion, poses: WorldPoses, leg: LegJoints, contact: Flags

@@ -1,0 +1,92 @@
+"""Feet that move in a contact that is detected are held as far as leg and body allow."""
+
+import numpy as np
+import pytest
+
+from solvers.feet import plant_feet
+from solvers.feet.legs import find_legs
+from solvers.feet.plant_in_window import MAX_CHANGE_RAD, MAX_ROOT_CHANGE_M
+from solvers.motion import Motion, forward_kinematics
+from solvers.rotations.representations import (
+    angle_between,
+    multiply,
+    quaternion_from_rotation_vector,
+)
+from solvers.samples import GaitSettings, walking_gait
+
+RATE = 60.0
+
+
+@pytest.fixture
+def standing(rng) -> Motion:
+    """An actor who stands, and trembles, for three seconds."""
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=RATE))
+    feet = forward_kinematics(walk).positions[
+        :, [leg.ankle for leg in find_legs(walk.skeleton)]
+    ]
+    both_down = int(np.argmin(np.ptp(feet[:, :, 2], axis=1) + feet[:, :, 2].max(axis=1)))
+    n_frames = round(3.0 * RATE)
+    roots = np.repeat(walk.root_positions[[both_down]], n_frames, axis=0)
+    rotations = np.repeat(walk.rotations[[both_down]], n_frames, axis=0)
+    tremble = quaternion_from_rotation_vector(
+        0.002 * rng.normal(size=(*rotations.shape[:2], 3))
+    )
+    return Motion(walk.skeleton, multiply(rotations, tremble), roots, RATE)
+
+
+def turn_joint(motion: Motion, joint: int, radians: np.ndarray) -> Motion:
+    """Return the motion with a joint turned about the vertical axis of its rest pose."""
+    rotations = motion.rotations.copy()
+    turns = quaternion_from_rotation_vector(radians[:, None] * (0.0, 0.0, 1.0))
+    rotations[:, joint] = multiply(rotations[:, joint], turns)
+    return motion.with_poses(rotations)
+
+
+def changes(before: Motion, after: Motion) -> tuple[float, float]:
+    """Return the largest rotation of a joint, radians, and of the root's position, meters."""
+    turned = angle_between(before.rotations, after.rotations).max()
+    moved = np.linalg.norm(after.root_positions - before.root_positions, axis=1).max()
+    return float(turned), float(moved)
+
+
+def pivoting(standing: Motion) -> Motion:
+    """The body turns by 60 degrees within a second, with its feet on the floor."""
+    time = np.arange(standing.n_frames) / RATE
+    return turn_joint(standing, 0, np.radians(60.0) * np.clip(time - 1.0, 0.0, 1.0))
+
+
+def test_feet_that_pivot_do_not_twist_their_legs(standing):
+    source = pivoting(standing)
+    both = np.ones((source.n_frames, 2), dtype=np.bool_)
+
+    detected, keyed = plant_feet(source), plant_feet(source, both)
+
+    assert detected.contacts.mean() > 0.9
+    assert changes(source, keyed.motion)[0] > 1.25 * MAX_CHANGE_RAD
+    assert changes(source, detected.motion)[0] < 1.1 * MAX_CHANGE_RAD
+
+
+def test_glitch_of_one_frame_does_not_pull_the_body_aside(standing):
+    glitch = np.zeros(standing.n_frames)
+    glitch[90] = np.radians(40.0)
+    source = turn_joint(standing, 0, glitch)
+
+    detected = plant_feet(source)
+    keyed = plant_feet(source, detected.all_contacts)
+
+    assert detected.contacts[85:95].all()
+    assert changes(source, keyed.motion)[1] > 1.5 * MAX_ROOT_CHANGE_M
+    assert changes(source, detected.motion)[1] < 1.1 * MAX_ROOT_CHANGE_M
+
+
+def test_feet_that_can_be_held_are_held_as_if_keyed(standing):
+    sway = 0.02 * np.sin(2.0 * np.pi * np.arange(standing.n_frames) / RATE)
+    source = standing.with_poses(
+        root_positions=standing.root_positions + sway[:, None] * (1.0, 0.0, 0.0)
+    )
+
+    detected = plant_feet(source)
+    keyed = plant_feet(source, detected.all_contacts)
+
+    assert detected.contacts.all()
+    assert (detected.motion.rotations == keyed.motion.rotations).all()
