@@ -34,6 +34,8 @@ clean takes are taken for errors, with 1e9 one; of 446 true bursts 3 % are lost.
 FIXED_PSEUDOCOUNT = 1e12
 """Number of samples of the prior of a rate that is given. By definition: far more than a take
 has, so that the errors in it do not change the rate."""
+SPIKE_RATES = np.linspace(0.0, 1.0 / 3.0, 1000)
+"""Fractions of wrong frames. By definition: at a third, most of them are isolated."""
 
 
 class Run(NamedTuple):
@@ -155,7 +157,7 @@ def find_likeliest(
     for index in np.flatnonzero(_log_odds(gains, is_spike, observed, rates) > 0.0):
         gains[index] = tests[index].gain
     spike_rate = rates[0].log_rate(gains[is_spike], int(np.count_nonzero(observed)))
-    singles = [test.find_single_errors(spike_rate) for test in tests]
+    singles = [test.find_single_errors(_with_adjacent(spike_rate)) for test in tests]
     # One error has to be likelier than both movement and single errors.
     gains -= np.maximum([single.log_odds for single in singles], 0.0)
     log_odds = _log_odds(gains, is_spike, observed, rates)
@@ -169,6 +171,16 @@ def find_likeliest(
         if not (found[frames, joint] & samples).any():
             found[frames, joint] |= samples
     return found
+
+
+def _with_adjacent(log_rate: float) -> float:
+    """Return the log-rate of all spikes from that of those with right frames on both sides.
+
+    If a fraction p of frames is wrong, p (1 - p)^2 are wrong between right ones.
+    """
+    return float(
+        np.log(np.interp(np.exp(log_rate), SPIKE_RATES * (1.0 - SPIKE_RATES) ** 2, SPIKE_RATES))
+    )
 
 
 def _log_odds(

@@ -112,7 +112,7 @@ def _select(
     """Return the samples of the candidates that are likelier to be errors than movement."""
     frame_ratio, n_frames = frame_rate / mixture.frame_rate, len(noisy)
     length = round(mixture.window * frame_ratio)
-    noise = estimate_joint_noise(np.where(suspected, np.nan, noisy), MIN_NOISE).deviation
+    noise = estimate_joint_noise(complete, MIN_NOISE).deviation
     if n_frames < length:  # the rest of the window is not observed
         added = ((0, length - n_frames), (0, 0))
         noisy = np.pad(noisy, added, constant_values=np.nan)

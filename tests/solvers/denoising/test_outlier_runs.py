@@ -6,6 +6,7 @@ import pytest
 from solvers.denoising import denoise
 from solvers.denoising.motion_model import load_motion_mixture
 from solvers.denoising.outliers import PredictiveDensity, confirm_outliers, find_bursts
+from solvers.denoising.outliers.likeliest_errors import _with_adjacent
 from solvers.denoising.outliers.predictive_density import NEW_MOVEMENT_RATE
 from solvers.denoising.window_priors import Windows
 from solvers.motion import Motion
@@ -232,11 +233,10 @@ def test_density_of_all_tested_samples_is_that_of_the_run_and_of_none_is_one(rng
     assert nothing == pytest.approx(np.log1p(NEW_MOVEMENT_RATE), abs=1e-9)
 
 
-def test_joint_that_is_suspected_in_all_frames_gets_the_noise_of_the_others(rng):
-    samples = walk_like(30.0, rng) + 4.0 * rng.normal(size=(120, 6))
-    suspected = np.zeros(samples.shape, dtype=bool)
-    suspected[:, 3:] = True
+@pytest.mark.parametrize("rate", [1e-6, 0.01, 0.1, 0.25])
+def test_rate_of_spikes_follows_from_that_of_isolated_ones(rate, rng):
+    wrong = rng.random(400_000) < rate
+    isolated = wrong[1:-1] & ~wrong[:-2] & ~wrong[2:]
+    expected = isolated.mean() if rate > 1e-3 else rate
 
-    confirmed = confirm_outliers(samples, suspected, samples, 30.0, MIXTURE)
-
-    assert not confirmed.any()
+    assert np.exp(_with_adjacent(np.log(expected))) == pytest.approx(rate, rel=0.05)
