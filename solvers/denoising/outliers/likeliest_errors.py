@@ -16,9 +16,8 @@ SPIKE_PRIOR_PSEUDOCOUNT = 1e3
 hand on the development takes of the first press: with 1e4, the error
 rises by 2 % where a tenth of the samples is wrong."""
 PRIOR_SPIKES = 0.01
-"""Number of spikes among these samples: a clean take has hardly one in ten minutes (60
-channels, 30 Hz). Chosen by hand on the development takes of the first press: with 1e-5 a
-fifth more lone spikes of 40 degrees are kept."""
+"""Number of spikes among these samples: most takes have none. Chosen by hand on the development
+takes of the first press: with 1e-5 a fifth more lone spikes of 40 degrees are kept."""
 RUN_PRIOR_PSEUDOCOUNT = 1e5
 """Number of samples of the prior of the rate of longer errors. Chosen by hand on development
 takes of the first press at up to twice their speed: with 1e4, and as rare a first error, those

@@ -22,7 +22,7 @@ WITHOUT: dict[str, Any] = {
     "denoising/averaging/average_estimates.POOLED_JOINTS": 0.0,
     "denoising/outliers/likeliest_errors.BURST_PRIOR_PSEUDOCOUNT": 1.0,
     "denoising/outliers/likeliest_errors.RUN_PRIOR_PSEUDOCOUNT": 1e4,
-    "denoising/outliers/likeliest_errors.SPIKE_PRIOR_PSEUDOCOUNT": 1e3,
+    "denoising/outliers/likeliest_errors.SPIKE_PRIOR_PSEUDOCOUNT": 1e2,
     "denoising/window_estimates/estimate_channels.MAX_LEVERAGE": 1.0 - 1e-9,
     "denoising/window_estimates/prior_selection.N_TRIAL_ITERATIONS": 1,
     "denoising/window_estimates/smoothness.POOLED_WINDOWS": 0.0,
