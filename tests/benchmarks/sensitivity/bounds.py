@@ -5,6 +5,8 @@ BOUNDS: dict[str, tuple[str, ...]] = {
     "bounds the run time, not the result": (
         "denoising/window_estimates/estimate_channels.MAX_ITERATIONS",
         "denoising/window_estimates/smoothness.N_UPDATES",
+        "feet/plant_in_window.MAX_EXCESS",
+        "feet/plant_in_window.MAX_FITS",
         "depth_scene/actor.*SAMPLES*",
         "depth_scene/bodies.MAX_FULL_PIXELS",
         "depth_scene/bodies.POINT_STEP",

@@ -61,6 +61,13 @@ GUARDS: dict[str, Guard] = {
         1.0,
         "denoising/test_outlier_runs.py::test_second_error_of_a_take_need_not_be_as_likely_as_the_first",
     ),
+    "feet/plant_in_window.MAX_CHANGE_RAD": Guard(
+        inf, "feet/test_feet_that_move.py::test_glitch_of_one_frame_does_not_twist_a_leg"
+    ),
+    "feet/plant_in_window.YIELD_S": Guard(
+        0.0,
+        "feet/test_feet_that_move.py::test_body_that_glides_is_not_pulled_back_and_its_feet_do_not_jump",
+    ),
     "denoising/window_estimates/mean_pose.CLIP_VARIANCE_FRACTION": Guard(
         0.0, "denoising/test_mean_pose.py::test_copies_of_examples_change_nothing"
     ),
