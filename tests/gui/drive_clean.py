@@ -15,6 +15,7 @@ import bgui
 import bpy
 from driver_scene import (
     WHEEL_DOWN,
+    WHEEL_UP,
     empty_scene,
     import_noisy_walk,
     look_at_figure,
@@ -55,7 +56,11 @@ def wait_until_done():
 
 
 def press(button):
+    """Press a button of the tab, at the end of it if it is not in view."""
     yield from bgui.scan()
+    if not any(button in what for *_, what in bgui.found):
+        yield from scroll(WHEEL_DOWN)
+        yield from bgui.scan()
     yield from bgui.click(*bgui.at(button))
 
 
@@ -218,6 +223,7 @@ def revert_and_compare(armature):
 
 def check():
     found = bpy.context.scene.mocap_assist
+    yield from scroll(WHEEL_UP)
     yield from press("mocap_assist.measure_quality")
     yield from wait_until_done()
     assert found.issues
