@@ -21,6 +21,7 @@ CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_issue"
 MARK = "mocap_assist.mark_issues"
 ICONS = {
     "spike": "IPO_ELASTIC",
+    "jump": "IPO_CONSTANT",
     "gap": "REMOVE",
     "jitter": "RNDCURVE",
     "foot slide": "FORWARD",
@@ -28,6 +29,7 @@ ICONS = {
 }
 KINDS = {
     "spike": "Spike",
+    "jump": "Jump",
     "gap": "Gap",
     "jitter": "Jitter",
     "foot slide": "Foot Slide",
@@ -35,7 +37,7 @@ KINDS = {
     "cut": "Cut",
     "low confidence": "Low Confidence",
 }
-KIND_COLUMN, BONE_COLUMN = 0.36, 0.74  # of the list's width, and of the rest of it
+KIND_COLUMN, BONE_COLUMN = 0.36, 0.64  # of the list's width, and of the rest of it
 STALE = 'Results are for "{action}". Run Check again.'
 MIN_ROWS, MAX_ROWS = 4, 8
 

@@ -1,5 +1,6 @@
 """Measure the quality of a take: jitter, spikes, gaps, foot slide, bone-length drift."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -145,9 +146,15 @@ class Quality:
         """Longest displacement of a foot in one contact, meters; NaN without contact."""
         return max((foot.longest for foot in self.feet if foot.contact.any()), default=np.nan)
 
-    def report(self) -> str:
-        """Return a table for animators, in degrees and centimeters."""
-        return quality_report(self)
+    def report(self, frames: Sequence[float] | None = None) -> str:
+        """Return a table for animators, in degrees and centimeters.
+
+        Parameters
+        ----------
+        frames : sequence of float, length n_frames
+            Numbers of the frames, such as those of a timeline; by default they count from 1.
+        """
+        return quality_report(self, range(1, self.n_frames + 1) if frames is None else frames)
 
     def figures(self) -> dict[str, Any]:
         """Return the figures as JSON-ready values; the units are in the names."""

@@ -1,5 +1,7 @@
 """The list must contain every issue, worst first, and nothing else."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -114,6 +116,22 @@ def test_jitter_of_one_joint_is_listed(swinging_leg, rng):
 
     assert {issue.joint for issue in issues} == {"knee"}
     assert issues[0].start_frame < 75 and issues[0].stop_frame > 95
+
+
+@pytest.mark.parametrize(
+    ("noise", "text"),
+    [
+        (0.01, r"knee jitters by \d\.\d°, [2-9] times the typical noise of the take\."),
+        (0.0, r"knee jitters by \d\.\d°; most of the take does not jitter\."),
+    ],
+)
+def test_jitter_is_compared_with_that_of_the_take_if_it_has_any(swinging_leg, rng, noise, text):
+    noisy = with_jitter(swinging_leg, slice(0, 3), slice(None), noise, rng)
+
+    issues = find_worst_issues(with_jitter(noisy, 1, slice(60, 110), 0.05, rng))
+
+    (sentence, *_) = [issue.sentence for issue in issues if issue.kind == "jitter"]
+    assert re.fullmatch(text, sentence), sentence
 
 
 @pytest.mark.parametrize("scale", [0.005, 0.02, 0.08])
