@@ -80,6 +80,21 @@ def test_limb_that_is_lost_together_is_one_issue(swinging_leg):
     ]
 
 
+def test_gaps_of_one_joint_that_are_close_in_time_are_one_issue(swinging_leg):
+    """At 60 Hz and a merge time of 0.2 s, pauses of up to 12 frames."""
+    rotations = swinging_leg.rotations.copy()
+    rotations[20:26, 1:] = np.nan
+    rotations[30:36, 1] = np.nan
+    rotations[49:52, 1] = np.nan
+
+    issues = find_worst_issues(swinging_leg.with_poses(rotations))
+
+    assert [(each.start_frame, each.stop_frame, each.sentence) for each in issues] == [
+        (20, 36, "knee and 1 more are missing for 0.20 s."),
+        (49, 52, "knee is missing for 0.05 s."),
+    ]
+
+
 def test_limbs_lost_at_the_same_time_are_listed_each(recordings):
     walk = read_bvh(recordings / "mocap" / "cmu_walk" / "07_01.bvh").slice(1, 120)
     rotations = walk.rotations.copy()
