@@ -8,6 +8,7 @@ import bpy
 from ...solvers.progress import Progress
 from ..fix.button_settings import FixBundle
 from ..fix.fixing import fixed_subject, read_fixing, write_fixed
+from ..panel_parts.fix_card import stored_card
 from ..runtime.selection import played_source
 from ..scene import history
 from .bundles import add_bundle_options, bundle_from_arguments
@@ -30,5 +31,6 @@ def perform_fix(
     fixed = solve_in_subprocess(read_fixing(scene, subject, settings), arguments, progress)
     sentence = write_fixed(scene, subject, settings, fixed)
     action, _ = played_source(fixed_subject(subject, fixed))
-    text = "\n".join([sentence, *fixed.report["steps"]])
-    return text, {"action": action.name, **history.history(action)[-1], **fixed.report}
+    report = stored_card(action)
+    text = "\n".join([sentence, *report["steps"]])
+    return text, {"action": action.name, **history.history(action)[-1], **report}

@@ -128,7 +128,7 @@ def _check(
     checked = solve_in_subprocess(read_checking(scene, armature, settings), arguments, progress)
     sentence = show_checked(scene, armature, settings, checked)
     issues = [issue.sentence for issue in checked.issues]
-    text = "\n".join([checked.quality.report(), "", sentence, *issues])
+    text = "\n".join([scene.mocap_assist.report, "", sentence, *issues])
     return text, checked.quality.figures() | {"spots": issues}
 
 

@@ -6,7 +6,7 @@ from functools import partial
 import bpy
 
 from ...solvers.arrays import Array
-from ...solvers.denoising import Issue
+from ...solvers.denoising import Issue, Quality
 from ...solvers.errors import InvalidMotionError
 from ..actions.armature_read import read_take
 from ..actions.contact_keys import FOOT_PROPERTIES, read_contacts
@@ -15,7 +15,13 @@ from ..actions.markers.holders import markers_of, point_names
 from ..actions.markers.take import MarkerTake, read_markers
 from ..actions.take import ArmatureTake
 from ..blender.time_slices import Sliced, Steps
-from ..runtime.selection import played_source, select_only_bone, selected_subject, shown_frames
+from ..runtime.selection import (
+    played_source,
+    select_only_bone,
+    selected_subject,
+    shown_frames,
+    timeline_frames,
+)
 from ..runtime.subject import Subject, check_unchanged
 from ..scene.scene_objects import choose
 from .button_settings import CheckBundle
@@ -59,7 +65,7 @@ def show_checked(
     scene, subject = here.find()
     yield from check_unchanged.steps(subject, solved_digest, take.recordings[0])
     scene, subject = here.find()
-    list_issues(scene, subject, take.frames, checked.issues, checked.quality.report())
+    list_issues(scene, subject, take.frames, checked.issues, checked.quality)
     return " ".join(filter(None, [_summary(checked), checked.low_confidence]))
 
 
@@ -68,14 +74,14 @@ def list_issues(
     subject: bpy.types.Object,
     frames: Array,
     issues: Sequence[Issue],
-    report: str,
+    quality: Quality,
 ) -> None:
     """List the issues of a subject's action in the scene; `frames` are those of its take."""
     shown = scene.mocap_assist
     shown.issues.clear()
     shown.active_issue = 0
     shown.checked_action = played_source(subject)[0]
-    shown.report = report
+    shown.report = quality.report(timeline_frames(subject, frames))
     for issue in issues:
         item = shown.issues.add()
         item.name = issue.joint.removesuffix("_end")

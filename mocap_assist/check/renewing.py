@@ -18,7 +18,11 @@ class CheckOperator(SolverOperator):
 
     The message of the result that it follows stays in the status bar. The animator works on
     meanwhile: a check that was not requested blocks nothing, and a press of a button ends it.
+    A requested one is an undo step, so that the list stays when a later step is undone, or done
+    again with another setting.
     """
+
+    makes_result = False
 
     is_quiet: bpy.props.BoolProperty(options={"SKIP_SAVE", "HIDDEN"})
 
@@ -32,7 +36,8 @@ class CheckOperator(SolverOperator):
 
     def _finish(self, message: str) -> set[str]:
         _awaited.clear()
-        return {"FINISHED"} if self.is_quiet else super()._finish(message)
+        ended = super()._finish("" if self.is_quiet else message)
+        return {"CANCELLED"} if self.is_quiet else ended  # no undo step
 
     def _give_up(self, error: MocapAssistError | MemoryError) -> set[str]:
         return {"CANCELLED"} if self.is_quiet else super()._give_up(error)

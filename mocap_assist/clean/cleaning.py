@@ -17,7 +17,7 @@ from ..blender.time_slices import Sliced, Steps, in_thread
 from ..jobs.job import ShortSolve
 from ..library.library_prior import library_prior
 from ..runtime import redo
-from ..runtime.selection import Bones, chosen_parts
+from ..runtime.selection import Bones, chosen_parts, timeline_frames
 from ..runtime.subject import Subject, check_unchanged
 from .armature import ArmatureReading
 from .button_settings import CleanBundle, CleanChoices, Limits, Prior
@@ -86,9 +86,10 @@ def write_cleaned(
     types = yield from in_thread.steps(
         partial(key_types, cleaned.solution.recordings_of(problem), cleaned.solution.denoised)
     )
-    entry = yield from in_thread.steps(partial(entry_of, "denoise", settings, cleaned))
+    frames = timeline_frames(here.find()[1], found.raw.frames)
+    entry = yield from in_thread.steps(partial(entry_of, "denoise", settings, cleaned, frames))
     name, n_modified = yield from found.write(settings.choices, cleaned, types, entry)
-    return clean_report(len(found.raw.frames), cleaned, name, n_modified)
+    return clean_report(frames, cleaned, name, n_modified)
 
 
 def key_types(

@@ -1,5 +1,6 @@
 """Report of Clean for the status bar, and its entry in the action's history."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from ...solvers.arrays import Flags
@@ -10,7 +11,9 @@ from .button_settings import CleanBundle
 from .solve_cleaning import Cleaned
 
 
-def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0) -> str:
+def clean_report(
+    frames: Sequence[float], cleaned: Cleaned, name: str, n_modified: int = 0
+) -> str:
     """Return a few sentences for the status bar; `n_modified` curves had modifiers."""
     body = cleaned.solution.denoised[0]
     done = [f"{_count(body.outliers)} spikes", f"{_count(cleaned.before.gaps)} gaps"]
@@ -20,7 +23,11 @@ def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0
     if planted:
         slides = (100 * planted.slide_before, 100 * planted.slide_after)
         done.append(f"slide on the floor {slides[0]:.1f} → {slides[1]:.1f} cm")
-    message = [f"{name}: cleaned {n_frames} frames: {', '.join(done)}.", body.prior_used]
+    n_frames = len(frames)
+    message = [
+        f"{name}: cleaned {n_frames} frames: {', '.join(done)}.",
+        body.report(frames),
+    ]
     if n_modified:
         message.append(f"Applied the modifiers of {n_modified} curves.")
     if cleaned.keyed:
@@ -33,14 +40,16 @@ def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0
     return " ".join(message)
 
 
-def entry_of(operation: str, settings: CleanBundle, cleaned: Cleaned) -> dict[str, Any]:
+def entry_of(
+    operation: str, settings: CleanBundle, cleaned: Cleaned, frames: Sequence[float]
+) -> dict[str, Any]:
     """Return the entry for the action's history, JSON-ready."""
     body = cleaned.solution.denoised[0]
     return {
         "operation": operation,
         "settings": history.plain(*settings),
         "keyed_strengths": list(cleaned.keyed),
-        "prior_used": body.prior_used,
+        "prior_used": body.report(frames),
         "iterations": body.iterations,
         "converged": body.converged,
         "before": figures(cleaned.before),

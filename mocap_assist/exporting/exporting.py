@@ -18,7 +18,12 @@ from ..actions.take import ArmatureTake
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps
 from ..jobs.in_blender import BackgroundBlender
-from ..runtime.selection import played_source, selected_armature, why_not_read
+from ..runtime.selection import (
+    played_source,
+    selected_armature,
+    timeline_frames,
+    why_not_read,
+)
 from ..scene.rig import placement_of
 from ..scene.scene_rate import scene_rate
 from .button_settings import ExportBundle
@@ -55,7 +60,7 @@ def read_export(
     if not choices.overwrite_recording:
         refuse_recording(target, armature, source)
     take = yield from read_take.steps(armature, scene, choices.frame_range, source)
-    _refuse_gaps(take, source[0].name)
+    _refuse_gaps(take, armature, source[0].name)
     _, _, scale = placement_of(armature.matrix_world, armature.name)
     file_format = format_of(target, choices)
     meshes = _skinned_meshes(scene, armature) if choices.meshes else ()
@@ -102,7 +107,7 @@ def write_exported(
     return " ".join([what, *written.notes])
 
 
-def _refuse_gaps(take: ArmatureTake, action: str) -> None:
+def _refuse_gaps(take: ArmatureTake, armature: bpy.types.Object, action: str) -> None:
     """Raise InvalidMotionError where a bone is missing: no such file can have gaps."""
     missing = {
         bone: np.isnan(each.rotations).any(axis=-1) | np.isnan(each.locations).any(axis=-1)
@@ -110,7 +115,8 @@ def _refuse_gaps(take: ArmatureTake, action: str) -> None:
     }
     names = [bone for bone, frames in missing.items() if frames.any()]
     if names:
-        first = min(take.frames[np.flatnonzero(missing[name])[0]] for name in names)
+        gaps = np.any([missing[name] for name in names], axis=0)
+        first = timeline_frames(armature, take.frames)[int(gaps.argmax())]
         listed = ", ".join(names[:MAX_NAMED]) + (", ..." if len(names) > MAX_NAMED else "")
         raise InvalidMotionError(
             f"{action} has gaps ({listed}; the first at frame {first:g}), which exported files"

@@ -7,6 +7,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ...solvers.arrays import Array
 from ...solvers.denoising import DenoiseSettings, PlantSettings
 from ...solvers.depth_scene import ForegroundSettings
 from ...solvers.depth_tracking.capturing import CaptureSettings
@@ -15,6 +16,7 @@ from ...solvers.motion import JointLimits, Tracks
 from ...solvers.reconstruction import ReconstructSettings
 from ...solvers.workflows import (
     UNKNOWN,
+    FixedTake,
     MarkerMotion,
     MarkerMotionSettings,
     TakeOrigin,
@@ -41,6 +43,7 @@ from ..runtime.selection import (
     played_source,
     selected_armature,
     selected_subject,
+    timeline_frames,
     why_not_clean,
 )
 from ..runtime.subject import Subject
@@ -154,10 +157,8 @@ def write_fixed(
     scene, subject = here.find()
     take = yield from read_played.steps(scene, subject)
     scene, subject = here.find()
-    list_issues(scene, subject, take.frames, fixed.issues, fixed.quality)
-    (action, _), report = played_source(subject), fixed.report
-    name = action.name
-    keep_card(action, report)  # Esc may end the retargeting
+    name = played_source(subject)[0].name
+    report = _report(scene, subject, take.frames, fixed.take)  # Esc may end the retargeting
     if settings.choices.rig:
         try:
             report = yield from retargeted(here, settings.choices.rig, report)
@@ -166,6 +167,16 @@ def write_fixed(
             raise
         keep_card(played_source(here.find()[1])[0], report)
     return f"{name} was fixed: {_summary(report)}."
+
+
+def _report(
+    scene: bpy.types.Scene, subject: bpy.types.Object, frames: Array, fixed: FixedTake
+) -> dict[str, Any]:
+    """List the issues of a result, and keep its card, which is returned."""
+    list_issues(scene, subject, frames, fixed.after.issues, fixed.after.quality)
+    report = fixed.figures(timeline_frames(subject, frames))
+    keep_card(played_source(subject)[0], report)
+    return report
 
 
 def push_undo(name: str) -> None:

@@ -1,10 +1,9 @@
 """Solve of the button Fix My Take: `fix_take`, and its result in the form of other buttons."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 from ...solvers.arrays import Flags
-from ...solvers.denoising import Denoised, Issue, denoise
+from ...solvers.denoising import Denoised, denoise
 from ...solvers.depth_scene import DepthRecording
 from ...solvers.motion import JointLimits, Motion, Tracks
 from ...solvers.progress import Progress, unwatched, within
@@ -37,16 +36,11 @@ class FixedDepth:
 
 @dataclass(frozen=True, eq=False)
 class Fixed:
-    """A fixed take, and what the card shows."""
+    """A fixed take, and it in the form of the button that writes it."""
 
     written: Cleaned | Rebuilt | MarkerMotion | FixedDepth
     """What Clean, Reconstruct, Make Skeleton or Track would write."""
-    report: dict[str, Any]
-    """Origin, steps and figures: `FixedTake.figures`."""
-    issues: tuple[Issue, ...]
-    """Issues that are left."""
-    quality: str
-    """Table of the quality of the result."""
+    take: FixedTake
 
 
 def fix(
@@ -82,7 +76,7 @@ def fix(
         case DepthRecording():
             written = _tracked_from_fixed(fixed)
     progress(1.0, "Done")
-    return Fixed(written, fixed.figures(), fixed.after.issues, fixed.after.quality.report())
+    return Fixed(written, fixed)
 
 
 def _take_of(

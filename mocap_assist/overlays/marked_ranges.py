@@ -23,6 +23,7 @@ class StripRow(Enum):
 
     CONFIDENCE = "Confidence"
     SPIKES = "Spikes"
+    JUMPS = "Jumps"
     GAPS = "Gaps"
     JITTER = "Jitter"
     FOOT_SLIDES = "Foot Slides"
@@ -77,6 +78,7 @@ COLORS: Mapping[Mark, Color] = {
 }
 ISSUE_ROWS: Mapping[str, StripRow] = {
     "spike": StripRow.SPIKES,
+    "jump": StripRow.JUMPS,
     "gap": StripRow.GAPS,
     "jitter": StripRow.JITTER,
     "foot slide": StripRow.FOOT_SLIDES,

@@ -16,10 +16,15 @@ def keep_card(action: bpy.types.Action, report: dict[str, Any]) -> None:
     store_json(action, FIX_CARD, report)
 
 
+def stored_card(action: bpy.types.Action) -> Mapping[str, Any]:
+    """Return the card in an action, which users may have edited; empty if there is none."""
+    return load_json(action, FIX_CARD, dict)
+
+
 def shown_card(context: bpy.types.Context) -> Mapping[str, Any]:
     """Return the card of what the selection plays; empty if it has none."""
     action = _played_action(context)
-    card = {} if action is None else load_json(action, FIX_CARD, dict)
+    card = {} if action is None else stored_card(action)
     is_complete = all(
         isinstance(card.get(name), kind)
         for name, kind in (("before", dict), ("after", dict), ("steps", list))

@@ -12,7 +12,7 @@ from ..blender.time_slices import Sliced, Steps
 from ..jobs.job import ShortSolve
 from ..runtime import redo
 from ..runtime.played import Played
-from ..runtime.selection import played_source
+from ..runtime.selection import played_source, timeline_frames
 from ..runtime.subject import check_unchanged
 from ..scene import history
 from .solve_simulating import Resimulated, simulate_take, take_of
@@ -64,7 +64,8 @@ def write_simulated(
     _, armature, played = present.find()
     history.record(action, played, _entry(settings, result))
     assign_result(armature, action, slot, Output.ACTION)
-    failure = describe_first_failure(result.simulated.followed, read.frames.tolist())
+    frames = timeline_frames(armature, read.frames)
+    failure = describe_first_failure(result.simulated.followed, frames)
     message = f"{result.simulated.message} {failure}".rstrip()
     return f"{action.name}: {len(result.moved)} bones moved. {message}"
 

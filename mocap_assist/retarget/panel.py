@@ -7,22 +7,18 @@ import bpy
 from ...solvers.errors import MocapAssistError
 from ...solvers.retargeting import RetargetSettings, RootMotion
 from ..blender.mixins import PanelMixin
-from ..blender.name_lists import SEPARATOR, join_names, split_names
-from ..languages import translated
 from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
 from ..panel_parts.presets import draw_presets
 from ..panel_parts.visibility import shows_armature
 from ..rigs.rigify import is_rigify
 from ..runtime.selection import selected_armature, why_not_read, why_not_retarget
+from .action_ticks import draw_ticks
 from .bone_list import draw_bones
 from .button_settings import Takes
 from .retargeting import fitting_actions, remarks_on_target, target_called
 
-RETARGET, UNBAKE, TICK = (
-    f"mocap_assist.{name}" for name in ("retarget", "reduce_keys", "tick_action")
-)
+RETARGET, UNBAKE = "mocap_assist.retarget", "mocap_assist.reduce_keys"
 MAIN = ("root_motion", "keep_feet", "keep_hands")
-MAX_LISTED = 30
 
 
 class RetargetPanel(PanelMixin):
@@ -46,7 +42,9 @@ class RetargetPanel(PanelMixin):
         column.prop_search(shown, "target", context.scene, "objects", icon="ARMATURE_DATA")
         column.prop(shown, "takes")
         if shown.takes == Takes.LISTED.name:
-            _draw_actions(column, context)
+            source = selected_armature(context)
+            fitting = () if source is None else fitting_actions(source)
+            draw_ticks(column, context, [action for action, _ in fitting], "retarget")
         for name in MAIN:
             column.prop(shown, name)
         target = context.scene.objects.get(shown.target)
@@ -81,18 +79,6 @@ def why_not_pressed(context: bpy.types.Context) -> str:
     return ""
 
 
-def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    ticked = split_names(context.scene.mocap_assist.retarget.actions)
-    source = selected_armature(context)
-    found = [] if source is None else fitting_actions(source)
-    box = column.column(align=True)
-    for action, _ in found[:MAX_LISTED]:
-        icon = "CHECKBOX_HLT" if action.name in ticked else "CHECKBOX_DEHLT"
-        box.operator(TICK, text=action.name, translate=False, icon=icon).action = action.name
-    if len(found) > MAX_LISTED:
-        column.prop(context.scene.mocap_assist.retarget, "actions")
-
-
 def _draw_folded(column: bpy.types.UILayout, shown: bpy.types.PropertyGroup) -> None:
     header, body = column.panel("mocap_assist_retarget_advanced", default_closed=True)
     header.label(text="Advanced")
@@ -121,33 +107,3 @@ def _draw_unbake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     column.prop(context.scene.mocap_assist.unbake, "tolerance")
     column.prop(context.scene.mocap_assist.unbake, "key_poses")
     column.operator(UNBAKE, icon="KEYFRAME")
-
-
-class MOCAP_OT_tick_action(bpy.types.Operator):
-    bl_idname = TICK
-    bl_label = "Select Action"
-    bl_description = "Add this action to the selection, or remove it"
-    bl_options: ClassVar = {"INTERNAL", "UNDO"}
-
-    action: bpy.props.StringProperty(
-        name="Action", description="Name of the action", options={"SKIP_SAVE"}
-    )
-    group: bpy.props.StringProperty(default="retarget", options={"HIDDEN", "SKIP_SAVE"})
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        if SEPARATOR in self.action:
-            self.report(
-                {"ERROR"},
-                translated(f"Rename {self.action}: a name cannot contain {SEPARATOR}."),
-            )
-            return {"CANCELLED"}
-        shown = getattr(context.scene.mocap_assist, self.group)
-        names = split_names(shown.actions)
-        others = [name for name in names if name != self.action]
-        shown.actions = join_names(
-            others if len(others) < len(names) else [*names, self.action]
-        )
-        return {"FINISHED"}
-
-
-register, unregister = bpy.utils.register_classes_factory((MOCAP_OT_tick_action,))

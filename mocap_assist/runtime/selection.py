@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
 from ..actions.armature_read import action_of
@@ -107,6 +108,12 @@ def shown_frames(
     times = played_times(first_animated_object(subject))
     plays = (each for each in times if each.first <= issue.start <= each.last)
     return next(plays, times[0]).scene_range(issue.start, issue.stop)
+
+
+def timeline_frames(subject: bpy.types.Object, frames: Array) -> list[float]:
+    """Return the scene frames at which a subject plays these frames of its action."""
+    time = played_times(first_animated_object(subject))[0]
+    return [time.scene_frame(frame) for frame in frames.tolist()]
 
 
 def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:

@@ -31,7 +31,4 @@ def list_low_confidence(
         item.name, item.kind = interval.joint, "low confidence"
         item.start, item.stop = np.round(frames[[interval.first, interval.last]], 2)
         item.severity = float(interval.last - interval.first + 1)
-        item.sentence = (
-            f"{interval.joint} is hidden or fits poorly from frame {item.start:g} to"
-            f" {item.stop:g}; its pose is estimated."
-        )
+        item.sentence = f"{interval.joint} is hidden or fits poorly; its pose is estimated."

@@ -1,5 +1,6 @@
 """Track from Here: read the scene and write the result."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import bpy
@@ -15,7 +16,7 @@ from ..blender.time_slices import Sliced, Steps
 from ..depth.depth_preview import open_recording
 from ..jobs.protocol import PreviewSolve
 from ..runtime.played import Played
-from ..runtime.selection import played_source, selected_armature
+from ..runtime.selection import played_source, selected_armature, timeline_frames
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from ..scene.played_time import played_time
@@ -142,7 +143,7 @@ def write_retracked(
     confidence = update_reliability(
         armature, source_new, take.frames, rows, _confidence_by_bone(take, result)
     )
-    report = _report(take, result)
+    report = _report(timeline_frames(armature, take.frames), result)
     ranges = _find_low_confidence(scene, confidence)
     list_low_confidence(scene, source_new[0], take.frames, ranges, report)
     history.record(source_new[0], source, _entry(settings, take, result))
@@ -191,9 +192,9 @@ def _find_low_confidence(
     return low_confidence_ranges(tuple(confidence), flags)
 
 
-def _report(take: TrackedTake, result: Retracked) -> str:
-    rows = [result.first, result.frame, result.last]
-    first, frame, last = np.round(take.frames[rows], DIGITS)
+def _report(frames: Sequence[float], result: Retracked) -> str:
+    rows = (result.first, result.frame, result.last)
+    first, frame, last = (round(frames[row], DIGITS) for row in rows)
     message = f"re-tracked frames {first:g} to {last:g} from frame {frame:g}."
     open_ends = [side for side, met in zip(ENDS, result.met, strict=True) if not met]
     if not open_ends:

@@ -14,8 +14,7 @@ from ..overlays.comparison import switches as overlay_switch
 from ..overlays.contacts import switch as contact_switch
 from ..overlays.strip import switch as strip_switch
 from ..panel_parts import presets
-from ..retarget import bone_highlight, bone_list, rest_preview
-from ..retarget import panel as retarget_panel
+from ..retarget import action_ticks, bone_highlight, bone_list, rest_preview
 from ..variants import panel as vary_panel
 from . import diagnostics, manual, menus, preferences, sidebar
 
@@ -28,7 +27,7 @@ PARTS = (
     bone_highlight,
     rest_preview,
     bone_list,
-    retarget_panel,
+    action_ticks,
     source_list,
     match_grid,
     library_panel,

@@ -7,12 +7,11 @@ import bpy
 from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
 from ..blender.mixins import PanelMixin
-from ..blender.name_lists import split_names
 from ..find_similar import searches
 from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
 from ..panel_parts.presets import draw_presets
 from ..panel_parts.visibility import shows_armature
-from ..retarget.panel import TICK
+from ..retarget.action_ticks import draw_ticks
 from ..runtime.selection import selected_armature
 from .listing import chosen
 from .reading import candidates, why_not_vary
@@ -32,7 +31,6 @@ OTHERS = ("seed", "pin_start", "pin_end")
 SEPARATE_SETTINGS = {*MAIN, *OTHERS, *PARTS}
 CROWD = ("delay", "spread", "turn", "crowd_seed")
 HINT = "Tick similar actions, or none to vary the current one."
-MAX_LISTED = 30
 MIN_ROWS, MAX_ROWS = 3, 7  # rows of the list
 ROW, LARGE = 1.8, 7.0  # sizes of the pictures
 
@@ -95,20 +93,13 @@ def picture_of(action: bpy.types.Action) -> int:
 
 
 def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    ticked = split_names(context.scene.mocap_assist.vary.actions)
     armature = selected_armature(context)
     found = [] if armature is None else candidates(armature)
     if len(found) > 1:
         draw_sentence(column, context, HINT)
-    box = column.column(align=True)
-    for action in found[:MAX_LISTED]:
-        icon = "CHECKBOX_HLT" if action.name in ticked else "CHECKBOX_DEHLT"
-        button = box.operator(TICK, text=action.name, translate=False, icon=icon)
-        button.action, button.group = action.name, "vary"
+    draw_ticks(column, context, found, "vary")
     if search := searches.listed(context):
         column.operator(USE_OPERATOR, text=f"Best Matches of {search.query}", icon="VIEWZOOM")
-    if len(found) > MAX_LISTED:
-        column.prop(context.scene.mocap_assist.vary, "actions")
 
 
 def _draw_settings(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) -> None:

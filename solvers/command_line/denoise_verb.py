@@ -134,14 +134,14 @@ def perform_denoise(task: Task, learned: LearnedPrior, progress: Progress) -> Ou
     )
     write(clean, task.target, within(progress, 0.94, 1.0))
     text = "\n".join([
-        denoised.prior_used,
+        denoised.report(),
         *([] if denoised.converged else ["The estimate did not converge."]),
         *([f"{len(swaps)} swapped labels were corrected."] if swaps else []),
         *([feet["feet"]] if "feet" in feet else []),
         compare_quality(before, after),
     ])
     figures = {
-        "prior_used": denoised.prior_used,
+        "prior_used": denoised.report(),
         "iterations": denoised.iterations,
         "converged": denoised.converged,
         "outliers": int(denoised.outliers.sum()),

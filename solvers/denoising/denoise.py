@@ -22,7 +22,6 @@ from .denoise_settings import (
 from .denoised import Denoised, join_segments, unchanged
 from .discontinuities import find_held_and_cuts, remove_path_jumps, restore_path_jumps
 from .edge_poses import (
-    describe_edge_poses,
     find_edge_poses,
     hide_edge_poses,
     restore_edge_poses,
@@ -127,8 +126,7 @@ def denoise(
     kept = _strengths(recording, settings) == 0.0
     restored = restore_path_jumps(seen, result.recording, offsets, kept)
     complete, confidence = restore_edge_poses(seen, restored, result.confidence, edge_poses)
-    message = f"{result.prior_used} {describe_edge_poses(edge_poses)}".strip()
-    result = replace(result, recording=complete, confidence=confidence, prior_used=message)
+    result = replace(result, recording=complete, confidence=confidence, edge_poses=edge_poses)
     possible = recording
     if limits is not None and isinstance(recording, Motion) and held.any():
         possible = clamp_to_limits(recording, limits)

@@ -8,6 +8,7 @@ import numpy as np
 from ..arrays import Array, Flags
 from ..motion import Motion, Tracks
 from ..motion.skeletons import describe_shots
+from .edge_poses import EdgePose, describe_edge_poses
 from .observed_samples import observed_mask
 
 
@@ -29,9 +30,28 @@ class Denoised:
     iterations: int
     converged: bool
     prior_used: str
-    """Patterns that guided the estimate, and the reason; also the cuts that were found."""
+    """Patterns that guided the estimate, and the reason; also what counts as a gap."""
     cuts: tuple[int, ...] = ()
     """First frame of each segment of a joined take, except the first segment."""
+    edge_poses: tuple[EdgePose, ...] = ()
+    """Limbs that were kept as recorded at the ends of the take."""
+
+    def report(self, frames: Sequence[float] | None = None) -> str:
+        """Return `prior_used`, and where poses were kept as recorded.
+
+        Parameters
+        ----------
+        frames : sequence of float, length n_frames
+            Numbers of the frames, such as those of a timeline; by default they count from 1.
+        """
+        return f"{self.prior_used} {self.describe_separate_poses(frames)}".strip()
+
+    def describe_separate_poses(self, frames: Sequence[float] | None = None) -> str:
+        """Return where the take was cut, and which poses were kept as recorded."""
+        if frames is None:
+            frames = range(1, self.recording.n_frames + 1)
+        shots = describe_shots(self.recording, self.cuts, frames)
+        return f"{shots} {describe_edge_poses(self.edge_poses, frames)}".strip()
 
 
 def unchanged(segment: Motion | Tracks) -> Denoised:
@@ -65,6 +85,6 @@ def join_segments(
         np.concatenate([part.confidence for part in results]),
         max(part.iterations for part in results),
         all(part.converged for part in results),
-        f"{longest_segment.prior_used} {describe_shots(recording, cuts)}".strip(),
+        longest_segment.prior_used,
         cuts,
     )

@@ -112,14 +112,21 @@ def restore_edge_poses(
     return cleaned.with_poses(rotations, roots), confidence
 
 
-def describe_edge_poses(poses: Sequence[EdgePose]) -> str:
-    """Return a report for the animator, with frames counted from 1."""
+def describe_edge_poses(poses: Sequence[EdgePose], frames: Sequence[float]) -> str:
+    """Return a report for the animator, with the numbers of the take's frames."""
     return " ".join(
-        f"Frame {pose.stop} of the {pose.limb} is a separate pose and was kept as recorded."
-        if pose.stop - pose.start == 1
-        else f"Frames {pose.start + 1} to {pose.stop} of the {pose.limb} are separate poses and"
-        " were kept as recorded."
+        _describe_edge_pose(
+            pose.limb, f"{frames[pose.start]:.10g}", f"{frames[pose.stop - 1]:.10g}"
+        )
         for pose in poses
+    )
+
+
+def _describe_edge_pose(limb: str, first: str, last: str) -> str:
+    if first == last:
+        return f"Frame {first} of the {limb} is a separate pose and was kept as recorded."
+    return (
+        f"Frames {first} to {last} of the {limb} are separate poses and were kept as recorded."
     )
 
 

@@ -1,5 +1,6 @@
 """Fix a take of any origin with the steps that suit it, and measure what they gained."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -91,8 +92,15 @@ class FixedTake:
     @property
     def steps(self) -> tuple[str, ...]:
         """Sentences for the animator: what was done, why, and what to look at."""
+        return self.describe_steps()
+
+    def describe_steps(self, frames: Sequence[float] | None = None) -> tuple[str, ...]:
+        """Return `steps` with the numbers of frames of a timeline; by default from 1."""
         size = [self.size_question] if self.size_question else []
-        return (*size, *self.chain.steps, *self.missing, *self._spikes_left)
+        denoised = self.chain.denoised
+        poses = denoised.describe_separate_poses(frames) if denoised else ""
+        kept = [poses] if poses else []
+        return (*size, *self.chain.steps, *kept, *self.missing, *self._spikes_left)
 
     @property
     def headline(self) -> str:
@@ -110,12 +118,12 @@ class FixedTake:
             return ["1 spike is left, classified as fast movement; Check lists it."]
         return [f"{n_left} spikes are left, classified as fast movement; Check lists them."]
 
-    def figures(self) -> dict[str, Any]:
-        """Return the report as JSON-ready values."""
+    def figures(self, frames: Sequence[float] | None = None) -> dict[str, Any]:
+        """Return the report as JSON-ready values; `frames` as in `describe_steps`."""
         return {
             "origin": self.origin.value,
             "headline": self.headline,
-            "steps": list(self.steps),
+            "steps": list(self.describe_steps(frames)),
             "before": self.before.figures(),
             "after": self.after.figures(),
         }

@@ -15,6 +15,7 @@ import bgui
 import bpy
 from driver_scene import (
     WHEEL_DOWN,
+    WHEEL_UP,
     empty_scene,
     import_noisy_walk,
     look_at_figure,
@@ -55,7 +56,11 @@ def wait_until_done():
 
 
 def press(button):
+    """Press a button of the tab, at the end of it if it is not in view."""
     yield from bgui.scan()
+    if not any(button in what for *_, what in bgui.found):
+        yield from scroll(WHEEL_DOWN)
+        yield from bgui.scan()
     yield from bgui.click(*bgui.at(button))
 
 
@@ -218,16 +223,23 @@ def revert_and_compare(armature):
 
 def check():
     found = bpy.context.scene.mocap_assist
+    yield from scroll(WHEEL_UP)
     yield from press("mocap_assist.measure_quality")
     yield from wait_until_done()
     assert found.issues
     yield from settle(pointer=AWAY)
     yield from bgui.scan(columns=(0.25, 0.75))
+    timeline = bgui.region("WINDOW", "DOPESHEET_EDITOR")
+    with bgui.override("WINDOW", "DOPESHEET_EDITOR"):
+        bpy.ops.view2d.pan(deltax=3 * timeline.width)
     yield from bgui.click(*bgui.at("mocap_assist.jump_to_issue(index=2)"))
+    yield from settle()
     issue = found.issues[2]
     assert found.active_issue == 2
     assert bpy.context.scene.frame_current == int(issue.start)
     assert bpy.context.active_pose_bone.name == issue.name
+    ends = [timeline.view2d.region_to_view(x, 0)[0] for x in (0, timeline.width)]
+    assert ends[0] < issue.start < ends[1], ends
     yield from bgui.click(*bgui.at("mocap_assist.jump_to_issue(step=1)"))
     yield from settle(pointer=AWAY)
     assert found.active_issue == 3

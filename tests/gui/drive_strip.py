@@ -21,6 +21,7 @@ from driver_scene import (
     large_action,
     lose_arm,
     made_up_confidence,
+    make_the_timeline_higher,
     open_preferences,
     ours,
     settle,
@@ -279,6 +280,7 @@ def steps():
     yield from settle(2)
     assert bpy.context.scene.mocap_assist.checked_action.name == "walk.clean", "not renewed"
     bgui.shot("3-checked.png")
+    yield from make_the_timeline_higher()
     yield from drag_on_the_strip()
     yield from see_raw_curves(armature)
     made_up_confidence(armature)

@@ -1,5 +1,6 @@
 """List gaps: where joints are missing, and where a tracker repeated what it had lost."""
 
+from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -21,7 +22,8 @@ def gap_issues(quality: Quality, pause: int) -> Iterator[Issue]:
     ----------
     quality : Quality
     pause : int, frames
-        Repeats of the entire body that are closer in time are one issue.
+        Gaps of the entire body, or of the same highest joint, that are closer in time are one
+        issue, which states their time in sum.
     """
     body = np.zeros(quality.n_frames, dtype=np.bool_)
     if quality.body_held is not None:
@@ -31,9 +33,9 @@ def gap_issues(quality: Quality, pause: int) -> Iterator[Issue]:
         sentence = f"The entire body repeats a pose for {seconds:.2f} s before it moves on."
         yield Issue(quality.names[0], start, stop, "gap", seconds / LONG_GAP_S, sentence)
     missing = [(each.joint, find_runs(each.gaps & ~each.held)) for each in quality.signals]
-    for joint, n_more, (start, stop) in _lost_together(quality, missing):
-        seconds = (stop - start) / quality.frame_rate
-        if stop - start == quality.n_frames:
+    for joint, n_more, n_frames, (start, stop) in _lost_together(quality, missing, pause):
+        seconds = n_frames / quality.frame_rate
+        if n_frames == quality.n_frames:
             sentence = (
                 f"{joint} and {n_more} more are never observed."
                 if n_more
@@ -47,8 +49,8 @@ def gap_issues(quality: Quality, pause: int) -> Iterator[Issue]:
             )
         yield Issue(joint, start, stop, "gap", seconds / LONG_GAP_S, sentence)
     held = [(each.joint, find_runs(each.held & ~body)) for each in quality.signals]
-    for joint, n_more, (start, stop) in _lost_together(quality, held):
-        seconds = (stop - start) / quality.frame_rate
+    for joint, n_more, n_frames, (start, stop) in _lost_together(quality, held, pause):
+        seconds = n_frames / quality.frame_rate
         sentence = (
             f"{joint} and {n_more} more stand still for {seconds:.2f} s and then jump."
             if n_more
@@ -58,21 +60,31 @@ def gap_issues(quality: Quality, pause: int) -> Iterator[Issue]:
 
 
 def _lost_together(
-    quality: Quality, runs: list[tuple[str, list[_Run]]]
-) -> Iterator[tuple[str, int, _Run]]:
-    """Return the highest joint of each part of the body, how many are below it, and the run."""
+    quality: Quality, runs: list[tuple[str, list[_Run]]], pause: int
+) -> Iterator[tuple[str, int, int, _Run]]:
+    """Return the highest joint of each part of the body, and what was lost with it.
+
+    That is how many joints below it at most, in how many frames, and the first and last of
+    these.
+    """
     index = {name: number for number, name in enumerate(quality.names)}
     joints: dict[_Run, set[int]] = {}
     for name, of_joint in runs:
         for run in of_joint:
             joints.setdefault(run, set()).add(index[name])
+    parts: dict[int, dict[_Run, int]] = {}
     for run, together in joints.items():
-        below: dict[int, int] = {}
-        for joint in together:
-            top = _highest(joint, together, quality)
-            below[top] = below.get(top, -1) + 1
-        for top, n_more in below.items():
-            yield quality.names[top], n_more, run
+        for top, n_joints in Counter(
+            _highest(each, together, quality) for each in together
+        ).items():
+            parts.setdefault(top, {})[run] = n_joints - 1
+    for top, n_more in parts.items():
+        lost = np.zeros(quality.n_frames, dtype=np.bool_)
+        for first, last in n_more:
+            lost[first:last] = True
+        for start, stop in merge_runs(find_runs(lost), pause):
+            most = max(n for (first, _), n in n_more.items() if start <= first < stop)
+            yield quality.names[top], most, int(lost[start:stop].sum()), (start, stop)
 
 
 def _highest(joint: int, together: set[int], quality: Quality) -> int:

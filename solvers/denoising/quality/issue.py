@@ -12,7 +12,8 @@ class Issue:
     stop_frame: int
     """The first frame after the fault."""
     kind: str
-    """"spike", "gap", "jitter", "foot slide", "limit" or "cut"."""
+    """"spike", "jump", "gap", "jitter", "foot slide", "limit" or "cut". A spike returns, a jump
+    stays, and at a cut most of the body jumps."""
     severity: float
     """1 just deserves a look. Severities of all kinds are comparable."""
     sentence: str

@@ -1,5 +1,6 @@
 """Measure the quality of a take: jitter, spikes, gaps, foot slide, bone-length drift."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,7 +11,13 @@ from ...arrays import Array, Flags
 from ...errors import InvalidMotionError
 from ...motion import JointLimits, Motion, Tracks, forward_kinematics
 from ...motion.humanoid import SIDES, HumanoidMap, contacts_of_points, detect_contacts
-from ...motion.skeletons import PathJump, find_path_jumps, find_shot_boundaries
+from ...motion.skeletons import (
+    PathJump,
+    find_path_jumps,
+    find_shot_boundaries,
+    move_root,
+    path_offsets,
+)
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
 from ..held_samples import body_is_held, find_held_samples, hide_held_samples
@@ -145,9 +152,15 @@ class Quality:
         """Longest displacement of a foot in one contact, meters; NaN without contact."""
         return max((foot.longest for foot in self.feet if foot.contact.any()), default=np.nan)
 
-    def report(self) -> str:
-        """Return a table for animators, in degrees and centimeters."""
-        return quality_report(self)
+    def report(self, frames: Sequence[float] | None = None) -> str:
+        """Return a table for animators, in degrees and centimeters.
+
+        Parameters
+        ----------
+        frames : sequence of float, length n_frames
+            Numbers of the frames, such as those of a timeline; by default they count from 1.
+        """
+        return quality_report(self, range(1, self.n_frames + 1) if frames is None else frames)
 
     def figures(self) -> dict[str, Any]:
         """Return the figures as JSON-ready values; the units are in the names."""
@@ -180,7 +193,8 @@ def measure_quality(
     The take itself sets the scale of noise and spikes. A robust smooth trajectory is fitted to
     each joint's rotation (or point's position). The fast jitter about it is the noise. A spike
     is a short jump of several times that noise that is also visible to the eye and, in a
-    motion, no movement for Clean (`confirm_spikes`).
+    motion, no movement for Clean (`confirm_spikes`). Where the body is put elsewhere in one
+    frame, and stays, all else is measured without this jump (`find_path_jumps`).
 
     Parameters
     ----------
@@ -209,6 +223,12 @@ def measure_quality(
     rule = SpikeRule(
         settings.spike_threshold, settings.min_rotation_jump, settings.min_position_jump
     )
+    held = find_held_samples(recording)
+    cuts = find_shot_boundaries(hide_held_samples(recording, held))
+    path_jumps = find_path_jumps(hide_held_samples(recording, held), cuts)
+    if isinstance(recording, Motion) and path_jumps:
+        recording = move_root(recording, -path_offsets(path_jumps, recording.n_frames))
+    seen = hide_held_samples(recording, held)
     if isinstance(recording, Motion):
         names, poses = recording.skeleton.names, forward_kinematics(recording)
         positions, feet = poses.positions, sole_paths(recording, poses, humanoid_map)
@@ -218,9 +238,6 @@ def measure_quality(
         names, positions = recording.names, recording.positions
         feet = foot_paths(recording, humanoid_map)
         bones, parents = measure_bone_drifts(recording), ()
-    held = find_held_samples(recording)
-    seen = hide_held_samples(recording, held)
-    cuts = find_shot_boundaries(seen)
     signals = extract_signals(seen, held, rule, within(progress, 0.0, 0.8), cuts)
     joint_jumps: tuple[JointJump, ...] = ()
     if isinstance(seen, Motion):
@@ -238,7 +255,7 @@ def measure_quality(
         limit_excess=_excess(recording, limits, humanoid_map),
         cuts=cuts,
         body_held=body_is_held(recording, held) if held.any() else None,
-        path_jumps=find_path_jumps(seen, cuts),
+        path_jumps=path_jumps,
         joint_jumps=joint_jumps,
         bones_searched=isinstance(recording, Motion) or bones_are_searched(recording),
     )

@@ -1,5 +1,6 @@
 """Format a quality measurement as a table for animators."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,8 +16,11 @@ UNKNOWN = "-"
 COLUMNS = ("jitter", "shake", "spikes", "gaps", "missing")
 
 
-def quality_report(quality: "Quality") -> str:
-    """Return one line per joint, then feet, bones and limits, aligned in columns."""
+def quality_report(quality: "Quality", frames: Sequence[float]) -> str:
+    """Return one line per joint, then feet, bones and limits, aligned in columns.
+
+    `frames` are the numbers of the frames.
+    """
     jitter = dict(zip(quality.names, quality.jitter.tolist(), strict=True))
     rows = [_row(signal, quality, jitter[signal.joint]) for signal in quality.signals]
     seconds = quality.n_frames / quality.frame_rate
@@ -24,7 +28,7 @@ def quality_report(quality: "Quality") -> str:
         f"{quality.n_frames} frames at {quality.frame_rate:g} Hz ({seconds:.1f} s),"
         f" mean jitter {_number(quality.mean_jitter)} m/s3",
         *(
-            [f"cut before frame {', '.join(str(cut + 1) for cut in quality.cuts)}"]
+            [f"cut before frame {', '.join(f'{frames[cut]:.10g}' for cut in quality.cuts)}"]
             * bool(quality.cuts)
         ),
         "",

@@ -20,6 +20,9 @@ from .measure import Quality, measure_quality
 CUT_SEVERITY = 10.0
 """Severity of a cut, chosen by hand: joined recordings should be split before any other edit.
 It decides the order of a list only."""
+MAX_NAMED_RATIO = 100.0
+"""Ratio of jitter to that of the take up to which it is named. Chosen by hand: where the median
+joint has next to none, such as in takes from a computer, the ratio is in the millions."""
 SEVERE_EXCESS = np.radians(10.0)
 """Radians beyond a joint limit with severity 1, by definition; a fifth of it is not
 reported."""
@@ -143,7 +146,7 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
             sentence = (
                 f"{signal.joint} jumps {n_spikes} times, by up to {amount}."
                 if n_spikes > 1
-                else _describe_jump(signal, height)
+                else f"{signal.joint} jumps by {amount}."
             )
             yield Issue(
                 signal.joint,
@@ -157,21 +160,20 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
 
 def _joint_jumps(quality: Quality) -> Iterator[Issue]:
     for signal, frame, angle in quality.joint_jumps:
-        sentence = _describe_jump(signal, angle)
-        yield Issue(signal.joint, frame - 1, frame + 1, "spike", angle / MIN_JUMP_RAD, sentence)
+        sentence = _describe_lasting_jump(signal.joint, _amount(signal, angle))
+        yield Issue(signal.joint, frame - 1, frame + 1, "jump", angle / MIN_JUMP_RAD, sentence)
 
 
-def _describe_jump(signal: Signal, height: float) -> str:
-    amount = _amount(signal, height)
-    return f"{signal.joint} jumps by {amount}."
+def _describe_lasting_jump(joint: str, amount: str) -> str:
+    return f"{joint} jumps by {amount} and stays there."
 
 
 def _path_jumps(quality: Quality) -> Iterator[Issue]:
     name = quality.names[0]
     for jump in quality.path_jumps:
         frame, distance = jump.frame, jump.distance
-        sentence = f"{name} jumps by {100 * distance:.0f} cm and stays there."
-        yield Issue(name, frame - 1, frame + 1, "spike", distance / MIN_JUMP_M, sentence)
+        sentence = _describe_lasting_jump(name, f"{100 * distance:.0f} cm")
+        yield Issue(name, frame - 1, frame + 1, "jump", distance / MIN_JUMP_M, sentence)
 
 
 def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[Issue]:
@@ -187,17 +189,22 @@ def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[I
         for signal in signals:
             for start, stop in merge_runs(find_runs(signal.local_noise > threshold), pause):
                 level = float(signal.local_noise[start:stop].max())
-                amount = _amount(signal, level) + _relative_to_typical_noise(
-                    level, typical_noise
-                )
                 yield Issue(
                     signal.joint,
                     start,
                     stop,
                     "jitter",
                     level / threshold,
-                    f"{signal.joint} jitters by {amount}.",
+                    _describe_jitter(signal, level, typical_noise),
                 )
+
+
+def _describe_jitter(signal: Signal, level: float, typical_noise: float) -> str:
+    joint, amount = signal.joint, _amount(signal, level)
+    if level > MAX_NAMED_RATIO * typical_noise:
+        return f"{joint} jitters by {amount}; most of the take does not jitter."
+    ratio = f"{level / typical_noise:.0f}"
+    return f"{joint} jitters by {amount}, {ratio} times the typical noise of the take."
 
 
 def _slides(quality: Quality, settings: IssueSettings) -> Iterator[Issue]:
@@ -236,9 +243,3 @@ def _amount(signal: Signal, value: float) -> str:
     if signal.is_rotation:
         return f"{np.degrees(value):.1f}°"
     return f"{100 * value:.1f} cm"
-
-
-def _relative_to_typical_noise(level: float, typical_noise: float) -> str:
-    if typical_noise <= 0.0:
-        return ""
-    return f", {level / typical_noise:.0f} times the typical noise of the take"

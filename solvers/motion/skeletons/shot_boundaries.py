@@ -1,6 +1,6 @@
 """Find shot boundaries: discontinuities between two frames of a take."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -89,31 +89,27 @@ def is_short_shot(n_frames: int, frame_rate: float) -> bool:
     return n_frames < MIN_SHOT_S * frame_rate
 
 
-def describe_shots(recording: Motion | Tracks, cuts: tuple[int, ...]) -> str:
-    """Return a report for the animator, with frames counted from 1; empty for one shot."""
+def describe_shots(
+    recording: Motion | Tracks, cuts: tuple[int, ...], frames: Sequence[float]
+) -> str:
+    """Return a report for the animator, with the numbers of its frames; empty for one shot."""
     if not cuts:
         return ""
-    unchanged, cleaned_starts = [], []
+    cleaned_starts, sentences = [], []
     for start, stop in shot_ranges(recording, cuts):
+        first, last = f"{frames[start]:.10g}", f"{frames[stop - 1]:.10g}"
         if not is_short_shot(stop - start, recording.frame_rate):
-            cleaned_starts.append(str(start + 1))
+            cleaned_starts.append(first)
         elif stop - start == 1:
-            unchanged.append(f"frame {start + 1}")
+            sentences.append(f"Frame {first} is a separate pose and was kept as recorded.")
         else:
-            unchanged.append(f"frames {start + 1} to {stop}")
-    sentences = []
+            sentences.append(
+                f"Frames {first} to {last} are separate poses and were kept as recorded."
+            )
     if len(cleaned_starts) > 1:
         starts = _join_names(cleaned_starts[1:])
-        sentences.append(
-            f"The take has a cut before frame {starts}; its shots were cleaned separately."
-        )
-    if unchanged:
-        listed = _join_names(unchanged).capitalize()
-        single = len(unchanged) == 1 and listed.startswith("Frame ")
-        sentences.append(
-            f"{listed} is a separate pose and was kept as recorded."
-            if single
-            else f"{listed} are separate poses and were kept as recorded."
+        sentences.insert(
+            0, f"The take has a cut before frame {starts}; its shots were cleaned separately."
         )
     return " ".join(sentences)
 

@@ -35,12 +35,12 @@ class TakeFigures:
     @property
     def n_spikes(self) -> int:
         """Number of spikes of all joints."""
-        return _count([signal.spikes for signal in self.quality.signals])
+        return _count(self.quality.spikes)
 
     @property
     def n_gaps(self) -> int:
         """Number of gaps of all joints."""
-        return _count([signal.gaps for signal in self.quality.signals])
+        return _count(self.quality.gaps)
 
     def figures(self) -> dict[str, Any]:
         """Return the figures as JSON-ready values with units in the names; None is unknown."""
@@ -106,8 +106,8 @@ def _texts(figures: Mapping[str, Any]) -> dict[str, str]:
     }
 
 
-def _count(flags: list[Flags]) -> int:
-    return sum(len(find_runs(each)) for each in flags)
+def _count(flags: Flags) -> int:
+    return sum(len(find_runs(joint)) for joint in flags.T)
 
 
 def _finite_or_none(value: float) -> float | None:

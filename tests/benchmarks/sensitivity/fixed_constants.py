@@ -216,7 +216,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "recordings/conventions/bodies.MAX_LISTED",
         "workflows/library_clips.MAX_NAMED_CLIPS",
         "mocap_assist/clean/example_list.MAX_MENU_ENTRIES",
-        "mocap_assist/retarget/panel.MAX_LISTED",
+        "mocap_assist/retarget/action_ticks.MAX_LISTED",
         "mocap_assist/track/low_confidence.MAX_LISTED",
         "mocap_assist/track/tracked_armature/checks.MAX_NAMED",
     ),

@@ -161,6 +161,22 @@ def test_panel_shows_variants_and_missing_input(blank, draw, walker, vary):
     assert "Select the armature whose actions to vary." in " ".join(draw("MOCAP_PT_vary"))
 
 
+def test_tick_of_an_action_that_fits_no_more_is_shown_and_can_be_removed(blank, draw, walker):
+    """Vary refuses it: it was renamed, deleted, or is of another armature."""
+    group, action = blank.context.scene.mocap_assist.vary, walker.animation_data.action
+    former, n_ticks = action.name, draw("MOCAP_PT_vary").count("mocap_assist.tick_action")
+    blank.ops.mocap_assist.tick_action(action=former, group="vary")
+    action.name = "renamed"
+
+    shown = draw("MOCAP_PT_vary")
+
+    assert f"There is no action {former} with keys" in " ".join(shown)
+    assert shown.count("mocap_assist.tick_action") == n_ticks + 1
+    blank.ops.mocap_assist.tick_action(action=former, group="vary")
+    assert not group.actions and blank.ops.mocap_assist.vary.poll()
+    assert draw("MOCAP_PT_vary").count("mocap_assist.tick_action") == n_ticks
+
+
 @pytest.mark.parametrize("number", [-5, 10**8])
 def test_panel_accepts_an_index_stored_by_another_version(blank, draw, walker, number):
     group = blank.context.scene.mocap_assist.vary

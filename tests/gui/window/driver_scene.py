@@ -20,6 +20,7 @@ N_BONES, N_FRAMES = 100, 10_000
 """Of a large action."""
 GENERATED = 5
 """Blender's number for that type of key."""
+HIGHER = 80  # pixels
 TOP = (1152, 872)
 """Of the tab: scrolled from there, no list comes under the mouse, which it would scroll."""
 
@@ -126,6 +127,22 @@ def look_at_figure():
     view.view_rotation = (0.76, 0.6, 0.15, 0.2)
     view.view_distance = 4.0
     view.view_perspective = "ORTHO"
+
+
+def make_the_timeline_higher():
+    """In that of a new file the strip reaches into the frame numbers, where drags scrub."""
+    timeline = bgui.area("DOPESHEET_EDITOR")
+    column, border = timeline.x + timeline.width // 2, timeline.y + timeline.height
+    height = timeline.height
+    bgui.move(column, border)
+    yield 0.3
+    bgui.x("mousedown", 1)
+    for step in range(0, HIGHER + 1, 20):
+        bgui.move(column, border + step)
+        yield 0.1
+    bgui.x("mouseup", 1)
+    yield from settle()
+    assert timeline.height > height + HIGHER // 2, (height, timeline.height)
 
 
 def large_action():

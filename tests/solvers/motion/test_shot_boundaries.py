@@ -148,7 +148,7 @@ def test_pose_outlier_stays_and_does_not_affect_later_frames(walk):
         and not complete.outliers[0].any()
         and (complete.confidence[0] == 1).all()
     )
-    assert complete.prior_used.endswith("Frame 1 is a separate pose and was kept as recorded.")
+    assert complete.report().endswith("Frame 1 is a separate pose and was kept as recorded.")
 
 
 def test_gaps_of_a_short_segment_are_filled(walk):
@@ -168,7 +168,7 @@ def test_segments_of_a_joined_take_are_cleaned_separately(walk):
     cleaned = denoise(joined(noisy, other))
 
     assert cleaned.cuts == (walk.n_frames,)
-    assert "cut before frame 181; its shots were cleaned separately" in cleaned.prior_used
+    assert "cut before frame 181; its shots were cleaned separately" in cleaned.report()
     jump = angle_between(cleaned.recording.rotations[180], cleaned.recording.rotations[179])
     assert np.median(jump) > 0.3
 
@@ -213,11 +213,22 @@ def test_feet_are_not_planted_across_a_cut(walk):
     assert planted.slide_before == pytest.approx(separate.slide_before)
 
 
-def test_message_counts_frames_from_one(walk):
+def test_message_has_the_numbers_of_the_frames(walk):
     take = joined(with_pose_outlier(walk, 2), walk, with_pose_outlier(walk, 60))
 
-    assert describe_shots(take, ()) == ""
-    assert describe_shots(take, (2, 182)) == (
-        "The take has a cut before frame 183; its shots were cleaned separately."
-        " Frames 1 to 2 are separate poses and were kept as recorded."
+    assert describe_shots(take, (), range(242)) == ""
+    assert describe_shots(take, (2, 182), range(1001, 1243)) == (
+        "The take has a cut before frame 1183; its shots were cleaned separately."
+        " Frames 1001 to 1002 are separate poses and were kept as recorded."
     )
+    assert "before frame 91.5;" in describe_shots(take, (2, 182), 0.5 * np.arange(1, 243))
+
+
+def test_reports_count_frames_from_one_or_as_the_timeline(walk):
+    take = joined(with_pose_outlier(walk), walk)
+    cleaned, quality = denoise(take), measure_quality(take)
+
+    assert "Frame 1 is a separate pose" in cleaned.report()
+    assert "Frame 0 is a separate pose" in cleaned.report(range(181))
+    assert "cut before frame 2\n" in quality.report()
+    assert "cut before frame 1\n" in quality.report(range(181))

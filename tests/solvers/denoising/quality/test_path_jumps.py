@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from solvers.denoising import DenoiseSettings, denoise, find_worst_issues, plant_feet
+from solvers.denoising import (
+    DenoiseSettings,
+    denoise,
+    find_worst_issues,
+    measure_quality,
+    plant_feet,
+)
 from solvers.motion import Motion, forward_kinematics
 from solvers.motion.humanoid import detect_contacts
 from solvers.motion.skeletons import find_path_jumps
@@ -31,6 +37,17 @@ def test_body_that_is_put_elsewhere_is_listed(walk):
     assert found.distance == pytest.approx(0.3, abs=0.02)
     sentences = [issue.sentence for issue in find_worst_issues(jump)]
     assert "Hips jumps by 30 cm and stays there." in sentences
+
+
+def test_such_a_jump_is_no_slide_and_hardly_jitter(walk):
+    jump = displaced(walk, slice(40, None), (0.3, 0.0, 0.0))
+    before, after = measure_quality(walk), measure_quality(jump)
+
+    worst, *others = find_worst_issues(jump, after)
+    assert worst.kind == "jump"
+    assert all(each.severity < 0.2 * worst.severity for each in others), others
+    assert after.longest_foot_slide == pytest.approx(before.longest_foot_slide, abs=0.02)
+    assert after.position_noise == pytest.approx(before.position_noise, abs=0.002)
 
 
 def test_spike_and_noise_are_no_jumps_of_the_path(walk, rng):

@@ -1,5 +1,7 @@
 """The list must contain every issue, worst first, and nothing else."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -78,6 +80,21 @@ def test_limb_that_is_lost_together_is_one_issue(swinging_leg):
     ]
 
 
+def test_gaps_of_one_joint_that_are_close_in_time_are_one_issue(swinging_leg):
+    """At 60 Hz and a merge time of 0.2 s, pauses of up to 12 frames."""
+    rotations = swinging_leg.rotations.copy()
+    rotations[20:26, 1:] = np.nan
+    rotations[30:36, 1] = np.nan
+    rotations[49:52, 1] = np.nan
+
+    issues = find_worst_issues(swinging_leg.with_poses(rotations))
+
+    assert [(each.start_frame, each.stop_frame, each.sentence) for each in issues] == [
+        (20, 36, "knee and 1 more are missing for 0.20 s."),
+        (49, 52, "knee is missing for 0.05 s."),
+    ]
+
+
 def test_limbs_lost_at_the_same_time_are_listed_each(recordings):
     walk = read_bvh(recordings / "mocap" / "cmu_walk" / "07_01.bvh").slice(1, 120)
     rotations = walk.rotations.copy()
@@ -114,6 +131,22 @@ def test_jitter_of_one_joint_is_listed(swinging_leg, rng):
 
     assert {issue.joint for issue in issues} == {"knee"}
     assert issues[0].start_frame < 75 and issues[0].stop_frame > 95
+
+
+@pytest.mark.parametrize(
+    ("noise", "text"),
+    [
+        (0.01, r"knee jitters by \d\.\d°, [2-9] times the typical noise of the take\."),
+        (0.0, r"knee jitters by \d\.\d°; most of the take does not jitter\."),
+    ],
+)
+def test_jitter_is_compared_with_that_of_the_take_if_it_has_any(swinging_leg, rng, noise, text):
+    noisy = with_jitter(swinging_leg, slice(0, 3), slice(None), noise, rng)
+
+    issues = find_worst_issues(with_jitter(noisy, 1, slice(60, 110), 0.05, rng))
+
+    (sentence, *_) = [issue.sentence for issue in issues if issue.kind == "jitter"]
+    assert re.fullmatch(text, sentence), sentence
 
 
 @pytest.mark.parametrize("scale", [0.005, 0.02, 0.08])
