@@ -16,7 +16,7 @@ class MOCAP_OT_measure_quality(CheckOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.measure_quality"
     bl_label = "Check"
     bl_description = "List jumps, jitter, gaps and foot slides of the current action"
-    # No redo panel, which would solve again.
-    bl_options: ClassVar = {"UNDO"}
+    # It only makes a list: nothing to undo, and no redo panel, which would solve again.
+    bl_options: ClassVar = {"REGISTER"}
     settings_group = "check"
     why_not, read_scene, write_scene = why_not_read, read_checking, show_checked

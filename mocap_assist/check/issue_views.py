@@ -8,7 +8,7 @@ from mathutils import Vector
 from ..actions.frames import FrameRange
 from ..actions.markers.holders import markers_of, point_names
 from ..overlays.strip.drag import working_range
-from ..overlays.view_control import show_frame, show_point
+from ..overlays.view_control import show_point
 from ..runtime.selection import selected_subject, shown_frames
 
 VIEW, RANGE = "mocap_assist_issue_view", "mocap_assist_issue_range"
@@ -43,7 +43,6 @@ def show_issue(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> No
     """Show an issue as the switches choose; the current frame is its first one already."""
     manager = context.window_manager
     if getattr(manager, VIEW):
-        show_frame(context)
         point = _point_of(context, issue.name)
         if point is not None:
             show_point(manager, point)
@@ -118,7 +117,7 @@ def register() -> None:
     manager = bpy.types.WindowManager
     manager.mocap_assist_issue_view = bpy.props.BoolProperty(
         name="Follow in View",
-        description="Center 3D views, timelines and graphs on an issue that they do not show",
+        description="Center 3D views on the bone of an issue that is outside of them",
         default=True,
     )
     manager.mocap_assist_issue_range = bpy.props.BoolProperty(

@@ -37,7 +37,7 @@ KINDS = {
     "cut": "Cut",
     "low confidence": "Low Confidence",
 }
-KIND_COLUMN, BONE_COLUMN = 0.32, 0.68  # of the list's width, and of the rest of it
+KIND_COLUMN, BONE_COLUMN = 0.36, 0.64  # of the list's width, and of the rest of it
 STALE = 'Results are for "{action}". Run Check again.'
 MIN_ROWS, MAX_ROWS = 4, 8
 
@@ -82,14 +82,14 @@ class CheckPanel(PanelMixin):
         row.scale_y = 1.3
         row.operator(CHECK, icon="VIEWZOOM")
         _draw_figures(layout, context)
-        checked = shown.checked_action
-        is_checked = checked and not is_stale(checked, selected_subject(context))
         if shown.issues:
             _draw_issues(layout, context)
-        elif is_checked:
+        elif shown.checked_action and not is_stale(
+            shown.checked_action, selected_subject(context)
+        ):
             draw_sentence(layout, context, "No issues found.", icon="CHECKMARK")
         _draw_markers(layout, context.scene)
-        draw_strip_switch(layout, context, is_checked=bool(is_checked))
+        draw_strip_switch(layout, context)
         _draw_thresholds(layout, shown.check)
 
 

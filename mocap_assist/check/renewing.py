@@ -18,11 +18,7 @@ class CheckOperator(SolverOperator):
 
     The message of the result that it follows stays in the status bar. The animator works on
     meanwhile: a check that was not requested blocks nothing, and a press of a button ends it.
-    A requested one is an undo step, so that the list stays when a later step is undone, or done
-    again with another setting.
     """
-
-    makes_result = False
 
     is_quiet: bpy.props.BoolProperty(options={"SKIP_SAVE", "HIDDEN"})
 
@@ -36,8 +32,7 @@ class CheckOperator(SolverOperator):
 
     def _finish(self, message: str) -> set[str]:
         _awaited.clear()
-        ended = super()._finish("" if self.is_quiet else message)
-        return {"CANCELLED"} if self.is_quiet else ended  # no undo step
+        return {"FINISHED"} if self.is_quiet else super()._finish(message)
 
     def _give_up(self, error: MocapAssistError | MemoryError) -> set[str]:
         return {"CANCELLED"} if self.is_quiet else super()._give_up(error)

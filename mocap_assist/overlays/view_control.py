@@ -10,12 +10,6 @@ MIN_DISTANCE, MAX_DISTANCE = 1e-3, 1e6
 MAX_OFF_CENTER = 0.9
 """Distance from the middle of a view, as a fraction of half its size, up to which a point is
 seen."""
-VIEW_FRAME = {
-    "DOPESHEET_EDITOR": bpy.ops.action.view_frame,
-    "GRAPH_EDITOR": bpy.ops.graph.view_frame,
-    "NLA_EDITOR": bpy.ops.nla.view_frame,
-}
-"""By type of an editor, Blender's operator that centers it on the current frame."""
 NO_VIEW = "This window has no 3D View."
 
 
@@ -48,22 +42,6 @@ def show_point(manager: bpy.types.WindowManager, point: Vector) -> None:
         for view in _free_views(window):
             if not shows(view.perspective_matrix, point):
                 view.view_location = point
-
-
-def show_frame(context: bpy.types.Context) -> None:
-    """Move the time editors that do not show the current frame, so that it is in the middle."""
-    frame = context.scene.frame_current_final
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            view_frame = VIEW_FRAME.get(area.type)
-            region = next((each for each in area.regions if each.type == "WINDOW"), None)
-            if view_frame is None or region is None or window.scene != context.scene:
-                continue
-            first, _ = region.view2d.region_to_view(0, 0)
-            last, _ = region.view2d.region_to_view(region.width, 0)
-            if not first <= frame <= last:
-                with context.temp_override(window=window, area=area, region=region):
-                    view_frame()
 
 
 def shows(perspective: Matrix, point: Vector) -> bool:

@@ -45,8 +45,6 @@ class SolverOperator(SettingsMixin):
     """
 
     bl_options: ClassVar = {"REGISTER", "UNDO"}
-    makes_result: ClassVar = True
-    """Whether what was played is another motion afterwards, if there is an undo step."""
     _is_solving = False
     settings_group: ClassVar[str]
     """Property of `scene.mocap_assist` with the settings of the sidebar."""
@@ -224,10 +222,9 @@ class SolverOperator(SettingsMixin):
 
     def _finish(self, message: str) -> set[str]:
         note_press(self)
-        if self.makes_result and "UNDO" in self.bl_options:
+        if "UNDO" in self.bl_options:
             notify_listeners(bpy.context.scene)
-        if message:
-            self.report({"INFO"}, translated(message))
+        self.report({"INFO"}, translated(message))
         return {"FINISHED"}
 
     def _give_up(self, error: MocapAssistError | MemoryError) -> set[str]:

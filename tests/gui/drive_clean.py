@@ -229,17 +229,11 @@ def check():
     assert found.issues
     yield from settle(pointer=AWAY)
     yield from bgui.scan(columns=(0.25, 0.75))
-    timeline = bgui.region("WINDOW", "DOPESHEET_EDITOR")
-    with bgui.override("WINDOW", "DOPESHEET_EDITOR"):
-        bpy.ops.view2d.pan(deltax=3 * timeline.width)
     yield from bgui.click(*bgui.at("mocap_assist.jump_to_issue(index=2)"))
-    yield from settle()
     issue = found.issues[2]
     assert found.active_issue == 2
     assert bpy.context.scene.frame_current == int(issue.start)
     assert bpy.context.active_pose_bone.name == issue.name
-    ends = [timeline.view2d.region_to_view(x, 0)[0] for x in (0, timeline.width)]
-    assert ends[0] < issue.start < ends[1], ends
     yield from bgui.click(*bgui.at("mocap_assist.jump_to_issue(step=1)"))
     yield from settle(pointer=AWAY)
     assert found.active_issue == 3

@@ -19,12 +19,10 @@ NOTHING = "Nothing to show yet. Run Clean or Check."
 _handles: list[tuple[Any, Any]] = []
 
 
-def draw_strip_switch(
-    layout: bpy.types.UILayout, context: bpy.types.Context, *, is_checked: bool
-) -> None:
+def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the switch and, while it is on, the colors of the rows that the strip has now.
 
-    Markers have no strip. An action that was checked may have no issues.
+    Markers have no strip.
     """
     manager = context.window_manager
     if selected_armature(context) is None:
@@ -34,8 +32,7 @@ def draw_strip_switch(
         return
     strip = strip_of(context)
     if strip is None:
-        if not is_checked:
-            draw_sentence(layout, context, NOTHING, icon="INFO")
+        draw_sentence(layout, context, NOTHING, icon="INFO")
         return
     column = layout.column(align=True)
     if StripRow.CONFIDENCE in strip.rows:

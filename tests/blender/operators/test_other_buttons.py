@@ -93,8 +93,8 @@ def test_feet_of_a_short_take_are_planted_in_this_process(dancer, blank, load, m
     assert blank.ops.mocap_assist.plant_feet() == {"FINISHED"}
 
 
-def test_check_adds_an_undo_step_and_no_redo_panel(blank):
-    assert blank.types.MOCAP_ASSIST_OT_measure_quality.bl_options == {"UNDO"}
+def test_check_adds_no_undo_step_and_no_redo_panel(blank):
+    assert blank.types.MOCAP_ASSIST_OT_measure_quality.bl_options == {"REGISTER"}
     assert blank.types.MOCAP_ASSIST_OT_plant_feet.bl_options == {"REGISTER", "UNDO"}
 
 

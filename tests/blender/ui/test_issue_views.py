@@ -107,23 +107,6 @@ def test_view_moves_only_to_a_point_that_it_does_not_show(load, x, is_moved):
     assert view.view_location == (point if is_moved else None)
 
 
-def test_time_editors_move_only_to_a_frame_that_they_do_not_show(
-    blank, switches, issue, load, monkeypatch
-):
-    control, moved = load("mocap_assist.overlays.view_control"), []
-    monkeypatch.setitem(
-        control.VIEW_FRAME, "DOPESHEET_EDITOR", lambda: moved.append(issue.start)
-    )
-    for frame in (1.0, 9000.0):
-        issue.start = issue.stop = frame
-        blank.ops.mocap_assist.jump_to_issue(index=0)
-    assert moved == [9000.0]
-
-    switches.mocap_assist_issue_view = False
-    blank.ops.mocap_assist.jump_to_issue(index=0)
-    assert moved == [9000.0]
-
-
 def test_point_behind_a_view_is_not_shown(load):
     behind = Matrix(((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, -1, 0)))
 
