@@ -116,7 +116,7 @@ def describe_edge_poses(poses: Sequence[EdgePose], frames: Sequence[float]) -> s
     """Return a report for the animator, with the numbers of the take's frames."""
     return " ".join(
         _describe_edge_pose(
-            pose.limb, f"{frames[pose.start]:.10g}", f"{frames[pose.stop - 1]:.10g}"
+            pose.limb, f"{frames[pose.start]:.7g}", f"{frames[pose.stop - 1]:.7g}"
         )
         for pose in poses
     )

@@ -42,7 +42,7 @@ def describe_first_failure(followed: NDArray[np.bool_], frames: Sequence[float])
     if followed.all() or not followed.any():
         return ""
     frame = frames[int(followed.argmin())]
-    return f"The first frame that the body could not follow is {frame:.10g}."
+    return f"The first frame that the body could not follow is {frame:.7g}."
 
 
 def is_near_ground(ground: float, under_feet: float, size: float) -> bool:

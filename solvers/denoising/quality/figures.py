@@ -49,6 +49,14 @@ def quality_figures(quality: "Quality") -> dict[str, Any]:
     ]
     figures["bones_searched"] = quality.bones_searched
     figures["cuts"] = list(quality.cuts)
+    figures["body_jumps"] = [
+        {"frame": jump.frame, "distance_cm": 100.0 * jump.distance}
+        for jump in quality.path_jumps
+    ]
+    figures["joint_jumps"] = [
+        {"joint": signal.joint, "frame": frame, "angle_deg": float(np.degrees(angle))}
+        for signal, frame, angle in quality.joint_jumps
+    ]
     if quality.limit_excess is not None:
         worst = np.degrees(np.nan_to_num(quality.limit_excess).max(axis=0))
         beyond = zip(quality.names, worst.tolist(), strict=True)

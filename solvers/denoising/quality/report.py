@@ -28,8 +28,16 @@ def quality_report(quality: "Quality", frames: Sequence[float]) -> str:
         f"{quality.n_frames} frames at {quality.frame_rate:g} Hz ({seconds:.1f} s),"
         f" mean jitter {_number(quality.mean_jitter)} m/s3",
         *(
-            [f"cut before frame {', '.join(f'{frames[cut]:.10g}' for cut in quality.cuts)}"]
+            [f"cut before frame {', '.join(f'{frames[cut]:.7g}' for cut in quality.cuts)}"]
             * bool(quality.cuts)
+        ),
+        *(
+            f"the body jumps by {100 * jump.distance:.0f} cm at frame {frames[jump.frame]:.7g}"
+            for jump in quality.path_jumps
+        ),
+        *(
+            f"{signal.joint} jumps by {np.degrees(angle):.0f} deg at frame {frames[frame]:.7g}"
+            for signal, frame, angle in quality.joint_jumps
         ),
         "",
         *_aligned([("joint", *COLUMNS), *rows]),

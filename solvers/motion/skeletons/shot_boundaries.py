@@ -97,7 +97,7 @@ def describe_shots(
         return ""
     cleaned_starts, sentences = [], []
     for start, stop in shot_ranges(recording, cuts):
-        first, last = f"{frames[start]:.10g}", f"{frames[stop - 1]:.10g}"
+        first, last = f"{frames[start]:.7g}", f"{frames[stop - 1]:.7g}"
         if not is_short_shot(stop - start, recording.frame_rate):
             cleaned_starts.append(first)
         elif stop - start == 1:

@@ -50,6 +50,26 @@ def test_such_a_jump_is_no_slide_and_hardly_jitter(walk):
     assert after.position_noise == pytest.approx(before.position_noise, abs=0.002)
 
 
+def test_figures_and_the_table_name_jumps_of_the_body_and_of_joints(walk):
+    first, second = walk.n_frames // 3, 2 * walk.n_frames // 3
+    jump = displaced(walk, slice(second, None), (0.3, 0.0, 0.0))
+    arm = walk.skeleton.index("LeftArm")
+    rotations = jump.rotations.copy()
+    turn = quaternion_from_rotation_vector(np.radians([0.0, 0.0, 60.0]))
+    rotations[first:, arm] = multiply(rotations[first:, arm], turn)
+    quality = measure_quality(jump.with_poses(rotations))
+
+    (body,), (joint,) = quality.figures()["body_jumps"], quality.figures()["joint_jumps"]
+    assert (body["frame"], joint["frame"], joint["joint"]) == (second, first, "LeftArm")
+    assert body["distance_cm"] == pytest.approx(30.0, abs=2.0)
+    assert joint["angle_deg"] == pytest.approx(60.0, abs=6.0)
+    assert (
+        f"the body jumps by {body['distance_cm']:.0f} cm at frame {second + 1}"
+        in quality.report()
+    )
+    assert "LeftArm jumps by" in quality.report()
+
+
 def test_spike_and_noise_are_no_jumps_of_the_path(walk, rng):
     assert not find_path_jumps(displaced(walk, slice(40, 42), (0.3, 0.0, 0.0)), ())
     noise = rng.normal(scale=0.005, size=walk.root_positions.shape)
