@@ -19,6 +19,9 @@ MIN_PREFIX_FRACTION = 0.75
 """Fraction of joints that share a first or last word that says nothing ("mixamorig", "Bip01",
 "JNT"), or that an exporter has numbered ("Hips_01", "Spine_02"). Chosen by hand on the rigs of
 `tests/solvers/motion`."""
+MIN_PREFIXED_JOINTS = 15
+"""Joints that share such a first word where hair, clothes and props have others. By definition
+the joints of a body that VRM requires."""
 
 WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_A-Za-z]+")
 MIN_SIDED_JOINTS = 6
@@ -141,24 +144,26 @@ def _keys(names: Sequence[str]) -> dict[Key, str]:
 def _without_shared_words(
     split: list[tuple[str, list[str]]],
 ) -> Iterator[list[tuple[str, list[str]]]]:
-    """Yield sides and words without the rig's first or last word, as long as there is one."""
-    for end in (0, -1):
-        while word := _shared_word([words for _, words in split], end):
-            split = [(side, _without_word(words, word, end)) for side, words in split]
+    """Yield sides and words without the rig's last and first words, as long as it has some."""
+    for end in (-1, 0):
+        while shared := _shared_words([words for _, words in split], end):
+            split = [(side, _without_word(words, shared, end)) for side, words in split]
             yield split
 
 
-def _without_word(words: list[str], word: str, end: int) -> list[str]:
-    if len(words) < 2 or words[end] != word:
+def _without_word(words: list[str], shared: set[str], end: int) -> list[str]:
+    if len(words) < 2 or words[end] not in shared:
         return words
     return words[1:] if end == 0 else words[:-1]
 
 
-def _shared_word(split: Sequence[Sequence[str]], end: int) -> str:
-    """Return the first or last word that nearly all names share, or ""."""
+def _shared_words(split: Sequence[Sequence[str]], end: int) -> set[str]:
+    """Return the first words that a body's joints share, or the last one of nearly all."""
     counts = Counter(words[end] for words in split if len(words) > 1)
-    word, count = counts.most_common(1)[0] if counts else ("", 0)
-    return word if count >= max(3, MIN_PREFIX_FRACTION * len(split)) else ""
+    minimum = max(3.0, MIN_PREFIX_FRACTION * len(split))
+    if end == 0:
+        minimum = min(minimum, MIN_PREFIXED_JOINTS)
+    return {word for word, count in counts.items() if count >= minimum}
 
 
 class _Spelling(NamedTuple):

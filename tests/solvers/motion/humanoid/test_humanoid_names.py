@@ -45,6 +45,17 @@ def test_names_of_each_family_have_their_roles(family):
     assert {role: found.get(role) for role in ESSENTIAL_ROLES} == expected
 
 
+def test_the_prefix_of_a_body_among_more_hair_and_clothes_is_ignored():
+    """MotionBuilder calls a body Character1; games give it hair, skirts and ribbons."""
+    plain = written_out(FAMILIES["Mixamo"].replace("mixamorig:", ""))
+    expected = {role: f"Character1_{name}" for role, name in plain.items()}
+    hair = [f"J_{side}_Hair{lock}_0{n}" for side in "LR" for lock in range(8) for n in range(4)]
+
+    found = roles_by_name(["Root", *expected.values(), *hair])
+
+    assert {role: found.get(role) for role in ESSENTIAL_ROLES} == expected
+
+
 def test_vertebrae_and_backs_are_not_mistaken_for_sides():
     names = ["Pelvis", "L5", "L3", "T12", "T8", "lowerback", "root", "leg", "ribs"]
 
