@@ -81,6 +81,7 @@ from .scene_bodies import (
 )
 from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import MarkerSubject, bodies_of_joints, bodies_of_markers, split_subjects
+from .swapped_sides import SWAPPED, with_sides_corrected
 from .time_stamps import (
     DEFAULT_FRAME_RATE,
     MAX_TIME_S,
@@ -107,6 +108,7 @@ __all__ = [
     "MILLISECOND",
     "MIN_BODY_JOINTS",
     "STATED_REACH_M",
+    "SWAPPED",
     "Bodies",
     "Body",
     "ConstantRate",
@@ -173,6 +175,7 @@ __all__ = [
     "up_along",
     "with_axes",
     "with_conventions",
+    "with_sides_corrected",
     "y_up_from_z_up",
     "z_up_from_y_up",
 ]

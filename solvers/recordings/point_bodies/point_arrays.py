@@ -14,6 +14,7 @@ from ...motion.humanoid import ADULT_STATURE_M, SIDES
 from ...progress import Progress, Remark
 from ..conventions import (
     DEFAULT_FRAME_RATE,
+    SWAPPED,
     conventions_of,
     describe_guessed_axis,
     estimate_up_of_joints,
@@ -244,7 +245,7 @@ def _with_sides_corrected(recording: JointRecording, progress: Progress) -> Join
     shown = np.stack([*sides, np.zeros_like(front), front], axis=1)
     if not is_mirrored(shown, 0, 1, 2, 3):
         return recording
-    progress(1.0, Remark("Left and right are swapped in the file; the take is mirrored"))
+    progress(1.0, Remark(SWAPPED))
     mirrored = points * np.array([-1.0, 1.0, 1.0])
     return recording.with_tracks(recording.tracks.with_positions(mirrored))
 

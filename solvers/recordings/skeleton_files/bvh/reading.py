@@ -20,6 +20,7 @@ from ...conventions import (
     reinterpreted,
     rotate_to_z_up,
     stand_upright,
+    with_sides_corrected,
 )
 from .channels import BvhChannels, motion_from_poses
 from .frame_time import rate_of_frame_time
@@ -149,10 +150,13 @@ def _read_bodies(
     unit = conventions_of(first).unit
     first = stand_upright(first, progress) if up is None else reinterpreted(first, up, None)
     return [
-        first
+        with_sides_corrected(first, progress)
         if body == main
-        else _rotated_like(
-            first, motion_from_poses(joints, poses[body], frame_rate, unit, progress)
+        else with_sides_corrected(
+            _rotated_like(
+                first, motion_from_poses(joints, poses[body], frame_rate, unit, progress)
+            ),
+            progress,
         )
         for body, joints in enumerate(bodies)
     ]
