@@ -29,7 +29,7 @@ from ..conventions import (
 from .depth_of_points import has_depth
 from .mediapipe_landmarks import N_POINTS, is_inside_picture, is_normalized
 from .relative_positions import refuse_parent_positions, report_still_hips
-from .unnamed_joints import NamedJoints, has_layout, name_joints
+from .unnamed_joints import NamedJoints, has_layout, name_joints, refuse_angles
 
 UP: dict[AxisName, float] = {"Y": 0.2, "Z": 0.2, "-Y": 0.2}
 """Weight, 0 to 1, of each possible axis. Chosen by hand below `FLOOR_WEIGHT`, 0.3."""
@@ -192,6 +192,7 @@ def stand_body(
     roles = {role: names.index(name) for role, name in roles_by_name(names).items()}
     estimated = estimate_up_of_joints(positions, roles, up)
     refuse_parent_positions(path, positions, roles)
+    refuse_angles(path, names, positions)
     report_still_hips(positions, roles, progress)
     if not estimated.is_clear:
         progress(0.8, Remark(describe_guessed_axis(estimated.axis)))
