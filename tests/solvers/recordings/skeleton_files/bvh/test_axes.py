@@ -76,6 +76,30 @@ def test_a_lying_actor_is_left_lying_and_reported(walk, tmp_path):
     assert any("Y is interpreted as up" in message for message in messages)
 
 
+@pytest.mark.parametrize("along", np.arange(-1.2, 1.3, 0.2))
+def test_who_lies_with_a_rest_pose_that_leans_is_a_question(walk, tmp_path, along):
+    """Feet at zero made an actor of ACCAD stand up without a word."""
+    lean = np.array([np.cos(np.radians(20.0)), np.sin(np.radians(20.0)), 0.0, 0.0])
+    on_back = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
+    skeleton = Skeleton(
+        walk.skeleton.names, walk.skeleton.parents, rotate(lean, walk.skeleton.offsets)
+    )
+    rotations = np.zeros_like(walk.rotations)
+    rotations[..., 0] = 1.0
+    rotations[:, 0] = multiply(on_back, inverse(lean))
+    root_positions = np.broadcast_to((1.0, along, 0.1), walk.root_positions.shape)
+    take = Motion(skeleton, rotations, root_positions, walk.frame_rate)
+    write_bvh(take, tmp_path / "lie.bvh")
+    messages = []
+
+    read = read_bvh(
+        tmp_path / "lie.bvh", progress=lambda _, message="": messages.append(message)
+    )
+
+    lies = np.allclose(read.root_positions, root_positions, atol=1e-3)
+    assert lies or any("the take does not show it clearly" in message for message in messages)
+
+
 @pytest.mark.parametrize(
     ("file", "travel"),
     [
