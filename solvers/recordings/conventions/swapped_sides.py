@@ -19,8 +19,6 @@ two whose feet end at the heel; six mirrored ones have -0.5 and less."""
 MIN_FLEXION = 0.1
 """Distance of a bent knee from the middle of hip and ankle, relative to the leg. Chosen by
 hand: straight knees of captured skeletons are up to 0.05 behind it."""
-MIN_NORM = 1e-9
-"""Guards against a division by zero."""
 
 
 def with_sides_corrected(motion: Motion, progress: Progress) -> Motion:
@@ -86,7 +84,7 @@ def _ahead_of_bent(hip: Array, knee: Array, ankle: Array, left: Array) -> Array:
 
 def _cosine(one: Array, other: Array) -> Array:
     norms = np.linalg.norm(one, axis=1) * np.linalg.norm(other, axis=1)
-    return np.asarray((one * other).sum(axis=1) / np.maximum(norms, MIN_NORM))
+    return np.asarray((one * other).sum(axis=1) / np.maximum(norms, 1e-9))
 
 
 def _median(parts: list[Array]) -> float:
