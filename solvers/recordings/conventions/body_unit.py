@@ -84,8 +84,8 @@ def unit_of_skeleton(
     """Return the most probable unit of a skeleton, in meters (`estimate_unit`).
 
     It fits the body or, where none is recognized, all joints, and is centimeters with too few
-    of them. Acclaim's unit is a candidate only with the joints of CMU's library. A stated unit
-    counts, unless a body is recognized whose size makes it improbable.
+    of them. Acclaim's unit is a candidate for a body only with the joints of CMU's library. A
+    stated unit counts, unless a body is recognized whose size makes it improbable.
 
     Parameters
     ----------
@@ -104,7 +104,8 @@ def unit_of_skeleton(
         return stated
     if not is_measurable:
         return CENTIMETER
-    units = UNITS_OF_SKELETONS if OF_CMU.search(" ".join(skeleton.names)) else UNITS_OF_JOINTS
+    is_of_cmu = OF_CMU.search(" ".join(skeleton.names))
+    units = UNITS_OF_JOINTS if is_body and not is_of_cmu else UNITS_OF_SKELETONS
     estimated = estimate_unit(reach / ADULT_REACH_M, units, default=stated, is_body=is_body)
     if estimated.unit != stated and (stated is not None or estimated.has_low_confidence):
         progress(1.0, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
