@@ -111,10 +111,32 @@ def test_angles_without_a_word_about_them_are_refused(read_any, unit, order):
         read_any(content)
 
 
-@pytest.mark.parametrize("noise_m", [0.0, 0.02])
-def test_positions_with_noise_are_positions(read_any, rng, noise_m):
-    def noisy(motion):
-        positions = forward_kinematics(motion).positions
-        return positions + rng.normal(scale=noise_m, size=positions.shape)
+def without_a_person(positions, rng):
+    positions[: len(positions) // 5] = 0.0
 
-    assert isinstance(read_any(of_gait(noisy)), JointRecording)
+
+def with_lost_joints(positions, rng):
+    positions[rng.random(positions.shape[:2]) < 0.6] = 0.0
+
+
+def with_noise(positions, rng):
+    positions += rng.normal(scale=0.12, size=positions.shape)
+
+
+def with_joints_of_poor_depth(positions, rng):
+    depths = positions[:, ::2, 1]
+    depths += rng.normal(scale=0.4, size=depths.shape)
+
+
+@pytest.mark.parametrize(
+    "disturb", [without_a_person, with_lost_joints, with_noise, with_joints_of_poor_depth]
+)
+def test_poor_positions_are_positions(read_any, rng, disturb):
+    """Trackers write zeros for what they do not see, and noise; the actor is 3 m away."""
+
+    def disturbed(motion):
+        positions = forward_kinematics(motion).positions + np.array([0.0, 3.0, 0.0])
+        disturb(positions, rng)
+        return positions
+
+    assert isinstance(read_any(of_gait(disturbed)), JointRecording)
