@@ -162,8 +162,8 @@ def _weigh(
     """Weigh the evidence; the rest pose gets the axis of the motion.
 
     A body that stands along an axis that the format does not have is no clear case. Neither is
-    one that lies on zero along another axis, if its feet are far from zero or if its rest pose
-    stands along that axis.
+    one that lies on zero along another axis, if its feet are far from zero, or if its rest pose
+    stands along that axis and its feet do not rest clearly.
     """
     standing = measure_standing(positions, body)
     floor = measure_floor(positions, body)
@@ -185,6 +185,7 @@ def _weigh(
     lying = max((axis for axis in totals if axis != best), key=lambda axis: resting[axis])
     is_rival = resting[lying] - floor[best] >= CLEAR_FLOOR_LEAD or (
         in_rest[lying] > MIN_REST_STANDING
+        and contact[best] - contact[lying] < CLEAR_CONTACT_LEAD
     )
     may_lie = resting[lying] >= MIN_LYING_FLOOR and is_rival
     resting_on = max(contact[axis] for axis in totals if axis[-1] != best[-1])

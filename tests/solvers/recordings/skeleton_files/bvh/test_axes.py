@@ -121,3 +121,23 @@ def test_files_of_other_tools_stand_in_true_size(recordings, file, travel):
     assert np.median(up[:, 2]) > 0.9
     assert 1.2 < np.median(np.ptp(poses.positions[..., 2], axis=1)) < 1.9
     assert np.linalg.norm(np.ptp(hips[:, :2], axis=0)) == pytest.approx(travel, abs=0.15)
+
+
+@pytest.mark.parametrize("start_cm", [15.0, 30.0])
+@pytest.mark.parametrize("style", ["run_angry", "walk_tired"])
+def test_who_passes_zero_with_a_rest_pose_that_lies_is_no_question(
+    recordings, tmp_path, style, start_cm
+):
+    """Feet that rest show which axis of Bandai-Namco's takes is up."""
+    name = f"corpus/bvh/bandai_namco/dataset-1_{style}_001.bvh"
+    head, rows = (recordings / name).read_text().split("Frame Time:")
+    rate, *frames = rows.strip().splitlines()
+    values = np.array([frame.split() for frame in frames], dtype=float)
+    values[:, 0] += start_cm - values[0, 0]
+    lines = (" ".join(f"{value:.4f}" for value in row) for row in values)
+    (tmp_path / "a.bvh").write_text("\n".join([f"{head}Frame Time:{rate}", *lines]))
+    messages = []
+
+    read_bvh(tmp_path / "a.bvh", progress=lambda _, message="": messages.append(message))
+
+    assert not any("the take does not show it clearly" in message for message in messages)
