@@ -20,8 +20,9 @@ MIN_PREFIX_FRACTION = 0.75
 "JNT"), or that an exporter has numbered ("Hips_01", "Spine_02"). Chosen by hand on the rigs of
 `tests/solvers/motion`."""
 MIN_PREFIXED_JOINTS = 15
-"""Joints that share such a first word where hair, clothes and props have others. By definition
-the joints of a body that VRM requires."""
+"""Joints that share such a first word where hair, clothes and props have others, and names that
+two of these words share if both are of a body, such as "IK" and "DEF". By definition the joints
+of a body that VRM requires."""
 
 WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_A-Za-z]+")
 MIN_SIDED_JOINTS = 6
@@ -146,7 +147,7 @@ def _without_shared_words(
 ) -> Iterator[list[tuple[str, list[str]]]]:
     """Yield sides and words without the rig's last and first words, as long as it has some."""
     for end in (-1, 0):
-        while shared := _shared_words([words for _, words in split], end):
+        while shared := _shared_words(split, end):
             split = [(side, _without_word(words, shared, end)) for side, words in split]
             yield split
 
@@ -157,13 +158,20 @@ def _without_word(words: list[str], shared: set[str], end: int) -> list[str]:
     return words[1:] if end == 0 else words[:-1]
 
 
-def _shared_words(split: Sequence[Sequence[str]], end: int) -> set[str]:
-    """Return the first words that a body's joints share, or the last one of nearly all."""
-    counts = Counter(words[end] for words in split if len(words) > 1)
-    minimum = max(3.0, MIN_PREFIX_FRACTION * len(split))
-    if end == 0:
-        minimum = min(minimum, MIN_PREFIXED_JOINTS)
-    return {word for word, count in counts.items() if count >= minimum}
+def _shared_words(split: Sequence[tuple[str, list[str]]], end: int) -> set[str]:
+    """Return the first or last word that nearly all names share, or that of one body.
+
+    Where two bodies have a first word of their own, neither is preferred.
+    """
+    counts = Counter(words[end] for _, words in split if len(words) > 1)
+    minimum = max(3, MIN_PREFIX_FRACTION * len(split))
+    common = {word for word, count in counts.items() if count >= minimum}
+    if common or end == -1:
+        return common
+    bodies = {word for word, count in counts.items() if count >= MIN_PREFIXED_JOINTS}
+    joints = Counter((side, *words[1:]) for side, words in split if bodies & {*words[:1]})
+    n_twice = sum(count > 1 for count in joints.values())
+    return bodies if n_twice < MIN_PREFIXED_JOINTS else set()
 
 
 class _Spelling(NamedTuple):
