@@ -81,7 +81,7 @@ from .scene_bodies import (
 )
 from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import MarkerSubject, bodies_of_joints, bodies_of_markers, split_subjects
-from .swapped_sides import SWAPPED, with_sides_corrected
+from .swapped_sides import SWAPPED, has_swapped_sides, mirror_motion
 from .time_stamps import (
     DEFAULT_FRAME_RATE,
     MAX_TIME_S,
@@ -139,6 +139,7 @@ __all__ = [
     "from_kinect_space",
     "guess_unit",
     "guess_unit_of_points",
+    "has_swapped_sides",
     "is_mirrored",
     "is_upside_down",
     "joint_recording",
@@ -146,6 +147,7 @@ __all__ = [
     "lacks_floor",
     "longest_bone_path",
     "meters_from_unit_name",
+    "mirror_motion",
     "no_body_error",
     "observed_body",
     "other_standing_axis",
@@ -175,7 +177,6 @@ __all__ = [
     "up_along",
     "with_axes",
     "with_conventions",
-    "with_sides_corrected",
     "y_up_from_z_up",
     "z_up_from_y_up",
 ]

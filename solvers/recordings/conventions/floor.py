@@ -56,8 +56,9 @@ MAX_HIPS_FRACTION = 0.15
 hand: they are at 0.00 to 0.08 in four such takes of docs/benchmarks/importing.md, and at 0.5
 where an actor stands on a floor."""
 MAX_FLAT_HIPS_FRACTION = 0.03
-"""Height of the hips, relative to the stature, of a take whose hips stay at height 0 in any
-pose. Chosen by hand: half of the height of those who lie on a floor, 10 cm (`SOLE_M`)."""
+"""Median distance of the hips from height 0, relative to the stature, of a take whose origin is
+the hips, in any pose. Chosen by hand: half of that of those who lie on a floor, 10 cm
+(`SOLE_M`)."""
 PLACED_M = 0.005
 """Distance from height 0, meters, up to which a take stands on it. It bounds the rounding of
 keys of a take that was put there; measured floors are farther off."""
@@ -139,8 +140,8 @@ def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
     """Whether height 0 is not a measured floor.
 
     This holds for depth cameras and video models, unless their format has a floor: the hips are
-    the origin, and the feet hang below. It also holds for a motion whose hips stay at height 0,
-    and where an upright actor is far below it in most frames.
+    the origin, and the feet hang below. It also holds for a motion whose hips are at height 0
+    in most frames, and where an upright actor is far below it in most frames.
     """
     if not conventions_of(recording).has_floor:
         return True

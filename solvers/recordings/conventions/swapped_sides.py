@@ -7,8 +7,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...motion import Motion, Skeleton, find_humanoid_map
-from ...progress import Progress, Remark
 from .body_unit import MIN_MAP_SCORE
+from .file_axes import MIRRORED, conventions_of
 from .standing_joints import sampled_positions
 
 SWAPPED = "Left and right are swapped in the file; the take is mirrored"
@@ -21,31 +21,25 @@ MIN_FLEXION = 0.1
 hand: straight knees of captured skeletons are up to 0.05 behind it."""
 
 
-def with_sides_corrected(motion: Motion, progress: Progress) -> Motion:
-    """Mirror the motion of a body whose front shows that its left side is on the right.
-
-    Forward follows from hip joints and shanks, so that the pose does not matter. Toes have to
-    point backward, and bent knees too. What counts as toes without a joint of them, such as the
-    end of the foot, counts only with bent knees.
-    """
-    if not _is_mirrored(motion):
-        return motion
-    progress(1.0, Remark(SWAPPED))
-    return mirror_motion(motion)
-
-
 def mirror_motion(motion: Motion) -> Motion:
     """Return the mirror image of a motion, with the same names."""
     across = np.array([-1.0, 1.0, 1.0])
     return replace(
         motion,
         skeleton=replace(motion.skeleton, offsets=motion.skeleton.offsets * across),
-        rotations=motion.rotations * (1.0, 1.0, -1.0, -1.0),
+        rotations=motion.rotations * MIRRORED,
         root_positions=motion.root_positions * across,
+        conventions=replace(conventions_of(motion), is_mirrored=True),
     )
 
 
-def _is_mirrored(motion: Motion) -> bool:
+def has_swapped_sides(motion: Motion) -> bool:
+    """Whether the front of a body shows that its left side is on the right.
+
+    Forward follows from hip joints and shanks, so that the pose does not matter. Toes have to
+    point backward, and bent knees too. What counts as toes without a joint of them, such as the
+    end of the foot, counts only with bent knees.
+    """
     humanoid = find_humanoid_map(motion.skeleton)
     roles = humanoid.indices(motion.skeleton)
     hips = [f"{side}UpperLeg" for side in ("left", "right")]

@@ -209,9 +209,9 @@ def stand_body(
         conventions=file_conventions("Y"),
         progress=progress,
     )
-    standing = reinterpreted(recording, estimated.axis, None)
+    standing = _with_sides_corrected(reinterpreted(recording, estimated.axis, None), progress)
     noted = replace(conventions_of(standing), confidence=estimated.confidence)
-    standing = with_conventions(_with_sides_corrected(standing, progress), noted)
+    standing = with_conventions(standing, noted)
     return standing if scale is not None else _with_adult_size(standing, noted, progress)
 
 
@@ -247,8 +247,9 @@ def _with_sides_corrected(recording: JointRecording, progress: Progress) -> Join
     if not is_mirrored(shown, 0, 1, 2, 3):
         return recording
     progress(1.0, Remark(SWAPPED))
-    mirrored = points * np.array([-1.0, 1.0, 1.0])
-    return recording.with_tracks(recording.tracks.with_positions(mirrored))
+    mirrored = recording.tracks.with_positions(points * np.array([-1.0, 1.0, 1.0]))
+    noted = replace(conventions_of(recording), is_mirrored=True)
+    return recording.with_tracks(replace(mirrored, conventions=noted))
 
 
 def _front(joints: Mapping[str, Array]) -> Array:

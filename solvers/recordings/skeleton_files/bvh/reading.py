@@ -12,15 +12,17 @@ from ....progress import Progress, Remark, unwatched, within
 from ...containers import LineReader, UniqueNames, check_n_poses, stream_rows
 from ...conventions import (
     MIN_BODY_JOINTS,
+    SWAPPED,
     Bodies,
     UpAxisName,
     check_scale,
     conventions_of,
+    has_swapped_sides,
+    mirror_motion,
     observed_body,
     reinterpreted,
     rotate_to_z_up,
     stand_upright,
-    with_sides_corrected,
 )
 from .channels import BvhChannels, motion_from_poses
 from .frame_time import rate_of_frame_time
@@ -124,7 +126,7 @@ def _bodies(path: Path | str, motions: list[Motion]) -> Bodies[Motion]:
 def _read_bodies(
     path: Path | str, scale: float | None, up: UpAxisName | None, progress: Progress
 ) -> list[Motion]:
-    """Read each body; the largest one shows unit and axes of all."""
+    """Read each body; the largest one shows unit, axes and sides of all."""
     reader = LineReader(path)
     bodies = read_hierarchies(_hierarchy(reader, path), path)
     stated_rate, n_announced = _frame_rate(reader, progress)
@@ -149,17 +151,18 @@ def _read_bodies(
     first = motion_from_poses(bodies[main], poses[main], frame_rate, scale, progress)
     unit = conventions_of(first).unit
     first = stand_upright(first, progress) if up is None else reinterpreted(first, up, None)
-    return [
-        with_sides_corrected(first, progress)
+    motions = [
+        first
         if body == main
-        else with_sides_corrected(
-            _rotated_like(
-                first, motion_from_poses(joints, poses[body], frame_rate, unit, progress)
-            ),
-            progress,
+        else _rotated_like(
+            first, motion_from_poses(joints, poses[body], frame_rate, unit, progress)
         )
         for body, joints in enumerate(bodies)
     ]
+    if not has_swapped_sides(first):
+        return motions
+    progress(1.0, Remark(SWAPPED))
+    return [mirror_motion(motion) for motion in motions]
 
 
 def _check_header(
