@@ -66,6 +66,7 @@ LABELED = {
     "solvers/recordings/containers/frame_files.py": {"describe_frame_files"},
     "solvers/recordings/conventions/body_axes.py": {"describe_guessed_axis"},
     "solvers/recordings/conventions/body_unit.py": {"question_of_size"},
+    "solvers/recordings/conventions/swapped_sides.py": {"SWAPPED"},
     "solvers/recordings/conventions/unit_estimate.py": {"describe_guessed_unit"},
     "solvers/recordings/skeleton_files/segment_recordings.py": {"POINTS_ONLY"},
     "solvers/retargeting/body.py": {"SOURCE", "TARGET", "MOTION"},

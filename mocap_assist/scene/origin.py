@@ -16,7 +16,7 @@ NOTED: dict[str, Any] = {
     "file": str, "kind": str, "frame_rate": int | float, "n_frames": int, "sensor": str,
     "body": str, "up": str, "forward": str, "unit": int | float, "rest_up": str,
     "offset_added": bool, "confidence": int | float, "has_floor": bool, "scale": int | float,
-    "is_unit_guessed": bool, "stated_up": str,
+    "is_unit_guessed": bool, "stated_up": str, "is_mirrored": bool,
 }  # fmt: skip
 """Keys of a note, and the types of valid values."""
 

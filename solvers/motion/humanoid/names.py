@@ -19,6 +19,10 @@ MIN_PREFIX_FRACTION = 0.75
 """Fraction of joints that share a first or last word that says nothing ("mixamorig", "Bip01",
 "JNT"), or that an exporter has numbered ("Hips_01", "Spine_02"). Chosen by hand on the rigs of
 `tests/solvers/motion`."""
+MIN_PREFIXED_JOINTS = 15
+"""Joints that share such a first word where hair, clothes and props have others, and names that
+two of these words share if both are of a body, such as "IK" and "DEF". By definition the joints
+of a body that VRM requires."""
 
 WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_A-Za-z]+")
 MIN_SIDED_JOINTS = 6
@@ -141,24 +145,33 @@ def _keys(names: Sequence[str]) -> dict[Key, str]:
 def _without_shared_words(
     split: list[tuple[str, list[str]]],
 ) -> Iterator[list[tuple[str, list[str]]]]:
-    """Yield sides and words without the rig's first or last word, as long as there is one."""
-    for end in (0, -1):
-        while word := _shared_word([words for _, words in split], end):
-            split = [(side, _without_word(words, word, end)) for side, words in split]
+    """Yield sides and words without the rig's last and first words, as long as it has some."""
+    for end in (-1, 0):
+        while shared := _shared_words(split, end):
+            split = [(side, _without_word(words, shared, end)) for side, words in split]
             yield split
 
 
-def _without_word(words: list[str], word: str, end: int) -> list[str]:
-    if len(words) < 2 or words[end] != word:
+def _without_word(words: list[str], shared: set[str], end: int) -> list[str]:
+    if len(words) < 2 or words[end] not in shared:
         return words
     return words[1:] if end == 0 else words[:-1]
 
 
-def _shared_word(split: Sequence[Sequence[str]], end: int) -> str:
-    """Return the first or last word that nearly all names share, or ""."""
-    counts = Counter(words[end] for words in split if len(words) > 1)
-    word, count = counts.most_common(1)[0] if counts else ("", 0)
-    return word if count >= max(3, MIN_PREFIX_FRACTION * len(split)) else ""
+def _shared_words(split: Sequence[tuple[str, list[str]]], end: int) -> set[str]:
+    """Return the first or last word that nearly all names share, or that of one body.
+
+    Where two bodies have a first word of their own, neither is preferred.
+    """
+    counts = Counter(words[end] for _, words in split if len(words) > 1)
+    minimum = max(3, MIN_PREFIX_FRACTION * len(split))
+    common = {word for word, count in counts.items() if count >= minimum}
+    if common or end == -1:
+        return common
+    bodies = {word for word, count in counts.items() if count >= MIN_PREFIXED_JOINTS}
+    joints = Counter((side, *words[1:]) for side, words in split if bodies & {*words[:1]})
+    n_twice = sum(count > 1 for count in joints.values())
+    return bodies if n_twice < MIN_PREFIXED_JOINTS else set()
 
 
 class _Spelling(NamedTuple):

@@ -36,7 +36,7 @@ NO_SPINE = 0.7
 ODD_LENGTHS = 0.6
 """Factor of the score of a map whose bones differ too much in length. Chosen by hand on the
 rigs of `tests/solvers/motion`."""
-NOT_STANDING = 0.5
+NOT_STANDING = 0.4
 """Factor of the score of a map whose legs do not stand below the trunk. Chosen by hand on the
 rigs of `tests/solvers/motion`."""
 ARM_TO_LEG, TRUNK_TO_LEG = (0.52, 0.9), (0.2, 0.8)
@@ -76,17 +76,19 @@ def tree_agreement(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
 
 def stands_upright(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
     """Whether the trunk continues the legs in the rest pose, as far as it shows it."""
-    chest = next(
-        (roles[r] for r in ("neck", "upperChest", "chest", "head") if r in roles), None
+    chest = [roles[r] for r in ("neck", "upperChest", "chest", "head") if r in roles][:1]
+    feet, tops, shoulders = (
+        [roles[side + part] for side in SIDES if side + part in roles]
+        for part in ("Foot", "UpperLeg", "UpperArm")
     )
-    feet = [roles[f"{side}Foot"] for side in SIDES if f"{side}Foot" in roles]
-    tops = [roles[r] for r in ("leftUpperLeg", "rightUpperLeg") if r in roles]
-    pelvis = [roles["hips"]] if "hips" in roles else tops
-    if chest is None or not pelvis or len(feet) < 2:
+    upper = shoulders or chest
+    if not upper or len(feet) < 2:
         return True
+    above_both = set(skeleton.ancestors(feet[0])) & set(skeleton.ancestors(feet[1]))
+    pelvis = [roles["hips"]] if "hips" in roles else tops or [max(above_both, default=0)]
     positions = skeleton.rest_positions
     hips = positions[pelvis].mean(axis=0)
-    legs, trunk = hips - positions[feet].mean(axis=0), positions[chest] - hips
+    legs, trunk = hips - positions[feet].mean(axis=0), positions[upper].mean(axis=0) - hips
     leg, back = np.linalg.norm(legs), np.linalg.norm(trunk)
     height = float(leg + back)
     half_distance = np.linalg.norm(positions[feet[0]] - positions[feet[1]]) / 2

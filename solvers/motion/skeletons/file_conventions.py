@@ -34,6 +34,8 @@ class FileConventions:
     """Axis that the file states to be up, where the body refuted it."""
     has_floor: bool = True
     """Whether height 0 is a measured floor: not with depth cameras and video models."""
+    is_mirrored: bool = False
+    """Whether left and right were swapped in the file, and X was negated."""
 
     @property
     def is_certain(self) -> bool:

@@ -81,6 +81,7 @@ from .scene_bodies import (
 )
 from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import MarkerSubject, bodies_of_joints, bodies_of_markers, split_subjects
+from .swapped_sides import SWAPPED, has_swapped_sides, mirror_motion
 from .time_stamps import (
     DEFAULT_FRAME_RATE,
     MAX_TIME_S,
@@ -107,6 +108,7 @@ __all__ = [
     "MILLISECOND",
     "MIN_BODY_JOINTS",
     "STATED_REACH_M",
+    "SWAPPED",
     "Bodies",
     "Body",
     "ConstantRate",
@@ -137,6 +139,7 @@ __all__ = [
     "from_kinect_space",
     "guess_unit",
     "guess_unit_of_points",
+    "has_swapped_sides",
     "is_mirrored",
     "is_upside_down",
     "joint_recording",
@@ -144,6 +147,7 @@ __all__ = [
     "lacks_floor",
     "longest_bone_path",
     "meters_from_unit_name",
+    "mirror_motion",
     "no_body_error",
     "observed_body",
     "other_standing_axis",

@@ -161,8 +161,9 @@ def _weigh(
 ) -> UpAxis:
     """Weigh the evidence; the rest pose gets the axis of the motion.
 
-    A body that stands along an axis that the format does not have is no clear case, nor is one
-    whose feet are far from zero but that lies on zero along another axis.
+    A body that stands along an axis that the format does not have is no clear case. Neither is
+    one that lies on zero along another axis, if its feet are far from zero, or if its rest pose
+    stands along that axis and its feet do not rest clearly.
     """
     standing = measure_standing(positions, body)
     floor = measure_floor(positions, body)
@@ -181,8 +182,12 @@ def _weigh(
     stands = min(standing[best], floor[best]) if on_floor else 0.0
     elsewhere = max((standing[axis] for axis in AXES if axis not in totals), default=0.0)
     is_elsewhere = elsewhere >= CLEAR_STANDING and elsewhere > standing[best]
-    lying = max((resting[axis] for axis in totals if axis != best), default=0.0)
-    may_lie = lying >= MIN_LYING_FLOOR and lying - floor[best] >= CLEAR_FLOOR_LEAD
+    lying = max((axis for axis in totals if axis != best), key=lambda axis: resting[axis])
+    is_rival = resting[lying] - floor[best] >= CLEAR_FLOOR_LEAD or (
+        in_rest[lying] > MIN_REST_STANDING
+        and contact[best] - contact[lying] < CLEAR_CONTACT_LEAD
+    )
+    may_lie = resting[lying] >= MIN_LYING_FLOOR and is_rival
     resting_on = max(contact[axis] for axis in totals if axis[-1] != best[-1])
     may_rest = stands < CLEAR_STANDING and resting_on - contact[best] >= CLEAR_CONTACT_LEAD
     is_against = is_elsewhere or may_lie or may_rest

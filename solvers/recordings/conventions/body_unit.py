@@ -1,5 +1,6 @@
 """Judge units by the size of the body, and question unusual sizes."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +23,12 @@ from ...motion.humanoid import (
 from ...progress import Progress, Remark
 from .axes import ADULT_REACH_M, CENTIMETER, MIN_BODY_JOINTS, longest_bone_path
 from .marker_bodies import stature_of_markers
-from .unit_estimate import UNITS_OF_JOINTS, describe_guessed_unit, estimate_unit
+from .unit_estimate import (
+    UNITS_OF_JOINTS,
+    UNITS_OF_SKELETONS,
+    describe_guessed_unit,
+    estimate_unit,
+)
 
 ODD_STATURE_M = (0.8, 2.6)
 """Range of statures, meters, outside which the report asks. Chosen by hand: from a small child,
@@ -31,9 +37,11 @@ HEAD_TO_ANKLE = 0.886
 """Path along the bones from the head to an ankle, relative to the stature. By definition of the
 body in `smpl_body`."""
 MIN_MAP_SCORE = 0.5
-"""Score of a humanoid map, a fraction, from which its joints alone decide on the unit. Chosen
-by hand: in docs/benchmarks/importing.md bodies have 0.6 and more, crab and fox 0.04 and
-0.24."""
+"""Score of a humanoid map, a fraction, from which its joints alone decide on unit, axes and
+sides. Chosen by hand: in docs/benchmarks/importing.md bodies have 0.6 and more, crab and fox
+0.04 and 0.24."""
+OF_CMU = re.compile("hip ?_?joint|lowerback", re.IGNORECASE)
+"""Names of joints that skeletons in Acclaim's unit have: those made from CMU's library."""
 ENDS_OF_REACH = ("head", "leftHand", "rightHand"), ("leftFoot", "rightFoot")
 """Roles at both ends of the longest path along the bones of a body."""
 
@@ -76,7 +84,8 @@ def unit_of_skeleton(
     """Return the most probable unit of a skeleton, in meters (`estimate_unit`).
 
     It fits the body or, where none is recognized, all joints, and is centimeters with too few
-    of them. A stated unit counts, unless a body is recognized whose size makes it improbable.
+    of them. Acclaim's unit is a candidate for a body only with the joints of CMU's library. A
+    stated unit counts, unless a body is recognized whose size makes it improbable.
 
     Parameters
     ----------
@@ -95,7 +104,9 @@ def unit_of_skeleton(
         return stated
     if not is_measurable:
         return CENTIMETER
-    estimated = estimate_unit(reach / ADULT_REACH_M, default=stated, is_body=is_body)
+    is_of_cmu = OF_CMU.search(" ".join(skeleton.names))
+    units = UNITS_OF_JOINTS if is_body and not is_of_cmu else UNITS_OF_SKELETONS
+    estimated = estimate_unit(reach / ADULT_REACH_M, units, default=stated, is_body=is_body)
     if estimated.unit != stated and (stated is not None or estimated.has_low_confidence):
         progress(1.0, Remark(describe_guessed_unit(estimated.unit, estimated.rival)))
     return estimated.unit

@@ -23,6 +23,8 @@ FORWARD: dict[AxisName, AxisName] = {
     "Y": "Z", "-Y": "-Z", "Z": "-Y", "-Z": "Y", "X": "Z", "-X": "Z",
 }  # fmt: skip
 """Where actors face in a file, by the axis that is up, unless it is said (`rotate_to_z_up`)."""
+MIRRORED = np.array([1.0, 1.0, -1.0, -1.0])
+"""Factor of a quaternion whose rotation is mirrored: X is negated."""
 
 
 def file_conventions(
@@ -66,7 +68,8 @@ def with_axes(
 
 def rotation_between(before: FileConventions, after: FileConventions) -> Array:
     """Return the quaternion that rotates what was read by `before` as `after` would read it."""
-    return np.asarray(quaternion_from_matrix(_matrix(after) @ _matrix(before).T))
+    rotation = np.asarray(quaternion_from_matrix(_matrix(after) @ _matrix(before).T))
+    return rotation * MIRRORED if before.is_mirrored else rotation
 
 
 def rotated_conventions(before: FileConventions, rotation: Array) -> FileConventions:

@@ -55,6 +55,10 @@ MAX_HIPS_FRACTION = 0.15
 """Height of the hips, relative to the stature, of a take whose origin is the hips. Chosen by
 hand: they are at 0.00 to 0.08 in four such takes of docs/benchmarks/importing.md, and at 0.5
 where an actor stands on a floor."""
+MAX_FLAT_HIPS_FRACTION = 0.03
+"""Median distance of the hips from height 0, relative to the stature, of a take whose origin is
+the hips, in any pose. Chosen by hand: half of that of those who lie on a floor, 10 cm
+(`SOLE_M`)."""
 PLACED_M = 0.005
 """Distance from height 0, meters, up to which a take stands on it. It bounds the rounding of
 keys of a take that was put there; measured floors are farther off."""
@@ -136,8 +140,8 @@ def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
     """Whether height 0 is not a measured floor.
 
     This holds for depth cameras and video models, unless their format has a floor: the hips are
-    the origin, and the feet hang below. It also holds where an upright actor of a motion is far
-    below height 0 in most frames.
+    the origin, and the feet hang below. It also holds for a motion whose hips are at height 0
+    in most frames, and where an upright actor is far below it in most frames.
     """
     if not conventions_of(recording).has_floor:
         return True
@@ -155,6 +159,8 @@ def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
     if not len(observed):
         return False
     hips, head = np.median(observed[:, :2], axis=0)
+    if np.median(np.abs(observed[:, 0])) < MAX_FLAT_HIPS_FRACTION * tall:
+        return True
     is_upright = head - hips > MIN_UPRIGHT_FRACTION * tall
     is_origin = abs(hips) < MAX_HIPS_FRACTION * tall
     is_sunk = np.median(observed.min(axis=1)) < -MIN_BELOW_FRACTION * tall

@@ -27,8 +27,8 @@ UNITS_OF_JOINTS = MODELED_UNITS | CAPTURED_UNITS
 """The same, a ratio, for tables of joints. By definition all units that programs model and
 record in."""
 UNITS_OF_SKELETONS = UNITS_OF_JOINTS | {ACCLAIM_UNIT: 0.08}
-"""The same, a ratio, for skeletons. Chosen by hand: BVH files made from Acclaim's, as those of
-CMU, are common, and only adults are in them."""
+"""The same, a ratio, for skeletons of CMU's library. Chosen by hand: BVH files made from
+Acclaim's are common, and only adults are in them."""
 UNITS_OF_MARKERS = {MILLIMETER: 0.7, 1.0: 0.2, CENTIMETER: 0.08, 0.0254: 0.002, 0.3048: 0.002}
 """The same, a ratio, for markers. Chosen by hand: of 24 TRC files in
 docs/benchmarks/importing.md that state their unit, 21 have millimeters and 3 meters; x2 for

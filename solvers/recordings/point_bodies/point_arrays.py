@@ -14,6 +14,7 @@ from ...motion.humanoid import ADULT_STATURE_M, SIDES
 from ...progress import Progress, Remark
 from ..conventions import (
     DEFAULT_FRAME_RATE,
+    SWAPPED,
     conventions_of,
     describe_guessed_axis,
     estimate_up_of_joints,
@@ -28,7 +29,7 @@ from ..conventions import (
 from .depth_of_points import has_depth
 from .mediapipe_landmarks import N_POINTS, is_inside_picture, is_normalized
 from .relative_positions import refuse_parent_positions, report_still_hips
-from .unnamed_joints import NamedJoints, has_layout, name_joints
+from .unnamed_joints import NamedJoints, has_layout, name_joints, refuse_angles
 
 UP: dict[AxisName, float] = {"Y": 0.2, "Z": 0.2, "-Y": 0.2}
 """Weight, 0 to 1, of each possible axis. Chosen by hand below `FLOOR_WEIGHT`, 0.3."""
@@ -191,6 +192,7 @@ def stand_body(
     roles = {role: names.index(name) for role, name in roles_by_name(names).items()}
     estimated = estimate_up_of_joints(positions, roles, up)
     refuse_parent_positions(path, positions, roles)
+    refuse_angles(path, names, positions)
     report_still_hips(positions, roles, progress)
     if not estimated.is_clear:
         progress(0.8, Remark(describe_guessed_axis(estimated.axis)))
@@ -207,9 +209,9 @@ def stand_body(
         conventions=file_conventions("Y"),
         progress=progress,
     )
-    standing = reinterpreted(recording, estimated.axis, None)
+    standing = _with_sides_corrected(reinterpreted(recording, estimated.axis, None), progress)
     noted = replace(conventions_of(standing), confidence=estimated.confidence)
-    standing = with_conventions(_with_sides_corrected(standing, progress), noted)
+    standing = with_conventions(standing, noted)
     return standing if scale is not None else _with_adult_size(standing, noted, progress)
 
 
@@ -244,9 +246,10 @@ def _with_sides_corrected(recording: JointRecording, progress: Progress) -> Join
     shown = np.stack([*sides, np.zeros_like(front), front], axis=1)
     if not is_mirrored(shown, 0, 1, 2, 3):
         return recording
-    progress(1.0, Remark("Left and right are swapped in the file; the take is mirrored"))
-    mirrored = points * np.array([-1.0, 1.0, 1.0])
-    return recording.with_tracks(recording.tracks.with_positions(mirrored))
+    progress(1.0, Remark(SWAPPED))
+    mirrored = recording.tracks.with_positions(points * np.array([-1.0, 1.0, 1.0]))
+    noted = replace(conventions_of(recording), is_mirrored=True)
+    return recording.with_tracks(replace(mirrored, conventions=noted))
 
 
 def _front(joints: Mapping[str, Array]) -> Array:

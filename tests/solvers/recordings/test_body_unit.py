@@ -152,6 +152,19 @@ def test_a_stated_unit_yields_to_a_body_alone_and_that_is_reported(scale):
     assert len(messages.units) == (scale != 1.0)
 
 
+@pytest.mark.parametrize("of_cmu", [True, False])
+def test_only_skeletons_of_cmu_are_in_the_unit_of_acclaim(of_cmu):
+    """Half a person in inches is as large as an adult in Acclaim's unit."""
+    messages, person = KeptMessages(), samples.walking_gait().skeleton
+    names = ("LHipJoint", *person.names[1:]) if of_cmu else person.names
+    small = replace(person, names=names, offsets=0.5 / 0.0254 * person.offsets)
+
+    unit = unit_of_skeleton(small, messages)
+
+    assert (unit == 0.0254 / 0.45) == of_cmu
+    assert any("may be inches" in message for message in messages.units) == (not of_cmu)
+
+
 def test_our_own_table_counts_by_its_word_and_is_guessed_without(walk, tmp_path):
     larger = walk.with_tracks(walk.tracks.with_positions(1000.0 * walk.tracks.positions))
     output, silent = tmp_path / "said.csv", tmp_path / "silent.csv"

@@ -273,6 +273,14 @@ def test_an_actor_far_below_the_floor_is_put_on_it(tmp_path):
     assert "the floor" not in messages
 
 
+@pytest.mark.parametrize(("height", "degrees"), [(0, 0), (0, 60), (0, 90), (0.1, 90)])
+def test_hips_at_height_0_stand_on_no_floor_in_any_pose(tmp_path, height, degrees):
+    take = plain_names(body(root=turn(degrees), hips=(0.0, 2.0, height)))
+    motion, _ = read(take, tmp_path / "a.bvh", floor=FloorPlacement.AUTO, up=Axis.Y)
+
+    assert floor_level(motion) == pytest.approx(bool(height) * floor_level(take), abs=1e-3)
+
+
 def test_steps_down_are_no_wrong_floor(tmp_path):
     """Who goes down into a cellar for a while stands on the floor before."""
     take = plain_names(body())

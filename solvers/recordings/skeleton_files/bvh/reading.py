@@ -12,10 +12,13 @@ from ....progress import Progress, Remark, unwatched, within
 from ...containers import LineReader, UniqueNames, check_n_poses, stream_rows
 from ...conventions import (
     MIN_BODY_JOINTS,
+    SWAPPED,
     Bodies,
     UpAxisName,
     check_scale,
     conventions_of,
+    has_swapped_sides,
+    mirror_motion,
     observed_body,
     reinterpreted,
     rotate_to_z_up,
@@ -123,7 +126,7 @@ def _bodies(path: Path | str, motions: list[Motion]) -> Bodies[Motion]:
 def _read_bodies(
     path: Path | str, scale: float | None, up: UpAxisName | None, progress: Progress
 ) -> list[Motion]:
-    """Read each body; the largest one shows unit and axes of all."""
+    """Read each body; the largest one shows unit, axes and sides of all."""
     reader = LineReader(path)
     bodies = read_hierarchies(_hierarchy(reader, path), path)
     stated_rate, n_announced = _frame_rate(reader, progress)
@@ -148,7 +151,7 @@ def _read_bodies(
     first = motion_from_poses(bodies[main], poses[main], frame_rate, scale, progress)
     unit = conventions_of(first).unit
     first = stand_upright(first, progress) if up is None else reinterpreted(first, up, None)
-    return [
+    motions = [
         first
         if body == main
         else _rotated_like(
@@ -156,6 +159,10 @@ def _read_bodies(
         )
         for body, joints in enumerate(bodies)
     ]
+    if not has_swapped_sides(first):
+        return motions
+    progress(1.0, Remark(SWAPPED))
+    return [mirror_motion(motion) for motion in motions]
 
 
 def _check_header(

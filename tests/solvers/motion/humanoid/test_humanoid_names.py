@@ -45,6 +45,27 @@ def test_names_of_each_family_have_their_roles(family):
     assert {role: found.get(role) for role in ESSENTIAL_ROLES} == expected
 
 
+def test_the_prefix_of_a_body_among_more_hair_and_clothes_is_ignored():
+    """MotionBuilder calls a body Character1; games give it hair, skirts and ribbons."""
+    plain = written_out(FAMILIES["Mixamo"].replace("mixamorig:", ""))
+    expected = {role: f"Character1_{name}" for role, name in plain.items()}
+    hair = [f"J_{side}_Hair{lock}_0{n}" for side in "LR" for lock in range(8) for n in range(4)]
+
+    found = roles_by_name(["Root", *expected.values(), *hair])
+
+    assert {role: found.get(role) for role in ESSENTIAL_ROLES} == expected
+
+
+@pytest.mark.parametrize("prefixes", [("IK_", "FK_", "DEF_"), ("Cloth_", "Char_")])
+def test_no_body_is_preferred_where_several_have_the_same_names(prefixes):
+    """The first one in the file was it, with full confidence."""
+    body = list(written_out(FAMILIES["Mixamo"].replace("mixamorig:", "")).values())
+
+    found = roles_by_name(["Root", *(prefix + name for prefix in prefixes for name in body)])
+
+    assert not set(ESSENTIAL_ROLES) <= found.keys()
+
+
 def test_vertebrae_and_backs_are_not_mistaken_for_sides():
     names = ["Pelvis", "L5", "L3", "T12", "T8", "lowerback", "root", "leg", "ribs"]
 

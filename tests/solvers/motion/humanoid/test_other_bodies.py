@@ -102,6 +102,28 @@ def horse(names="{}"):
     return tree.skeleton  # fmt: skip
 
 
+def wolf(trunk):
+    """A wolf with the joints of a person, called as those of MotionBuilder."""
+    tree = Tree("Hips", (0, 0.3, 0.65))
+    tree.add("Hips", ("Spine", (0, -0.35 * trunk, 0)), ("Spine1", (0, -0.45 * trunk, 0)))
+    tree.add("Spine1", ("Neck", (0, -0.2 * trunk, 0.05)), ("Head", (0, -0.15, 0.15)))
+    tree.add("Hips", ("Tail", (0, 0.08, 0)), ("Tail1", (0, 0.12, -0.1)))
+    for side, sign in (("Left", 1), ("Right", -1)):
+        links = [("Shoulder", (sign * 0.04, 0, -0.02)), ("Arm", (sign * 0.04, -0.05, -0.08)),
+                 ("ForeArm", (0, 0.13, -0.18)), ("Hand", (0, -0.03, -0.2))]  # fmt: skip
+        tree.add("Spine1", *((side + name, offset) for name, offset in links))
+        links = [("UpLeg", (sign * 0.08, 0, -0.05)), ("Leg", (0, -0.1, -0.22)),
+                 ("Foot", (0, 0.18, -0.13)), ("ToeBase", (0, -0.05, -0.2))]  # fmt: skip
+        tree.add("Hips", *((side + name, offset) for name, offset in links))
+    return tree.skeleton
+
+
+@pytest.mark.parametrize("trunk", [0.4, 0.6, 0.8])
+def test_a_wolf_with_the_names_of_a_person_is_none(trunk):
+    """Its trunk lies between its legs, whatever joints a table leaves out."""
+    assert find_humanoid_map(wolf(trunk)).score < NO_PERSON
+
+
 @pytest.mark.parametrize(
     "animal", [crab(), horse(), horse("Bip01 {}"), horse("j_{}_x")], ids=lambda a: a.names[0]
 )

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.motion import Tracks
+from solvers.motion import JointRecording, Tracks, find_humanoid_map, forward_kinematics
+from solvers.rotations import euler_from_quaternion
+from solvers.samples import walking_gait
 
 NAMES = [f"{part}{side}" for side in ("Left", "Right") for part in (
     "UpperArm", "LowerArm", "Hand", "Thigh", "Calf", "Foot")]  # fmt: skip
@@ -87,3 +89,54 @@ def test_a_quantity_above_all_axes_is_refused(read_any):
 
     with pytest.raises(InvalidFileError):
         read_any("\n".join([*above, *rows]))
+
+
+def of_gait(quantity):
+    """Return a table of the walk with titles that do not say what the numbers are."""
+    motion = walking_gait()
+    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    columns = quantity(motion)[:, list(roles.values())]
+    lines = [",".join(f"{role}_{axis}" for role in roles for axis in "xyz")]
+    rows = columns.reshape(len(columns), -1)
+    return "\n".join([*lines, *(",".join(f"{x:.4f}" for x in row) for row in rows)])
+
+
+@pytest.mark.parametrize("unit", [np.degrees, np.asarray])
+@pytest.mark.parametrize("order", ["XYZ", "ZXY"])
+def test_angles_without_a_word_about_them_are_refused(read_any, unit, order):
+    """They came in as a crumpled body."""
+    content = of_gait(lambda motion: unit(euler_from_quaternion(motion.rotations, order)))
+
+    with pytest.raises(InvalidFileError, match="holds angles or other numbers instead of"):
+        read_any(content)
+
+
+def without_a_person(positions, rng):
+    positions[: len(positions) // 5] = 0.0
+
+
+def with_lost_joints(positions, rng):
+    positions[rng.random(positions.shape[:2]) < 0.6] = 0.0
+
+
+def with_noise(positions, rng):
+    positions += rng.normal(scale=0.12, size=positions.shape)
+
+
+def with_joints_of_poor_depth(positions, rng):
+    depths = positions[:, ::2, 1]
+    depths += rng.normal(scale=0.4, size=depths.shape)
+
+
+@pytest.mark.parametrize(
+    "disturb", [without_a_person, with_lost_joints, with_noise, with_joints_of_poor_depth]
+)
+def test_poor_positions_are_positions(read_any, rng, disturb):
+    """Trackers write zeros for what they do not see, and noise; the actor is 3 m away."""
+
+    def disturbed(motion):
+        positions = forward_kinematics(motion).positions + np.array([0.0, 3.0, 0.0])
+        disturb(positions, rng)
+        return positions
+
+    assert isinstance(read_any(of_gait(disturbed)), JointRecording)

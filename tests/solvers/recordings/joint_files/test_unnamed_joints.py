@@ -5,7 +5,7 @@ import pytest
 
 from solvers.errors import InvalidFileError
 from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics, roles_by_name
-from solvers.recordings import read_recording
+from solvers.recordings import Axis, ReadingSettings, read_as, read_recording
 from solvers.samples import walking_gait
 
 LEG, ARM = ("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand")
@@ -92,6 +92,19 @@ def test_mirrored_axes_are_undone_and_reported(tmp_path, walk):
 
     assert "Left and right are swapped" in said
     assert np.allclose(recording.tracks.positions, points)
+
+
+def test_forward_is_an_axis_of_the_file_that_is_mirrored(tmp_path, walk):
+    """In mirrored axes X is where -X is otherwise."""
+    np.save(tmp_path / "right.npy", ordered(walk, "SMPL"))
+    np.save(tmp_path / "left.npy", ordered(walk, "SMPL") * (-1.0, 1.0, 1.0))
+
+    left, right = (
+        read_as(tmp_path / f"{name}.npy", ReadingSettings(forward=axis)).tracks.positions
+        for name, axis in (("left", Axis.X), ("right", Axis.MINUS_X))
+    )
+
+    assert np.allclose(left, right)
 
 
 def test_points_without_a_unit_get_the_size_of_an_adult(tmp_path, walk):

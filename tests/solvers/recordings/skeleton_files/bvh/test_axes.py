@@ -76,6 +76,30 @@ def test_a_lying_actor_is_left_lying_and_reported(walk, tmp_path):
     assert any("Y is interpreted as up" in message for message in messages)
 
 
+@pytest.mark.parametrize("along", np.arange(-1.2, 1.3, 0.2))
+def test_who_lies_with_a_rest_pose_that_leans_is_a_question(walk, tmp_path, along):
+    """Feet at zero made an actor of ACCAD stand up without a word."""
+    lean = np.array([np.cos(np.radians(20.0)), np.sin(np.radians(20.0)), 0.0, 0.0])
+    on_back = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
+    skeleton = Skeleton(
+        walk.skeleton.names, walk.skeleton.parents, rotate(lean, walk.skeleton.offsets)
+    )
+    rotations = np.zeros_like(walk.rotations)
+    rotations[..., 0] = 1.0
+    rotations[:, 0] = multiply(on_back, inverse(lean))
+    root_positions = np.broadcast_to((1.0, along, 0.1), walk.root_positions.shape)
+    take = Motion(skeleton, rotations, root_positions, walk.frame_rate)
+    write_bvh(take, tmp_path / "lie.bvh")
+    messages = []
+
+    read = read_bvh(
+        tmp_path / "lie.bvh", progress=lambda _, message="": messages.append(message)
+    )
+
+    lies = np.allclose(read.root_positions, root_positions, atol=1e-3)
+    assert lies or any("the take does not show it clearly" in message for message in messages)
+
+
 @pytest.mark.parametrize(
     ("file", "travel"),
     [
@@ -97,3 +121,23 @@ def test_files_of_other_tools_stand_in_true_size(recordings, file, travel):
     assert np.median(up[:, 2]) > 0.9
     assert 1.2 < np.median(np.ptp(poses.positions[..., 2], axis=1)) < 1.9
     assert np.linalg.norm(np.ptp(hips[:, :2], axis=0)) == pytest.approx(travel, abs=0.15)
+
+
+@pytest.mark.parametrize("start_cm", [15.0, 30.0])
+@pytest.mark.parametrize("style", ["run_angry", "walk_tired"])
+def test_who_passes_zero_with_a_rest_pose_that_lies_is_no_question(
+    recordings, tmp_path, style, start_cm
+):
+    """Feet that rest show which axis of Bandai-Namco's takes is up."""
+    name = f"corpus/bvh/bandai_namco/dataset-1_{style}_001.bvh"
+    head, rows = (recordings / name).read_text().split("Frame Time:")
+    rate, *frames = rows.strip().splitlines()
+    values = np.array([frame.split() for frame in frames], dtype=float)
+    values[:, 0] += start_cm - values[0, 0]
+    lines = (" ".join(f"{value:.4f}" for value in row) for row in values)
+    (tmp_path / "a.bvh").write_text("\n".join([f"{head}Frame Time:{rate}", *lines]))
+    messages = []
+
+    read_bvh(tmp_path / "a.bvh", progress=lambda _, message="": messages.append(message))
+
+    assert not any("the take does not show it clearly" in message for message in messages)
