@@ -11,6 +11,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from time import perf_counter
 
+from solvers.feet import plant_feet
 from solvers.motion import Motion
 from solvers.recordings import read_acclaim, read_recording
 from solvers.workflows import reconstruct_recording
@@ -24,7 +25,7 @@ from .part_ablation import planters_without, retarget_table
 from .part_detection import detection_tables
 from .part_pins import pin_tables
 from .part_supports import support_tables
-from .part_takes import take_tables
+from .part_takes import Planter, take_tables
 from .part_walks import PLANTERS, walk_tables
 
 SENSORS = {"IRDS": "irds", "UI-PRMD": "ui_prmd", "MSR Action3D": "msr_action3d"}
@@ -34,9 +35,18 @@ OTHER_MAKERS = (
     "mixamo_bvh_joe/Walk-In-Circle", "mixamo_bvh_joe/Salsa-Dancing-6", "xsens_mvn/test_mocap",
     "olympe_ballet/ballet", "olympe_sprint/sprint", "pybvh_test1/bvh_test1",
 )  # fmt: skip
+CLIMBS = ("01_02", "01_04", "01_06", "01_08", "01_10", "01_12", "01_14")
+"""Playground, CMU: feet shuffle and pivot in contact. The limits were chosen on others, such as
+01_01 and 01_03."""
 SCORED_ACTORS = ("bk", "dg")
 N_ABLATED = 8
+MAX_CLIMB_FRAMES = 2400
 N_OF_A_SENSOR = 8
+TAKE_PLANTERS: dict[str, Planter] = {
+    "planted": lambda motion, contacts: plant_feet(motion).motion,
+    "the contacts keyed": PLANTERS["planted"],
+} | {name: plant for name, plant in PLANTERS.items() if name != "planted"}
+"""Contacts that are found may yield, those that an animator keyed may not."""
 PARTS = ("detection", "supports", "walks", "takes", "pins", "ablation")
 
 
@@ -68,7 +78,7 @@ def _tables(part: str, dev: bool, full: bool) -> Iterable[Scores | str]:
         return [
             one
             for title, motions in _groups(movements, dev)
-            for one in take_tables(title, motions, PLANTERS)
+            for one in take_tables(title, motions, TAKE_PLANTERS)
         ]
     some = [takes.read(take) for take in movements[:N_ABLATED]]
     if part == "pins":
@@ -93,6 +103,7 @@ def _groups(movements: tuple[takes.Take, ...], dev: bool) -> Iterator[tuple[str,
     yield "HDM05, all classes, 120 Hz", [read_acclaim(path) for path in paths]
     if dev:
         return
+    yield "Climbs", [takes.read_variety(name).slice(0, MAX_CLIMB_FRAMES) for name in CLIMBS]
     yield "Takes of other makers", [_of_corpus(name) for name in OTHER_MAKERS]
     for title, folder in SENSORS.items():
         yield f"{title}, reconstructed", list(_reconstructed(folder))

@@ -18,7 +18,7 @@ from ..retarget.retarget_measures import acted, ik_figures, world_figures
 from ..shared.tables import number, table
 from .part_takes import Planter
 
-CLEAN = "solvers.feet.plant_feet"
+CLEAN = "solvers.feet.plant_in_window"
 RETARGET = ("solvers.retargeting.place_feet", "solvers.retargeting.place_hands")
 OF_PLANTING = {
     "StayInPlace": "loaded sole in place",
