@@ -97,7 +97,9 @@ def _change(before: Motion, after: Motion, foot: FootContact) -> Array:
     both = smooth_gaussian(np.hstack([rotations, moves]), SMOOTHING_S * before.frame_rate)
     turned = np.linalg.norm(both[:, :-3].reshape(n_frames, -1, 3), axis=2).max(axis=1)
     moved = np.linalg.norm(both[:, -3:], axis=1)
-    return np.maximum(turned / MAX_CHANGE_RAD, moved / (MAX_ROOT_CHANGE_M * foot.size))
+    return np.asarray(
+        np.maximum(turned / MAX_CHANGE_RAD, moved / (MAX_ROOT_CHANGE_M * foot.size))
+    )
 
 
 def _spread(factors: Array, frame_rate: float) -> Array:
