@@ -201,6 +201,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "denoising/quality/gap_issues.LONG_GAP_S",
     ),
     "decides a sentence of a report only": (
+        "denoising/window_estimates/estimate_channels.MAX_UNREPORTED_CHANGE",
         "denoising/window_estimates/channel_groups.POOR_FIT_FRACTION",
         "motion/humanoid/role_evidence.MIN_CONFIDENCE",
         "recordings/depth_files/stray_scanner.MAX_STATIC_MOTION_M",
