@@ -69,7 +69,7 @@ def test_noise_that_is_given_far_too_large_does_not_hide_outliers(rng):
     assert not stopped.converged
 
 
-def test_changes_that_nobody_sees_are_not_reported(recordings):
+def test_invisible_changes_are_not_reported(recordings):
     """A run at 30 Hz still changes by 0.02 degrees in the last of 30 iterations."""
     path = recordings / "corpus" / "bvh" / "bandai_namco" / "dataset-1_run_angry_001.bvh"
 
