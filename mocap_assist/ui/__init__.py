@@ -1,7 +1,7 @@
 """The sidebar tab, menus, preferences, the workspace and the manual."""
 
 from .. import languages
-from ..check import issue_views, key_map, renewing
+from ..check import issue_views, key_map, list_over_undo, renewing
 from ..clean import example_list
 from ..exporting import menu as export_menu
 from ..find_similar import match_grid
@@ -44,6 +44,7 @@ PARTS = (
     strip_switch,
     issue_views,
     renewing,
+    list_over_undo,
     key_map,
     manual,
 )

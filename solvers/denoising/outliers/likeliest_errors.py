@@ -13,8 +13,8 @@ from .single_outliers import LOG_OUTLIER_DENSITY
 
 SPIKE_PRIOR_PSEUDOCOUNT = 1e3
 """Number of samples of the prior of the rate of spikes, errors of a single frame. Chosen by
-hand on the development takes of the first press: with 1e4, the error
-rises by 2 % where a tenth of the samples is wrong."""
+hand on the development takes of the first press: with 1e4, the error rises by 2 % where a tenth
+of the samples is wrong."""
 PRIOR_SPIKES = 0.01
 """Number of spikes among these samples: most takes have none. Chosen by hand on the development
 takes of the first press: with 1e-5 a fifth more lone spikes of 40 degrees are kept."""
@@ -34,7 +34,8 @@ FIXED_PSEUDOCOUNT = 1e12
 """Number of samples of the prior of a rate that is given. By definition: far more than a take
 has, so that the errors in it do not change the rate."""
 SPIKE_RATES = np.linspace(0.0, 1.0 / 3.0, 1000)
-"""Fractions of wrong frames. By definition: at a third, most of them are isolated."""
+"""Fractions of wrong frames. By definition: up to a third, the more frames are wrong, the more
+are wrong between right ones."""
 
 
 class Run(NamedTuple):

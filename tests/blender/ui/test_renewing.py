@@ -199,3 +199,24 @@ def test_a_list_whose_action_was_deleted_is_renewed(actor, blank, renewing):
     blank.ops.mocap_assist.denoise(plant_feet=False)
 
     assert renewing.timers == [renewing.renew]
+
+
+def test_undo_after_a_quiet_check_points_to_no_freed_action(blank, actor):
+    """The scene is the same before and after Clean in the steps, and is reused by undo."""
+    shown, buttons = blank.context.scene.mocap_assist, blank.ops.mocap_assist
+    played = actor.animation_data.action.name
+    blank.ops.ed.undo_push(message="start")
+    buttons.measure_quality("EXEC_DEFAULT", True)
+    blank.ops.ed.undo_push(message="another step")
+    buttons.denoise("EXEC_DEFAULT", True)
+    buttons.measure_quality("EXEC_DEFAULT", True, is_quiet=True)
+    assert shown.checked_action.name != played
+
+    blank.ops.ed.undo()
+
+    shown = blank.context.scene.mocap_assist
+    assert [action.name for action in blank.data.actions] == [played]
+    assert shown.checked_action in {None, blank.data.actions[played]}
+
+    blank.ops.ed.redo()
+    assert len(blank.data.actions) == 2
