@@ -167,11 +167,16 @@ def _extend_to_all_frames(rotations: Array, roots: Array, observed: Array) -> Po
     rotations, roots = rotations.copy(), roots.copy()
     for frame in np.flatnonzero(~np.isfinite(roots).all(axis=-1)):
         nearest = valid[np.abs(valid - frame).argmin()]
-        step = observed[frame] - observed[nearest]
-        step = step[np.isfinite(step).all(axis=-1)]
-        roots[frame] = roots[nearest] + (np.median(step, axis=0) if len(step) else 0.0)
+        roots[frame] = roots[nearest] + _median_displacement(observed[nearest], observed[frame])
         rotations[frame] = rotations[nearest]
     return Poses(rotations, roots)
+
+
+def _median_displacement(start: Array, end: Array) -> Array:
+    """Return the median displacement of the markers observed in both frames; 0 without any."""
+    displacements = end - start
+    displacements = displacements[np.isfinite(displacements).all(axis=-1)]
+    return np.median(displacements, axis=0) if len(displacements) else np.zeros(3)
 
 
 def _fit_dimensions(
@@ -201,7 +206,10 @@ def _refit_outliers(body: MarkerBody, observed: Array, poses: Poses) -> Poses:
         return poses
     frames = np.flatnonzero(bad)
     nearest = good[np.rint(np.interp(frames, good, np.arange(len(good)))).astype(np.intp)]
-    shift = np.nanmedian(np.nan_to_num(observed[frames] - observed[nearest]), axis=1)
+    shift = np.array([
+        _median_displacement(observed[start], observed[end])
+        for start, end in zip(nearest, frames, strict=True)
+    ])
     candidate = fit_poses(
         body, observed[frames], Poses(poses.rotations[nearest], poses.roots[nearest] + shift)
     )
