@@ -121,9 +121,7 @@ class GroupSmoother:
                 squares = squares.reshape(*projected.shape[:2], *basis.variances.shape[1:])
                 for index, factor in enumerate(factors):
                     total = basis.variances + factor**2 * variance[:, None, None]
-                    exponents = np.einsum("awkn,akn->wk", squares, 1.0 / total)
-                    exponents += np.log(total).sum(axis=(0, 2))
-                    log_density = np.log(self.mixture.weights) - 0.5 * exponents
+                    log_density = _log_density(squares, total, self._density_at_zero(total))
                     found[block, group, index] = np.logaddexp.reduce(log_density, axis=1)
         return found
 
@@ -192,9 +190,12 @@ class GroupSmoother:
         basis = self._basis
         total = basis.variances + variance[:, None, None]
         gains = basis.variances / total
-        log_density = np.log(self.mixture.weights) - 0.5 * np.log(total).sum(axis=(0, 2))
         leverage = (gains[:, :, None] @ basis.squares)[:, :, 0].transpose(1, 0, 2)
-        return _GroupFilters(total, gains, log_density, leverage, variance)
+        return _GroupFilters(total, gains, self._density_at_zero(total), leverage, variance)
+
+    def _density_at_zero(self, total: Array) -> Array:
+        """Return the log-density of each component at zero: `_GroupFilters.log_density`."""
+        return np.asarray(np.log(self.mixture.weights) - 0.5 * np.log(total).sum(axis=(0, 2)))
 
     def _smooth(
         self, coefficients: Array, filters: _GroupFilters
@@ -227,8 +228,7 @@ class GroupSmoother:
         projected = coefficients.transpose(1, 0, 2) @ vectors
         n_components, n_coefficients = filters.total.shape[1:]
         each = projected.reshape(len(projected), n_windows, n_components, n_coefficients)
-        exponents = np.einsum("awkn,akn->wk", each**2, 1.0 / filters.total)
-        log_density = filters.log_density - 0.5 * exponents
+        log_density = _log_density(each**2, filters.total, filters.log_density)
         density = np.exp(log_density - log_density.max(axis=1, keepdims=True))
         responsibility = density / density.sum(axis=1, keepdims=True)
         # In place: a view of `projected`.
@@ -238,3 +238,18 @@ class GroupSmoother:
         means = (projected @ vectors.transpose(0, 2, 1)).transpose(1, 0, 2)
         spread = (squares - np.square(means).sum(axis=-1)) / filters.noise
         return means, responsibility, spread
+
+
+def _log_density(squares: Array, total: Array, density_at_zero: Array) -> Array:
+    """Return the log-density of each window under each component, with the latter's weight.
+
+    Parameters
+    ----------
+    squares : shape (n_axes, n_windows, n_components, n_coefficients)
+        Of the coefficients along the eigenvectors.
+    total : shape (n_axes, n_components, n_coefficients)
+        Variance along them.
+    density_at_zero : shape (n_components,)
+    """
+    exponents = np.einsum("awkn,akn->wk", squares, 1.0 / total)
+    return np.asarray(density_at_zero - 0.5 * exponents)
