@@ -112,7 +112,7 @@ class DragGesture:
         """Whether the hands hold the view."""
         return self._reported_value is not None
 
-    def update(self, time: float, position: Array | None, value: float) -> float:
+    def _drag(self, time: float, position: Array | None, value: float) -> float:
         """Return the change of the value since the last report; mostly 0.
 
         Parameters
@@ -158,25 +158,13 @@ def _wrap_angle(angle: float) -> float:
     return (angle + pi) % (2.0 * pi) - pi
 
 
-class Zoom:
+class Zoom(DragGesture):
     """Detect both hands in front of the chest, and zoom by their distance."""
-
-    def __init__(self, settings: GestureSettings) -> None:
-        self._drag = DragGesture(settings)
-
-    def reset(self) -> None:
-        """Release the view."""
-        self._drag.reset()
-
-    @property
-    def is_active(self) -> bool:
-        """Whether it holds the view."""
-        return self._drag.is_active
 
     def update(self, hands: Hands) -> GestureEvent | None:
         """Return the factor of the hands' distance since the last report, while active."""
         position = np.concatenate([hands.right, hands.left]) if _is_zoom_pose(hands) else None
-        change = self._drag.update(hands.time, position, float(np.log(max(hands.gap, 1e-3))))
+        change = self._drag(hands.time, position, float(np.log(max(hands.gap, 1e-3))))
         if not change:
             return None
         return GestureEvent(Gesture.ZOOM, hands.time, hands.time, float(np.exp(change)))
@@ -190,28 +178,16 @@ def _is_zoom_pose(hands: Hands) -> bool:
     )
 
 
-class Turn:
+class Turn(DragGesture):
     """Detect the straight right arm, and turn the view as it swings about the body."""
-
-    def __init__(self, settings: GestureSettings) -> None:
-        self._drag = DragGesture(settings)
-
-    def reset(self) -> None:
-        """Release the view."""
-        self._drag.reset()
-
-    @property
-    def is_active(self) -> bool:
-        """Whether it holds the view."""
-        return self._drag.is_active
 
     def update(self, hands: Hands) -> GestureEvent | None:
         """Return the angle of the arm's rotation since the last report, while active."""
         right, forward, up = hands.right
-        straight = hands.reach >= (BENT_REACH if self._drag.is_active else STRAIGHT_REACH)
+        straight = hands.reach >= (BENT_REACH if self.is_active else STRAIGHT_REACH)
         level = abs(up) <= MAX_TILT and hands.left[2] < MAX_HANGING_HEIGHT
         position = hands.right if straight and level else None
-        change = self._drag.update(hands.time, position, atan2(forward, right))
+        change = self._drag(hands.time, position, atan2(forward, right))
         if not change:
             return None
         return GestureEvent(Gesture.TURN, hands.time, hands.time, change)

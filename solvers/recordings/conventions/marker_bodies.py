@@ -30,7 +30,7 @@ MIN_UPRIGHT_COSINE = 0.8
 """Cosine of the angle between an axis and the direction from feet to head, from which the actor
 stands along it. Chosen by hand: 37 degrees, more than a walker leans and less than the 45 at
 which two axes are equally near."""
-SIDE_LETTERS = "lr"
+SIDE_INITIALS = "lr"
 """First letter of names on the left and on the right."""
 
 
@@ -85,7 +85,7 @@ def stature_of_markers(names: Sequence[str], points: Array) -> float | None:
     trunk = _from_feet_to_top(names, points)
     if trunk is None:
         return None
-    paths = [_lengths_of_paths(names, points, trunk.top, side) for side in SIDE_LETTERS]
+    paths = [_lengths_of_paths(names, points, trunk.top, side) for side in SIDE_INITIALS]
     lengths = [max(each) for each in paths if each] or [_standing(trunk.vectors)]
     return float(np.mean(lengths)) / trunk.statures
 
