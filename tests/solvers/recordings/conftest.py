@@ -2,9 +2,22 @@
 
 import socket
 
+import numpy as np
 import pytest
 
+from solvers.motion import find_humanoid_map, forward_kinematics
 from solvers.recordings import read_bvh, read_recording
+from solvers.samples import walking_gait
+
+
+@pytest.fixture(scope="session")
+def walker() -> dict[str, np.ndarray]:
+    """Positions of the joints of a walk by role, shape (n_frames, 3) each, meters, Z up."""
+    motion = walking_gait()
+    positions = forward_kinematics(motion).positions
+    positions.flags.writeable = False
+    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    return {role: positions[:, joint] for role, joint in roles.items()}
 
 
 @pytest.fixture

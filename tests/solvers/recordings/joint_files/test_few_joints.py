@@ -5,9 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
-from solvers.motion import find_humanoid_map, forward_kinematics
 from solvers.motion.skeletons import BODY_POINTS
-from solvers.samples import walking_gait
 
 F = 40
 TRACKERS = {
@@ -21,12 +19,8 @@ LEG = {"LHip": "leftUpperLeg", "LKnee": "leftLowerLeg", "LAnkle": "leftFoot"}
 
 
 @pytest.fixture(scope="module")
-def walk():
-    """Positions by role in meters, Z up."""
-    motion = walking_gait()
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    positions = forward_kinematics(motion).positions[:F]
-    return {role: positions[:, at] for role, at in roles.items()}
+def walk(walker):
+    return {role: path[:F] for role, path in walker.items()}
 
 
 def table(names, walk):

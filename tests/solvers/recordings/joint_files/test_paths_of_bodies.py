@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.motion import find_humanoid_map, forward_kinematics, roles_by_name
+from solvers.motion import roles_by_name
 from solvers.recordings.conventions.camera_paths import CROPPED
-from solvers.samples import walking_gait
 
 F = 40
 AS_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -22,12 +21,9 @@ SMPL = (
 
 
 @pytest.fixture(scope="module")
-def walk():
+def walk(walker):
     """Positions of the joints of SMPL in meters, Y up, shape (F, 22, 3)."""
-    motion = walking_gait()
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    positions = forward_kinematics(motion).positions[:F]
-    return np.stack([positions[:, roles[role]] for role in SMPL], axis=1) @ AS_Y_UP.T
+    return np.stack([walker[role][:F] for role in SMPL], axis=1) @ AS_Y_UP.T
 
 
 @pytest.fixture(scope="module")

@@ -7,11 +7,10 @@ import pytest
 from exports.camera_bodies import mediapipe
 
 from solvers.errors import InvalidFileError
-from solvers.motion import find_humanoid_map, forward_kinematics, roles_by_name
+from solvers.motion import roles_by_name
 from solvers.motion.humanoid import SIDES
 from solvers.motion.skeletons import BODY_POINTS
 from solvers.recordings import list_bodies, read_recording
-from solvers.samples import walking_gait
 
 F = 40
 RATE_HZ = 15.0
@@ -25,12 +24,8 @@ VISION = {"root": "hips", "spine": "spine", "centerShoulder": "neck", "topHead":
 
 
 @pytest.fixture(scope="module")
-def walk():
-    """Positions of the joints of a walker by role, meters, Z up."""
-    motion = walking_gait()
-    positions = forward_kinematics(motion).positions[:F]
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return {role: positions[:, joint] for role, joint in roles.items()}
+def walk(walker):
+    return {role: path[:F] for role, path in walker.items()}
 
 
 def read(tmp_path, content):

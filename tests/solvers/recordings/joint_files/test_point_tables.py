@@ -9,12 +9,9 @@ from solvers.errors import InvalidFileError
 from solvers.motion import (
     JointRecording,
     Tracks,
-    find_humanoid_map,
-    forward_kinematics,
     roles_by_name,
 )
 from solvers.recordings import read_recording
-from solvers.samples import walking_gait
 
 F = 60
 LIMBS = {"shoulder": "UpperArm", "elbow": "LowerArm", "wrist": "Hand", "hip": "UpperLeg",
@@ -42,12 +39,8 @@ HUMAN36M = [
 
 
 @pytest.fixture(scope="module")
-def walk():
-    """Positions of the joints of a walker by their role, meters, Z up."""
-    motion = walking_gait()
-    positions = forward_kinematics(motion).positions[:F]
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return {role: positions[:, joint] for role, joint in roles.items()}
+def walk(walker):
+    return {role: path[:F] for role, path in walker.items()}
 
 
 def table(walk, names, title, *, separator=",", unit=1.0, time=True, extra=""):

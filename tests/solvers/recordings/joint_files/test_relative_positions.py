@@ -6,22 +6,17 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.motion import Tracks, find_humanoid_map, forward_kinematics
+from solvers.motion import Tracks
 from solvers.recordings import list_bodies
 from solvers.recordings.point_bodies import groups_by_suffix, names_of_positions
 from solvers.recordings.point_bodies.relative_positions import refuse_parent_positions
-from solvers.samples import walking_gait
 
 F = 40
 
 
 @pytest.fixture(scope="module")
-def walk():
-    """Positions by role, meters, Z up."""
-    motion = walking_gait()
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    positions = forward_kinematics(motion).positions[:F]
-    return {role: positions[:, at] for role, at in roles.items()}
+def walk(walker):
+    return {role: path[:F] for role, path in walker.items()}
 
 
 @pytest.fixture(scope="module")

@@ -6,21 +6,17 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.motion import Tracks, find_humanoid_map, forward_kinematics
+from solvers.motion import Tracks
 from solvers.recordings import read_recording
-from solvers.samples import walking_gait
 
 F = 20
 
 
 @pytest.fixture(scope="module")
-def walk():
+def walk(walker):
     """Positions of the joints of a walker on the spot, by VRM's names, meters, Z up."""
-    motion = walking_gait()
-    positions = forward_kinematics(motion).positions[:F]
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return {role: positions[:, joint] - positions[:, :1, :].mean(axis=1) * (1, 1, 0)
-            for role, joint in roles.items()}  # fmt: skip
+    path_on_floor = walker["hips"][:F] * (1, 1, 0)
+    return {role: path[:F] - path_on_floor for role, path in walker.items()}
 
 
 def read(path, joints):

@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.motion import find_humanoid_map, forward_kinematics
 from solvers.motion.humanoid import SIDES
 from solvers.motion.skeletons import BODY_POINTS
 from solvers.recordings import folders, list_bodies, read_recording, recordings_in
 from solvers.recordings.containers import names_by_number
-from solvers.samples import walking_gait
 
 F = 24
 PARTS = {"UpperArm": "shoulder", "LowerArm": "elbow", "Hand": "wrist", "UpperLeg": "hip",
@@ -22,12 +20,8 @@ COCO = ["head"] * 5 + [side + role for role in PARTS for side in SIDES]
 
 
 @pytest.fixture(scope="module")
-def walk():
-    """Positions of the joints of a walker by their role, meters, Z up."""
-    motion = walking_gait()
-    positions = forward_kinematics(motion).positions[:F]
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return {role: positions[:, joint] for role, joint in roles.items()}
+def walk(walker):
+    return {role: path[:F] for role, path in walker.items()}
 
 
 @pytest.fixture

@@ -7,12 +7,9 @@ from solvers.errors import InvalidFileError
 from solvers.motion import (
     JointRecording,
     Tracks,
-    find_humanoid_map,
-    forward_kinematics,
     roles_by_name,
 )
 from solvers.recordings import detect_format, list_bodies, read_recording
-from solvers.samples import walking_gait
 
 F = 40
 PARTS = {"Arm": "UpperArm", "ForeArm": "LowerArm", "Hand": "Hand", "UpLeg": "UpperLeg",
@@ -25,12 +22,8 @@ NAMES = {"Hips": "hips", "Spine": "spine", "Neck": "neck", "Head": "head"} | {
 
 
 @pytest.fixture(scope="module")
-def walk():
-    """Positions of the joints of a walker by their role, meters, Z up."""
-    motion = walking_gait()
-    positions = forward_kinematics(motion).positions[:F]
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return {role: positions[:, joint] for role, joint in roles.items()}
+def walk(walker):
+    return {role: path[:F] for role, path in walker.items()}
 
 
 def repeated(label, names, n=3):

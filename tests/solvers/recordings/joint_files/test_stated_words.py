@@ -3,9 +3,6 @@
 import numpy as np
 import pytest
 
-from solvers.motion import find_humanoid_map, forward_kinematics
-from solvers.samples import walking_gait
-
 F = 60
 JOINTS = {
     f"{part}{side.title()}": side + role
@@ -18,11 +15,9 @@ JOINTS = {
 
 
 @pytest.fixture(scope="module")
-def walk():
-    """Positions of the joints of a walker, shape (F, 12, 3), meters, Z up."""
-    motion = walking_gait()
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return forward_kinematics(motion).positions[:F, [roles[role] for role in JOINTS.values()]]
+def walk(walker):
+    """Positions of joints, shape (F, 12, 3), meters, Z up."""
+    return np.stack([walker[role][:F] for role in JOINTS.values()], axis=1)
 
 
 @pytest.mark.parametrize(("unit", "step"), [

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.motion import JointRecording, Tracks, find_humanoid_map, forward_kinematics
+from solvers.motion import JointRecording, Tracks
 from solvers.recordings.joint_files.table_titles import table_titles
 from solvers.recordings.point_bodies import coordinate_of_title
-from solvers.samples import walking_gait
 
 F, RATE_HZ = 60, 25.0
 ROLES = [side + part for side in ("left", "right") for part in (
@@ -31,11 +30,9 @@ def in_language(language):
 
 
 @pytest.fixture(scope="module")
-def walk():
-    """Positions of the joints of a walker, shape (F, 12, 3), meters, Z up."""
-    motion = walking_gait()
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return forward_kinematics(motion).positions[:F, [roles[role] for role in ROLES]]
+def walk(walker):
+    """Positions of joints, shape (F, 12, 3), meters, Z up."""
+    return np.stack([walker[role][:F] for role in ROLES], axis=1)
 
 
 def table(walk, title="{name}_{axis}", axes="xyz", names=NAMES, time="time", separator=","):

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics, roles_by_name
+from solvers.motion import JointRecording, roles_by_name
 from solvers.recordings import Axis, ReadingSettings, read_as, read_recording
-from solvers.samples import walking_gait
 
 LEG, ARM = ("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand")
 
@@ -43,17 +42,8 @@ AXES = {
 }
 
 
-@pytest.fixture(scope="module")
-def walk():
-    """Positions of the joints of a walker by their role, meters, Z up."""
-    motion = walking_gait()
-    positions = forward_kinematics(motion).positions
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return {role: positions[:, joint] for role, joint in roles.items()}
-
-
-def ordered(walk, layout):
-    return np.stack([walk.get(role, walk["neck"]) for role in ORDERS[layout]], axis=1)
+def ordered(walker, layout):
+    return np.stack([walker.get(role, walker["neck"]) for role in ORDERS[layout]], axis=1)
 
 
 def read(tmp_path, array):
@@ -68,8 +58,8 @@ def read(tmp_path, array):
 
 @pytest.mark.parametrize("axes", AXES)
 @pytest.mark.parametrize("layout", ORDERS)
-def test_a_body_is_named_and_stands(tmp_path, walk, layout, axes):
-    recording, said = read(tmp_path, 1000.0 * AXES[axes](ordered(walk, layout)))
+def test_a_body_is_named_and_stands(tmp_path, walker, layout, axes):
+    recording, said = read(tmp_path, 1000.0 * AXES[axes](ordered(walker, layout)))
 
     assert isinstance(recording, JointRecording)
     assert f"in the order of {layout} with 100%" in said
@@ -79,14 +69,14 @@ def test_a_body_is_named_and_stands(tmp_path, walk, layout, axes):
     }
     for role in ("leftHand", "rightLowerArm", "leftFoot", "rightLowerLeg"):
         from_hips = joints[role] - joints["hips"]
-        middle = (walk["leftUpperLeg"] + walk["rightUpperLeg"]) / 2.0
-        hips = walk["hips"] if "hips" in ORDERS[layout] else middle
-        assert np.allclose(from_hips, walk[role] - hips, atol=1e-6), role
+        middle = (walker["leftUpperLeg"] + walker["rightUpperLeg"]) / 2.0
+        hips = walker["hips"] if "hips" in ORDERS[layout] else middle
+        assert np.allclose(from_hips, walker[role] - hips, atol=1e-6), role
     assert sum(parent < 0 for parent in recording.parents) == 1
 
 
-def test_mirrored_axes_are_undone_and_reported(tmp_path, walk):
-    points = ordered(walk, "SMPL")
+def test_mirrored_axes_are_undone_and_reported(tmp_path, walker):
+    points = ordered(walker, "SMPL")
 
     recording, said = read(tmp_path, points * (-1.0, 1.0, 1.0))
 
@@ -94,10 +84,10 @@ def test_mirrored_axes_are_undone_and_reported(tmp_path, walk):
     assert np.allclose(recording.tracks.positions, points)
 
 
-def test_forward_is_an_axis_of_the_file_that_is_mirrored(tmp_path, walk):
+def test_forward_is_an_axis_of_the_file_that_is_mirrored(tmp_path, walker):
     """In mirrored axes X is where -X is otherwise."""
-    np.save(tmp_path / "right.npy", ordered(walk, "SMPL"))
-    np.save(tmp_path / "left.npy", ordered(walk, "SMPL") * (-1.0, 1.0, 1.0))
+    np.save(tmp_path / "right.npy", ordered(walker, "SMPL"))
+    np.save(tmp_path / "left.npy", ordered(walker, "SMPL") * (-1.0, 1.0, 1.0))
 
     left, right = (
         read_as(tmp_path / f"{name}.npy", ReadingSettings(forward=axis)).tracks.positions
@@ -107,8 +97,8 @@ def test_forward_is_an_axis_of_the_file_that_is_mirrored(tmp_path, walk):
     assert np.allclose(left, right)
 
 
-def test_points_without_a_unit_get_the_size_of_an_adult(tmp_path, walk):
-    points = ordered(walk, "Human3.6M")
+def test_points_without_a_unit_get_the_size_of_an_adult(tmp_path, walker):
+    points = ordered(walker, "Human3.6M")
 
     recording, said = read(tmp_path, 0.1 * points)
 
@@ -117,19 +107,19 @@ def test_points_without_a_unit_get_the_size_of_an_adult(tmp_path, walk):
     assert height == pytest.approx(np.ptp(points[..., 2], axis=1).max(), rel=0.1)
 
 
-def test_points_in_another_order_are_no_body(tmp_path, walk):
+def test_points_in_another_order_are_no_body(tmp_path, walker):
     shuffled = np.random.default_rng(2).permutation(17)
 
-    recording, said = read(tmp_path, ordered(walk, "COCO")[:, shuffled])
+    recording, said = read(tmp_path, ordered(walker, "COCO")[:, shuffled])
 
     assert not isinstance(recording, JointRecording)
     assert "form no body in a known order" in said
 
 
 @pytest.mark.parametrize("layout", ["Human3.6M", "Human3.6M without neck"])
-def test_legs_and_arms_with_other_orders_of_the_sides_are_no_body(tmp_path, walk, layout):
+def test_legs_and_arms_with_other_orders_of_the_sides_are_no_body(tmp_path, walker, layout):
     """Before, such legs came in crossed."""
-    points = ordered(walk, layout)
+    points = ordered(walker, layout)
     points[:, 1:7] = points[:, [4, 5, 6, 1, 2, 3]]
 
     assert not isinstance(read(tmp_path, points)[0], JointRecording)
@@ -143,16 +133,16 @@ def test_legs_and_arms_with_other_orders_of_the_sides_are_no_body(tmp_path, walk
     lambda points: np.concatenate([points, np.ones_like(points[..., :1])], axis=-1),
     lambda points: np.concatenate([points, np.zeros_like(points[..., :1])], axis=-1),
 ])  # fmt: skip
-def test_other_orders_of_the_axes_are_understood(tmp_path, walk, make):
-    points = ordered(walk, "Human3.6M")
+def test_other_orders_of_the_axes_are_understood(tmp_path, walker, make):
+    points = ordered(walker, "Human3.6M")
 
     recording, _ = read(tmp_path, make(points))
 
     assert np.allclose(recording.tracks.positions[:, 0], points[:, 0])
 
 
-def test_an_archive_of_joints_is_read(tmp_path, walk):
-    points = ordered(walk, "COCO")
+def test_an_archive_of_joints_is_read(tmp_path, walker):
+    points = ordered(walker, "COCO")
     np.savez(tmp_path / "joints.npz", keypoints3d=points, scores=np.ones(3))
 
     recording = read_recording(tmp_path / "joints.npz")
@@ -170,10 +160,10 @@ def test_an_archive_of_joints_is_read(tmp_path, walk):
         ({"fps": "60"}, 30.0),
     ],
 )
-def test_an_archive_states_its_rate(tmp_path, walk, stated, rate):
+def test_an_archive_states_its_rate(tmp_path, walker, stated, rate):
     """Before, joints at 60 Hz were read as 30 Hz."""
     said = []
-    np.savez(tmp_path / "joints.npz", reconstruction=ordered(walk, "COCO"), **stated)
+    np.savez(tmp_path / "joints.npz", reconstruction=ordered(walker, "COCO"), **stated)
 
     recording = read_recording(
         tmp_path / "joints.npz", progress=lambda _, text="": said.append(str(text))
@@ -184,8 +174,8 @@ def test_an_archive_states_its_rate(tmp_path, walk, stated, rate):
 
 
 @pytest.mark.parametrize("third", [None, 0.0, 0.9])
-def test_points_of_images_are_refused(tmp_path, walk, third):
-    flat = 300.0 * ordered(walk, "COCO")[..., [0, 2]]
+def test_points_of_images_are_refused(tmp_path, walker, third):
+    flat = 300.0 * ordered(walker, "COCO")[..., [0, 2]]
     scores = np.full_like(flat[..., :1], 0.0 if third is None else third)
     array = flat if third is None else np.concatenate([flat, scores], axis=-1)
 

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics
+from solvers.motion import JointRecording
 from solvers.motion.skeletons.point_layouts import LAYOUTS
 from solvers.recordings.conventions import are_frame_numbers
-from solvers.samples import walking_gait
 
 F, RATE_HZ = 40, 25.0
 SMPL = (
@@ -22,11 +21,9 @@ SMPL = (
 
 
 @pytest.fixture(scope="module")
-def body():
+def body(walker):
     """Positions of the joints of SMPL, shape (F, 22, 3), meters."""
-    motion = walking_gait()
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return forward_kinematics(motion).positions[:F, [roles[role] for role in SMPL]]
+    return np.stack([walker[role][:F] for role in SMPL], axis=1)
 
 
 @pytest.mark.parametrize("above", [[], ["time"], ["frame", "time"]])

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.motion import JointRecording, find_humanoid_map, forward_kinematics, roles_by_name
+from solvers.motion import JointRecording, roles_by_name
 from solvers.motion.humanoid import SIDES
 from solvers.recordings import list_bodies, read_recording
-from solvers.samples import walking_gait
 
 F = 30
 PARTS = {"shoulder": "UpperArm", "elbow": "LowerArm", "wrist": "Hand", "hip": "UpperLeg",
@@ -23,12 +22,10 @@ ARKIT = {"hips_joint": "hips", "head_joint": "head"} | {
 
 
 @pytest.fixture(scope="module")
-def walk():
-    """Positions of the joints of a walker by their role, meters, Y up."""
-    motion = walking_gait()
-    positions = forward_kinematics(motion).positions[:F][..., [0, 2, 1]] * (1.0, 1.0, -1.0)
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return {role: positions[:, joint] for role, joint in roles.items()}
+def walk(walker):
+    """Positions of joints by role, meters, Y up."""
+    y_up = (1.0, 1.0, -1.0)
+    return {role: path[:F, [0, 2, 1]] * y_up for role, path in walker.items()}
 
 
 def matrix(point, by_rows):

@@ -9,11 +9,10 @@ from exports.camera_bodies import mediapipe
 from joint_files import moving
 
 from solvers.errors import InvalidFileError
-from solvers.motion import Sensor, find_humanoid_map, forward_kinematics
+from solvers.motion import Sensor
 from solvers.motion.skeletons import BODY_POINTS
 from solvers.recordings.joint_files.json_bodies import is_frames_json
 from solvers.recordings.point_bodies.unnamed_joints import name_joints
-from solvers.samples import walking_gait
 
 N = 40
 POINTS = mediapipe(N)
@@ -33,12 +32,8 @@ def picture(k):
 
 
 @pytest.fixture(scope="module")
-def walk():
-    """Positions by role, meters, Z up."""
-    motion = walking_gait()
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    positions = forward_kinematics(motion).positions[:N]
-    return {role: positions[:, at] for role, at in roles.items()}
+def walk(walker):
+    return {role: path[:N] for role, path in walker.items()}
 
 
 def joints(walk, k, origin=0.0, wrap=list):
