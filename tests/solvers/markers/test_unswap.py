@@ -82,7 +82,7 @@ def test_swap_between_gaps_is_corrected(take):
 
 @pytest.mark.parametrize("names", [("LFHD", "LBHD"), ("C7", "CLAV")])
 def test_marker_with_the_label_of_a_missing_one_is_renamed(take, names):
-    """The distances of C7 to markers of the arms vary: its jump to and fro shows the mistake."""
+    """The distances of C7 vary: its jump to the other label and back shows the mistake."""
     missing, found = (take.names.index(name) for name in names)
     truth, wrong = take.positions.copy(), take.positions.copy()
     truth[80:140, missing] = np.nan

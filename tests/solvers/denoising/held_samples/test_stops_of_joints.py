@@ -1,27 +1,15 @@
 """Joints that stop, at a limit or because angles are rounded, are not held by a tracker."""
 
 import numpy as np
-import pytest
 
 from solvers.denoising.held_samples import find_held_samples
 from solvers.motion import Motion
 from solvers.rotations import (
-    multiply,
     quaternion_from_rotation_vector,
     rotation_vector_from_quaternion,
 )
-from solvers.samples import GaitSettings, walking_gait
 
 FIRST, LAST = 40, 55
-
-
-@pytest.fixture(scope="module")
-def walk() -> Motion:
-    """Three seconds at 30 Hz, recorded with a jitter of 0.02 degrees."""
-    gait = walking_gait(GaitSettings(duration=3.0, frame_rate=30.0))
-    vectors = np.random.default_rng(3).normal(size=(*gait.rotations.shape[:2], 3))
-    noise = quaternion_from_rotation_vector(np.radians(0.02) * vectors)
-    return gait.with_poses(multiply(gait.rotations, noise))
 
 
 def flex(motion: Motion, joints: list[int], degrees: np.ndarray) -> Motion:

@@ -20,30 +20,6 @@ from solvers.samples import GaitSettings, walking_gait
 LOST = slice(40, 56)
 
 
-def noisy(motion: Motion, degrees: float) -> Motion:
-    vectors = np.random.default_rng(3).normal(size=(*motion.rotations.shape[:2], 3))
-    noise = quaternion_from_rotation_vector(np.radians(degrees) * vectors)
-    return motion.with_poses(multiply(motion.rotations, noise))
-
-
-@pytest.fixture(scope="module")
-def walk() -> Motion:
-    """Three seconds at 30 Hz, recorded with a jitter of 0.02 degrees."""
-    return noisy(walking_gait(GaitSettings(duration=3.0, frame_rate=30.0)), 0.02)
-
-
-@pytest.fixture(scope="module")
-def arm(walk) -> list[int]:
-    return list(walk.skeleton.subtree(walk.skeleton.index("RightArm")))
-
-
-def hold(motion: Motion, frames: slice, joints: list[int]) -> Motion:
-    """Repeat the rotations before these frames."""
-    rotations = motion.rotations.copy()
-    rotations[frames, joints] = rotations[frames.start - 1, joints]
-    return motion.with_poses(rotations)
-
-
 def in_frames(motion: Motion, frames: np.ndarray) -> Motion:
     """Show these frames one after the other."""
     rotations, roots = motion.rotations[frames], motion.root_positions[frames]
@@ -87,23 +63,27 @@ def moving(motion: Motion) -> np.ndarray:
 
 
 @pytest.mark.parametrize("degrees", [0.0, 0.5, 3.0])
-def test_lost_arm_is_held_where_it_repeats(walk, arm, degrees):
-    frames, parts = np.nonzero(find_held_samples(hold(noisy(walk, degrees), LOST, arm)))
+def test_lost_arm_is_held_where_it_repeats(walk, arm, degrees, hold, add_jitter):
+    frames, parts = np.nonzero(find_held_samples(hold(add_jitter(walk, degrees), LOST, arm)))
     assert set(frames) == set(range(LOST.start, LOST.stop))
     assert arm[0] in parts
     assert set(parts) <= set(arm)
 
 
-def test_hand_of_a_lost_arm_is_held_though_its_forearm_was_never_observed(walk, arm):
-    motion = hold(noisy(walk, 0.5), LOST, arm)
+def test_hand_of_a_lost_arm_is_held_though_its_forearm_was_never_observed(
+    walk, arm, hold, add_jitter
+):
+    motion = hold(add_jitter(walk, 0.5), LOST, arm)
     rotations = motion.rotations.copy()
     rotations[:, arm[1]] = np.nan
     held = find_held_samples(walk.with_poses(rotations))
     assert held[LOST.start + 1 : LOST.stop, [arm[0], arm[2]]].all()
 
 
-def test_arm_that_a_tracker_puts_into_its_rest_pose_is_held_from_the_first_frame_on(walk, arm):
-    rotations = noisy(walk, 0.3).rotations.copy()
+def test_arm_that_a_tracker_puts_into_its_rest_pose_is_held_from_the_first_frame_on(
+    walk, arm, add_jitter
+):
+    rotations = add_jitter(walk, 0.3).rotations.copy()
     rotations[LOST, arm[:3]] = [1.0, 0.0, 0.0, 0.0]
     held = find_held_samples(walk.with_poses(rotations))
     assert held[LOST, arm[0]].all()
@@ -119,11 +99,11 @@ def test_frames_shown_several_times_are_held(walk, n):
     assert not body[~is_repeat].any()
 
 
-def test_frame_dropped_from_a_body_that_jitters_is_held(walk):
+def test_frame_dropped_from_a_body_that_jitters_is_held(walk, add_jitter):
     """The jump is no larger than the jitter; that all parts repeat is what shows it."""
     frames = np.arange(walk.n_frames)
     frames[30] = 29
-    held = find_held_samples(in_frames(noisy(walk, 3.0), frames))
+    held = find_held_samples(in_frames(add_jitter(walk, 3.0), frames))
     assert held[30, moving(walk)].all()
     assert not np.delete(held, 30, axis=0).any()
 
@@ -147,8 +127,8 @@ def test_markers_that_repeat_are_held(walk):
 
 
 @pytest.mark.parametrize("degrees", [0.0, 1.0])
-def test_nothing_is_held_in_a_movement(walk, degrees):
-    assert not find_held_samples(noisy(walk, degrees)).any()
+def test_nothing_is_held_in_a_movement(walk, degrees, add_jitter):
+    assert not find_held_samples(add_jitter(walk, degrees)).any()
 
 
 def test_pose_that_is_eased_out_of_is_not_held(walk):
@@ -156,7 +136,7 @@ def test_pose_that_is_eased_out_of_is_not_held(walk):
     assert not find_held_samples(at_times(walk, times)).any()
 
 
-def test_anticipation_between_keys_is_not_held(arm):
+def test_anticipation_between_keys_is_not_held(arm, hold, add_jitter):
     """Keys of a wind-up, a pose and a strike that starts at full speed."""
     gait = walking_gait(GaitSettings(duration=3.0, frame_rate=30.0))
     keys = np.array([0, 20, 36, 42, 60, 89])
@@ -171,7 +151,7 @@ def test_anticipation_between_keys_is_not_held(arm):
         root_positions=np.zeros((90, 3)),
     )
     assert not find_held_samples(keyed).any()
-    assert find_held_samples(noisy(hold(keyed, slice(22, 36), arm), 0.0)).sum() == 0
+    assert find_held_samples(add_jitter(hold(keyed, slice(22, 36), arm), 0.0)).sum() == 0
 
 
 @pytest.mark.parametrize("n", [4, 8])
@@ -200,9 +180,9 @@ def test_limit_at_which_a_joint_stops_again_and_again_is_not_held(walk, drift):
     assert find_held_samples(motion)[:, elbow].any() == (drift > 0.0)
 
 
-def test_repeats_of_a_body_that_hardly_moves_do_not_matter(walk):
+def test_repeats_of_a_body_that_hardly_moves_do_not_matter(walk, add_jitter):
     slow = slerp(walk.rotations[:1], walk.rotations, np.full((1, 1), 0.005))
-    slow = noisy(walk.with_poses(slow, walk.root_positions * 0.001), 0.02)
+    slow = add_jitter(walk.with_poses(slow, walk.root_positions * 0.001), 0.02)
     assert not find_held_samples(repeat(slow, 2)).any()
 
 
@@ -252,9 +232,9 @@ def test_dropped_frames_are_no_cut(walk):
     assert result.held[30:34].any(axis=1).all()
 
 
-def test_repeats_in_a_separate_pose_at_the_start_are_kept(walk):
+def test_repeats_in_a_separate_pose_at_the_start_are_kept(walk, add_jitter):
     """A T-pose of six frames, which is no movement to be filled."""
-    t_pose = noisy(walk.slice(0, 6), 0.5)
+    t_pose = add_jitter(walk.slice(0, 6), 0.5)
     rotations = np.concatenate([t_pose.rotations, walk.rotations])
     rotations[:6] = multiply(
         rotations[:6], quaternion_from_rotation_vector(np.array([0.0, 0.0, 1.5]))
@@ -267,7 +247,7 @@ def test_repeats_in_a_separate_pose_at_the_start_are_kept(walk):
     assert angle_between(result.recording.rotations[:6], rotations[:6]).max() < 1e-6
 
 
-def test_check_lists_the_arm_that_stands_still_and_the_body(walk, arm):
+def test_check_lists_the_arm_that_stands_still_and_the_body(walk, arm, hold):
     lost = hold(walk, LOST, arm)
     issues = find_worst_issues(lost, measure_quality(lost))
     sentences = {each.joint: each.sentence for each in issues if each.kind == "gap"}

@@ -1,7 +1,6 @@
 """Clean moves a limb on that a tracker held in its last pose."""
 
 import numpy as np
-import pytest
 
 from solvers.denoising import (
     DenoiseMethod,
@@ -10,35 +9,12 @@ from solvers.denoising import (
     learn_joint_limits,
     limit_excess,
 )
-from solvers.motion import Motion
-from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
-from solvers.samples import GaitSettings, walking_gait
+from solvers.rotations import angle_between
 
 LOST = slice(40, 56)
 
 
-@pytest.fixture(scope="module")
-def walk() -> Motion:
-    """Three seconds at 30 Hz, recorded with a jitter of 0.02 degrees."""
-    motion = walking_gait(GaitSettings(duration=3.0, frame_rate=30.0))
-    vectors = np.random.default_rng(3).normal(size=(*motion.rotations.shape[:2], 3))
-    noise = quaternion_from_rotation_vector(np.radians(0.02) * vectors)
-    return motion.with_poses(multiply(motion.rotations, noise))
-
-
-@pytest.fixture(scope="module")
-def arm(walk) -> list[int]:
-    return list(walk.skeleton.subtree(walk.skeleton.index("RightArm")))
-
-
-def hold(motion: Motion, frames: slice, joints: list[int]) -> Motion:
-    """Repeat the rotations before these frames."""
-    rotations = motion.rotations.copy()
-    rotations[frames, joints] = rotations[frames.start - 1, joints]
-    return motion.with_poses(rotations)
-
-
-def test_clean_moves_a_lost_arm_on(walk, arm):
+def test_clean_moves_a_lost_arm_on(walk, arm, hold):
     held = hold(walk, LOST, arm)
     result = denoise(held)
     assert result.held[LOST, arm[0]].all()
@@ -51,7 +27,7 @@ def test_clean_moves_a_lost_arm_on(walk, arm):
     assert result.confidence[LOST, arm[0]].min() < result.confidence[:30, arm[0]].min()
 
 
-def test_strength_blends_what_was_held(walk, arm):
+def test_strength_blends_what_was_held(walk, arm, hold):
     held = hold(walk, LOST, arm)
     full, half, none = (
         denoise(held, settings=DenoiseSettings(strength_arms=each)).recording
@@ -63,7 +39,7 @@ def test_strength_blends_what_was_held(walk, arm):
     np.testing.assert_allclose(steps, 0.5 * at_full, atol=np.radians(0.05))
 
 
-def test_published_method_takes_repeats_as_they_are(walk, arm):
+def test_published_method_takes_repeats_as_they_are(walk, arm, hold):
     settings = DenoiseSettings(method=DenoiseMethod.PUBLISHED)
     assert not denoise(hold(walk, LOST, arm), settings=settings).held.any()
 
