@@ -106,7 +106,7 @@ def test_millimeters_read_as_meters_are_refused_with_a_scale(call, walk, tmp_pat
 
 @pytest.mark.parametrize("verb", ["reconstruct", "fix"])
 def test_joints_of_a_camera_come_out_on_the_floor(call, walk, tmp_path, verb):
-    """Before, the result was in the space of the sensor, as much as 1.6 m below the floor."""
+    """In the space of the sensor the result is as much as 1.6 m below the floor."""
     lower = walk.tracks.with_positions(walk.tracks.positions - (0.0, 0.0, 1.1))
     write_joint_csv(walk.with_tracks(lower), tmp_path / "walk.csv")
 

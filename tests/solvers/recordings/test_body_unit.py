@@ -131,7 +131,7 @@ def test_no_unit_makes_a_man_of_an_ant(walk):
     ],
 )  # fmt: skip
 def test_the_nearest_unit_is_that_of_what_has_no_typical_size(size, unit):
-    """Before, a hand in meters was one of 2 mm, and 100 times a person 180 m tall."""
+    """A hand in meters is not one of 2 mm, nor 100 times a person 180 m tall."""
     assert estimate_unit(size, is_body=False).unit == unit
 
 

@@ -125,7 +125,7 @@ def test_pipes_are_skipped_and_deep_folders_are_searched(takes):
 
 @pytest.mark.parametrize("form", ["a_{}.json", "a_{:03}.json"])
 def test_numbers_with_and_without_zeros_are_two_takes(tmp_path, form):
-    """Before, frames of one of them replaced those of the other."""
+    """Frames of one of them do not replace those of the other."""
     joints = [[0.1 * k, 0.2 * k % 1.7, 0.3] for k in range(17)]
     frame = json.dumps([{"id": 1, "keypoints3d": joints}])
     for number in range(1, 9):

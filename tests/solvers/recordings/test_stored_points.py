@@ -61,7 +61,7 @@ def test_every_ui_prmd_take_stands_upright_with_left_on_the_left(recordings):
 
 
 def test_the_measured_floor_of_ui_prmd_is_kept(write):
-    """Before, the lowest joints of a take were put on the floor: it was moved by 3 to 7 cm."""
+    """Put on the lowest joints, the take moves by 3 to 7 cm."""
     kinect, markers = np.ones((40, 22, 3)), np.ones((40, 39, 3))
     kinect[..., 2] = np.linspace(0.3, 1.8, 22)
     path = write(npz(kinect=kinect, markers=markers, unit_m=1.0, frame_rate=30.0))

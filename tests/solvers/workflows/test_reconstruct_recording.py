@@ -55,7 +55,7 @@ def test_all_joints_are_filled_and_bone_lengths_are_constant(walk):
 
 @pytest.mark.parametrize("sensor", [Sensor.KINECT_V1, Sensor.KINECT_V2])
 def test_a_take_that_was_put_on_the_floor_stays_there(walk, sensor):
-    """Before, corrected feet were up to 8 cm below: trackers place ankles too high."""
+    """Otherwise corrected feet are up to 8 cm below: trackers place ankles too high."""
     no_floor = replace(walk.tracks, conventions=FileConventions(has_floor=False))
     placed = put_on_floor(replace(walk, sensor=sensor, tracks=no_floor))
     moved = placed.tracks.with_positions(placed.tracks.positions - (0.0, 0.0, 1.0))

@@ -112,7 +112,7 @@ def test_fast_bodies_make_no_jumps(recordings, step):
 
 
 def test_clean_and_plant_feet_put_the_body_elsewhere_as_it_is(walk, rng):
-    """Before, hips bent over by 50 cm at 120 Hz, and a foot was held where it stood before."""
+    """A fit across the jump bends the hips over by 50 cm at 120 Hz, and holds a foot behind."""
     vectors = np.radians(0.5) * rng.normal(size=(*walk.rotations.shape[:2], 3))
     noisy = walk.with_poses(multiply(walk.rotations, quaternion_from_rotation_vector(vectors)))
     frames, offset = slice(walk.n_frames // 2, None), (1.5, 0.5, 0.0)

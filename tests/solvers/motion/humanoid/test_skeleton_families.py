@@ -82,7 +82,7 @@ def test_numbers_after_a_sign_are_no_part_of_names():
 
 
 def test_the_joint_that_carries_the_legs_is_the_hips():
-    """Before, a name in no table left a body with helper joints without hips."""
+    """A name in no table does not leave a body with helper joints without hips."""
     joints = renamed(
         joints_of("Talking With Hands"), lambda name: {"b_root": "b_center"}.get(name, name)
     )

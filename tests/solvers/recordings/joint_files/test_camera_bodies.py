@@ -108,7 +108,6 @@ def test_a_joint_without_confidence_was_not_tracked(read_any):
 
 
 def test_a_second_person_in_world_landmarks_is_reported(read_any, collected_messages):
-    """Before, the report did not mention anybody else."""
     messages, progress = collected_messages
     content = json.loads(mediapipe_json(mediapipe()))
     for frame in content["frames"][:3]:

@@ -34,7 +34,7 @@ def table(names, walk):
 
 @pytest.mark.parametrize("names", [TRACKERS, LEG, LEG_BEHIND_ITS_SIDE])
 def test_a_few_joints_are_read_as_markers(read_any, walk, names):
-    """Before, they were refused as too few for a body."""
+    """They are not refused as too few for a body."""
     tracks = read_any(table(names, walk))
 
     assert tracks.names == tuple(names)
@@ -59,7 +59,7 @@ LIMBS = {
 
 @pytest.mark.parametrize("prefix", ["", "body_", "kp."])
 def test_limbs_without_a_head_stand(read_any, walk, prefix):
-    """Before, they lay on the floor: no joint above the hips showed which way is up."""
+    """No joint above the hips shows which way is up, but the feet do."""
     names = {f"{prefix}{side}_{part}": side + role
              for side in ("left", "right") for part, role in LIMBS.items()}  # fmt: skip
 

@@ -80,7 +80,6 @@ def by_column(records):
     ids=["columns", "records", "index", "split", "table", "lists", "frames"],
 )  # fmt: skip
 def test_the_orients_of_pandas_are_one_table(read_any, walk, records, orient):
-    """Before, each was of an unknown format, or a single frame."""
     assert_is(read_any(json.dumps(orient(records))), walk)
 
 
@@ -126,7 +125,7 @@ def as_index(records, keys, orient):
     ids=["epoch", "ms", "date", "frames"],
 )
 def test_the_index_of_rows_is_a_time_or_a_number(read_any, walk, records, orient, key, rate):
-    """Before, whole milliseconds were numbers of frames, and some orients had no index."""
+    """Milliseconds without fractions are no numbers of frames, in any orient."""
     content = as_index(records, map(key, range(F)), orient)
 
     assert_is(read_any(json.dumps(content)), walk, rate)
@@ -134,7 +133,7 @@ def test_the_index_of_rows_is_a_time_or_a_number(read_any, walk, records, orient
 
 @pytest.mark.parametrize("orient", ["columns", "index", "split"])
 def test_rows_are_in_the_order_of_their_index(read_any, walk, records, orient):
-    """Before, keys in the order of texts (0, 1, 10, 11) made the actor jump."""
+    """Keys in the order of texts (0, 1, 10, 11) would make the actor jump."""
     order = sorted(range(F), key=str)
     content = as_index([records[k] for k in order], map(str, order), orient)
 
@@ -148,7 +147,7 @@ def test_an_index_that_restarts_changes_nothing(read_any, walk, records):
 
 
 def test_columns_of_a_table_with_a_line_for_each_joint(read_any, walk):
-    """Before, it was of an unknown format: the first column fills the begin of the file."""
+    """The first column fills the begin of the file, by which formats are recognized."""
     rows = [(k, name, *p) for k, frame in enumerate(walk.tolist())
             for name, p in zip(NAMES, frame, strict=True)]  # fmt: skip
     columns = zip(("frame", "joint", *"xyz"), zip(*rows, strict=True), strict=True)
@@ -176,7 +175,7 @@ def test_columns_of_a_table_with_a_line_for_each_joint(read_any, walk):
 def test_other_arrays_next_to_names_are_no_positions(
     make_reader, collected_messages, walk, other, remark
 ):
-    """Before, the first array of a fitting size was taken, whatever its key."""
+    """Other arrays of a fitting size come first."""
     content = {"fps": RATE_HZ, "joint_names": NAMES, **other, "world_positions": walk.tolist()}
     text = json.dumps(content, sort_keys=True)
     messages, progress = collected_messages
@@ -234,7 +233,7 @@ def test_an_array_next_to_names_has_these(read_any, walk, key, shape):
     "unit", [{"unit": "cm"}, {"meta": {"units": "Centimeters"}}, {"length_unit": "cm"}]
 )
 def test_a_unit_next_to_names_counts(read_any, walk, unit):
-    """Before, such a giant was scaled to an adult."""
+    """Such a giant is not scaled to an adult."""
     value = {"fps": RATE_HZ, "joint_names": NAMES, **unit, "data": (500.0 * walk).tolist()}
 
     assert_is(read_any(json.dumps(value)), 5.0 * walk)
@@ -250,7 +249,7 @@ def test_a_unit_of_time_is_none_of_length(read_any, walk):
 @pytest.mark.parametrize("inner", ["skeleton", "meta"])
 @pytest.mark.parametrize("key", ["positions", "frames", "motion"])
 def test_names_may_be_next_to_the_rate_in_another_member(read_any, walk, inner, key):
-    """Before, 20 named joints were those of a Kinect by their number, or the format unknown."""
+    """20 named joints are not those of a Kinect because of their number."""
     value = {inner: {"fps": RATE_HZ, "joints": NAMES, "parents": [-1]}, key: walk.tolist()}
 
     assert_is(read_any(json.dumps(value)), walk)

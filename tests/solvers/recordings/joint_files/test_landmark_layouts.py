@@ -145,7 +145,7 @@ def test_two_people_by_their_order_in_a_list_can_be_chosen(make_writer):
     (X, -Y, -Z), (X, Z, -Y), (-X, -Z, -Y), (X, -Y, Z),
 ], ids=["y up", "z up", "z up, from behind", "y up, mirrored"])  # fmt: skip
 def test_landmarks_that_a_program_turned_stand_too(read_any, collected_messages, turned):
-    """Before, an actor with Y up came in on the head, without a word."""
+    """Otherwise an actor with Y up comes in on the head, without a word."""
     messages, progress = collected_messages
     frames = [{"landmarks": body.tolist()} for body in np.stack(turned, axis=-1)]
 

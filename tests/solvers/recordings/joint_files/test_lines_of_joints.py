@@ -61,7 +61,7 @@ def landmarks(moved=0.0):
 
 @pytest.mark.parametrize("title", ["person", "Player ID", "user_id", "who"])
 def test_landmarks_of_two_people_are_two_bodies(save, title):
-    """Before, a `person` next to landmarks was ignored, and the table refused."""
+    """A `person` next to landmarks is not ignored, nor the table refused."""
     rows = lines(landmarks(), "{frame},anna,{name},{x},{y},{z},0.9")
     rows += lines(landmarks(), "{frame},ben,{name},{x},{y},{z},0.5")
 
@@ -75,7 +75,7 @@ def test_landmarks_of_two_people_are_two_bodies(save, title):
 
 
 def test_landmarks_of_the_world_come_before_those_of_the_picture(save):
-    """Before, x, y and z were taken, and the table refused as one of a picture."""
+    """With x, y and z the table is refused as one of a picture."""
     rows = lines(landmarks(), "{frame},{name},0.5,0.5,-0.1,{x},{y},{z}")
 
     recording = read_recording(save("frame,landmark,x,y,z,world_x,world_y,world_z", rows))
@@ -101,7 +101,7 @@ def test_landmarks_without_depth_are_refused(save):
     ],
 )
 def test_columns_are_recognized_by_the_axes_at_the_end_of_their_titles(save, titles, form):
-    """Before, only listed titles were; a misspelled one made the format unknown."""
+    """Titles need not be listed; a misspelled one is read, too."""
     recording = read_recording(save(titles, lines(walk(), form)))
 
     assert isinstance(recording, JointRecording)
@@ -112,7 +112,7 @@ def test_columns_are_recognized_by_the_axes_at_the_end_of_their_titles(save, tit
 
 
 def test_versions_of_a_body_are_listed(save):
-    """Before, freemocap's raw and rigid joints were refused as one joint twice."""
+    """freemocap's raw and rigid joints are not one joint twice."""
     rows = lines(walk(), "{frame},{name},{x},{y},{z},body,3d_xyz")
     rows += lines(walk(), "{frame},{name},{x},{y},{z},body,rigid_3d_xyz")
 
@@ -145,7 +145,7 @@ def test_velocities_are_no_positions(save):
     ],
 )
 def test_positions_come_before_other_vectors_and_words(save, titles, form):
-    """Before, the first vector was the position, and a confidence in words was refused."""
+    """The first vector need not be the position, and a confidence may be in words."""
     recording = read_recording(save(titles, lines(walk(), form)))
 
     hips = recording.tracks.positions[:, recording.names.index("pelvis")]
@@ -163,7 +163,7 @@ def test_directions_alone_are_no_positions(save):
 
 @pytest.mark.parametrize("name", ["{at}", "\u00b2{at}"])
 def test_many_landmarks_are_not_those_of_a_pose(save, name):
-    """Before, the first 33 of a face were a pose, and a superscript ended in a traceback."""
+    """The first 33 of a face are no pose, and a superscript ends in no traceback."""
     face = {name.format(at=at): POINTS[:, at % 33, :3] for at in range(90)}
     rows = lines(face, "{frame},{name},{x},{y},{z}")
 
@@ -188,7 +188,7 @@ def test_many_landmarks_are_not_those_of_a_pose(save, name):
 def test_lines_of_joints_have_the_rate_of_the_table(
     save, collected_messages, titles, form, rate, step
 ):
-    """Before, a stated rate was ignored, and so were numbers in steps."""
+    """A stated rate counts, and so do numbers in steps."""
     messages, progress = collected_messages
     rows = lines(walk(), form.replace("{frame}", "{number}"), step)
 

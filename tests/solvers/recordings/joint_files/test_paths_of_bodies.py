@@ -32,7 +32,7 @@ def relative(walk):
 
 
 def check(recording, walk):
-    """Before, the actor stood in place with the hips at the origin."""
+    """The actor does not stand in place with the hips at the origin."""
     roles = roles_by_name(recording.names)
     found = recording.tracks.positions[:, [recording.names.index(roles[r]) for r in SMPL]]
     assert_allclose(found, walk @ AS_Y_UP, atol=1e-4)
@@ -55,7 +55,7 @@ def test_json_states_the_path_of_the_body(read_any, walk, relative, key, nest):
 @pytest.mark.parametrize("key", ["pred_cam_t", "cam_t_full", "transl", "root_translation"])
 @pytest.mark.parametrize("nest", ["frame", "member", "person", "joints", "listed", "names"])
 def test_named_joints_may_be_next_to_the_path_of_the_body(read_any, walk, relative, key, nest):
-    """Before, joints keyed by name stood in place."""
+    """Joints keyed by name do not stand in place."""
     points, path = relative.tolist(), walk[:, 0].tolist()
     named = [dict(zip(SMPL, frame, strict=True)) for frame in points]
     frames = [{key: where, **joints} for where, joints in zip(path, named, strict=True)]
@@ -75,7 +75,7 @@ def test_named_joints_may_be_next_to_the_path_of_the_body(read_any, walk, relati
 
 @pytest.mark.parametrize("key", ["pred_cam_t", "cam_t", "transl", "root_pos"])
 def test_columns_of_joints_may_be_next_to_the_path_of_the_body(read_any, walk, relative, key):
-    """Before, the `t` of `cam_t_x` was no part of the name."""
+    """The `t` of `cam_t_x` is a part of the name."""
     titles = [f"{name}_{axis}" for name in (*SMPL, key) for axis in "xyz"]
     rows = np.concatenate([relative.reshape(F, -1), walk[:, 0]], axis=1)
     lines = [",".join(f"{x:.5f}" for x in row) for row in rows]
@@ -112,7 +112,7 @@ def test_the_camera_of_a_cropped_picture_is_no_path(read_any, relative, walk, ne
 def test_a_path_away_from_the_camera_is_one_path(
     make_reader, collected_messages, walk, relative, nest
 ):
-    """Before, frames on both sides of 25 m were judged each by itself: a jump of 25 m."""
+    """Judged each by itself, frames on both sides of 25 m jump by 25 m."""
     path = walk[:, 0] + np.linspace((0.0, 0.0, 22.0), (0.0, 0.0, 29.0), F)
     points, stated = relative.tolist(), path.tolist()
     content = {
@@ -188,7 +188,7 @@ def test_joints_in_the_room_are_where_they_are(read_any, walk, in_place):
 
 
 def test_names_in_archives_come_before_the_order(read_any, walk):
-    """Before, joints in an order like UI-PRMD's were its joints, and the head was the neck."""
+    """Read in the order of UI-PRMD, the head is the neck."""
     file = io.BytesIO()
     order = [SMPL.index(role) for role in sorted(SMPL)]
     np.savez(file, positions=walk[:, order], names=np.array(sorted(SMPL)), fps=30)
@@ -198,7 +198,6 @@ def test_names_in_archives_come_before_the_order(read_any, walk):
 
 @pytest.mark.parametrize("key", ["joints", "pose3d"])
 def test_people_may_be_in_a_scene_and_points_in_a_member(read_any, walk, key):
-    """Before, there was no body in any frame."""
     frames = [
         {"scene": {"actors": [{"id": 1, key: {"joints": p.ravel().tolist()}}]}} for p in walk
     ]
@@ -211,7 +210,6 @@ def test_people_may_be_in_a_scene_and_points_in_a_member(read_any, walk, key):
     lambda name, p: {"name": name, "px": p[0], "py": p[1], "pz": p[2]},
 ])  # fmt: skip
 def test_segments_with_positions_are_joints(read_any, walk, point):
-    """Before, the file was of an unknown format."""
     frames = [
         {"segments": [point(name, p) for name, p in zip(SMPL, frame.tolist(), strict=True)]}
         for frame in walk
@@ -224,7 +222,6 @@ def test_segments_with_positions_are_joints(read_any, walk, point):
     "stated", [{"fps": "50"}, {"rate": 50}, {"metadata": {"frameRate": "50,0"}}]
 )
 def test_rates_may_be_texts(read_any, walk, stated):
-    """Before, 30 Hz were assumed."""
     content = {**stated, "frames": [{"joints3d": frame.tolist()} for frame in walk]}
 
     assert read_any(json.dumps(content)).frame_rate == 50.0

@@ -142,6 +142,6 @@ def test_landmarks_have_a_number_and_a_name(tmp_path):
 
 
 def test_landmarks_of_two_people_without_their_names_are_refused(tmp_path):
-    """Before, each frame held the person who was last."""
+    """No frame holds only the person who was last."""
     with pytest.raises(InvalidFileError, match="has joint NOSE of one person twice in frame 1"):
         read(tmp_path, "\n".join([TITLES, *landmark_lines(2)]))

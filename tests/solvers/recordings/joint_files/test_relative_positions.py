@@ -51,7 +51,7 @@ REFUSAL = "relative to the parent bones, from which no pose follows"
 
 @pytest.mark.parametrize("title", ["{role}_localPosition_{axis}", "{role}_{axis}"])
 def test_tables_of_positions_relative_to_the_parents_are_refused(read_any, local, title):
-    """Before, an actor of constant offsets came in without a word."""
+    """Otherwise an actor of constant offsets comes in without a word."""
     with pytest.raises(InvalidFileError, match=REFUSAL):
         read_any(table([title], local))
 
@@ -105,7 +105,7 @@ def test_joints_that_are_never_observed_are_no_offsets(walk):
 def test_frames_of_a_table_are_numbered_at_the_rate_of_its_comment(
     read_any, walk, step, stated, rate
 ):
-    """Before, each second frame alone played twice as fast. Numbers may be milliseconds."""
+    """Each second frame alone plays at its speed. Numbers may be milliseconds."""
     numbers = [str(7 + step * k) for k in range(F)]
     text = f"# fps: {stated}\n" + table(["{role}_{axis}"], walk, first="Frame #", times=numbers)
 
@@ -114,7 +114,7 @@ def test_frames_of_a_table_are_numbered_at_the_rate_of_its_comment(
 
 @pytest.mark.parametrize("comment", ["Frequency: 100", "# frame rate = 100"])
 def test_velocities_of_a_suit_are_left_out_and_its_frequency_is_read(read_any, walk, comment):
-    """Before, velocities were markers next to the joints of Axis Studio."""
+    """Velocities are no markers next to the joints of Axis Studio."""
     forms = ["{role}-Joint-Posi-{axis}", "{role}-Joint-Velo-{axis}"]
     lines = table(forms, walk, walk, first="note").splitlines()
     text = "\n".join([comment, *(line.partition(",")[2] for line in lines)])
@@ -126,7 +126,7 @@ def test_velocities_of_a_suit_are_left_out_and_its_frequency_is_read(read_any, w
 
 
 def test_people_may_end_the_names_of_their_joints(tmp_path, walk):
-    """Before, two people were the markers of one."""
+    """Two people are not the markers of one."""
     path = tmp_path / "take.csv"
     moved = {role: each + 1.0 for role, each in walk.items()}
     path.write_text(table(["{role}_p1_{axis}", "{role}_p2_{axis}"], walk, moved))
@@ -144,7 +144,7 @@ def test_several_markers_of_each_segment_are_no_people(read_any, walk):
 
 
 def test_of_both_ends_of_bones_the_heads_are_the_joints(read_any, walk):
-    """Before, heads and tails of Blender's bones were markers."""
+    """Heads and tails of Blender's bones are no markers."""
     forms = ["{role}_head_{axis}", "{role}_tail_{axis}"]
     tails = {role: each + np.array([0.0, 0.0, 0.1]) for role, each in walk.items()}
 
@@ -173,7 +173,7 @@ def test_numbers_at_the_end_of_some_names_are_no_people(read_any):
 
 @pytest.mark.parametrize("end", ["_{axis}_3d", "_{axis}3d", " {axis} 3D", "_{axis}_world"])
 def test_points_in_3d_come_before_those_in_the_picture(read_any, walk, end):
-    """Before, x and y were those of the picture, or the format unknown."""
+    """x and y are not those of the picture."""
     flat = {role: 900.0 * path for role, path in walk.items()}
 
     recording = read_any(table(["{role}_{axis}", "{role}" + end], flat, walk))
@@ -185,7 +185,7 @@ def test_points_in_3d_come_before_those_in_the_picture(read_any, walk, end):
 
 
 def test_keypoints_in_3d_next_to_the_picture_are_read(read_any, walk):
-    """Before, they were refused as landmarks of a picture."""
+    """They are no landmarks of a picture."""
     names = {
         f"{side}_{part}": walk[side + role]
         for side in ("left", "right")
@@ -206,7 +206,7 @@ def test_keypoints_in_3d_next_to_the_picture_are_read(read_any, walk):
 
 
 def test_letters_of_positions_are_no_part_of_names(read_any, walk):
-    """Before, `Hips.px` was the marker `Hips.p`."""
+    """`Hips.px` is not the marker `Hips.p`."""
     turns = {role: np.ones_like(path) for role, path in walk.items()}
 
     recording = read_any(table(["{role}.p{axis}", "{role}.q{axis}"], walk, turns))
@@ -215,7 +215,7 @@ def test_letters_of_positions_are_no_part_of_names(read_any, walk):
 
 
 def test_points_of_no_body_are_reported_as_markers(read_any, collected_messages):
-    """Before, the points of a dog were markers without a word."""
+    """Otherwise the points of a dog are markers without a word."""
     messages, progress = collected_messages
     rng = np.random.default_rng(2)
     names = [f"cloth_{n}" for n in range(24)]
@@ -229,7 +229,7 @@ def test_points_of_no_body_are_reported_as_markers(read_any, collected_messages)
 
 
 def test_the_bones_decide_on_joints_with_names_of_no_known_skeleton(read_any, walk):
-    """Before, the joints of a headset were markers."""
+    """The joints of a headset are no markers."""
     order = ["hips", "spine", "chest", "upperChest", "neck", "head"] + [
         side + part
         for parts in (("Shoulder", "UpperArm", "LowerArm", "Hand"),
@@ -245,7 +245,7 @@ def test_the_bones_decide_on_joints_with_names_of_no_known_skeleton(read_any, wa
 
 
 def test_the_foot_next_to_an_ankle_is_the_toes(read_any, walk):
-    """Before, the feet of a Kinect were left out."""
+    """The feet of a Kinect are not left out."""
     parts = {"Shoulder": "UpperArm", "Elbow": "LowerArm", "Wrist": "Hand", "Hip": "UpperLeg",
              "Knee": "LowerLeg", "Ankle": "Foot", "Foot": "Toes"}  # fmt: skip
     kinect = {

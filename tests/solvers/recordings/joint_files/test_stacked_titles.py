@@ -132,7 +132,7 @@ def test_several_people_are_read_one_by_one(tmp_path, walk):
 
 
 def test_people_in_the_titles_are_not_mixed(tmp_path, walk):
-    """Before, the arm of one person could be on the body of another."""
+    """The arm of one person is never on the body of another."""
     titles = [f"{who}:{name}_{axis}" for who in ("A", "B") for name in NAMES for axis in "xyz"]
     far = np.array([3.0, 0.0, 0.0])
     rows = [

@@ -25,7 +25,7 @@ def walk(walker):
     ("nanoseconds", 16_666_667.0),
 ])  # fmt: skip
 def test_times_of_any_clock_give_the_rate(read_any, collected_messages, walk, unit, step):
-    """Before, ticks of Windows were 0.006 frames per second, which was refused."""
+    """Read as seconds, ticks of Windows are 0.006 frames per second, which is refused."""
     messages, progress = collected_messages
     titles = [f"{name}_{axis}" for name in JOINTS for axis in "xyz"]
     rows = [",".join([str(step * k), *map(str, walk[k].flat)]) for k in range(F)]

@@ -68,7 +68,7 @@ def test_titles_name_the_axis_in_any_place(read_any, walk, title, axes):
 
 
 def test_the_right_side_is_no_rotation(read_any, walk):
-    """Before, `hand_r` counted as the rotation of something, and half the body was lost."""
+    """`hand_r` is not the rotation of a hand: otherwise half the body is lost."""
     assert_is(read_any(table(walk)), walk)
     turned = table(np.concatenate([walk, walk[:, :1]], axis=1), names=[*NAMES, "upperarm_l_r"])
     assert_is(read_any(turned), walk)
@@ -76,7 +76,7 @@ def test_the_right_side_is_no_rotation(read_any, walk):
 
 @pytest.mark.parametrize("side", ["l", "r", "L", "R"])
 def test_one_side_of_a_body_comes_in_as_markers(read_any, walk, collected_messages, side):
-    """Before, points of the right side only were refused as rotations."""
+    """Points of the right side only are not rotations."""
     parts = ("clavicle", "upperarm", "lowerarm", "hand", "thigh", "calf", "foot", "ball")
     names = [f"{part}_{side}" for part in parts]
 
@@ -96,7 +96,6 @@ def test_rotations_of_a_body_are_not_its_right_side(read_any, walk):
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_joints_may_have_names_of_other_languages(read_any, walk, language):
-    """Before, such joints came in as markers."""
     assert_is(read_any(table(walk, names=in_language(language))), walk)
 
 
@@ -184,7 +183,7 @@ def test_a_cell_that_is_no_vector_is_refused(read_any, walk, cell):
 @pytest.mark.parametrize("n_empty", [150, 2500])
 @pytest.mark.parametrize("late", [slice(0, 12), slice(0, 1)])
 def test_vectors_may_be_missing_in_many_frames_first(read_any, walk, n_empty, late):
-    """Before, a joint that came after 100 frames was left out, or the format unknown."""
+    """A joint that comes after 100 frames is not left out."""
     missing = np.zeros(len(NAMES), dtype=bool)
     missing[late] = True
     vector = "[{:.4f} {:.4f} {:.4f}]"
@@ -251,7 +250,7 @@ def test_lines_of_joints_may_have_units_and_comments(read_any, walk, titles):
 def test_an_actor_who_lies_all_the_time_is_no_clear_case(
     read_any, collected_messages, walk, axes, lies
 ):
-    """Before, an actor on the back, head along an axis of the file, was stood upright."""
+    """An actor on the back, head along an axis of the file, is not stood upright."""
     messages, progress = collected_messages
     body = walk
     if lies:
@@ -267,7 +266,7 @@ def test_an_actor_who_lies_all_the_time_is_no_clear_case(
 
 
 def test_a_title_without_an_end_is_detected_in_a_moment():
-    """Before, it took minutes."""
+    """A search that is not bounded takes minutes."""
     start = time.process_time()
 
     assert coordinate_of_title("_" * 60_000) is None

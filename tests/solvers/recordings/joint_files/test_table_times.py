@@ -51,7 +51,6 @@ def test_frames_without_times_are_kept(read_any, known):
 def test_numbers_of_frames_tell_which_are_there(
     make_reader, collected_messages, number, rate, n_frames
 ):
-    """Before, they counted only in files that state their rate."""
     messages, progress = collected_messages
     content = table({"frame": lambda k: str(number(k))})
 
@@ -68,7 +67,6 @@ def test_one_time_is_no_rate(read_any):
 
 @pytest.mark.parametrize("cell", ["{k}/50", "{ms} ms", "{ms}ms", "{s} s", "{s} sec", "{us} µs"])
 def test_times_may_have_units_or_be_fractions(read_any, cell):
-    """Before, the first was `not a number`, whatever the title."""
     for title in ("time", "Time (ms)"):
         recording = read_any(
             table({title: lambda k: cell.format(k=k, ms=20 * k, s=k / RATE_HZ, us=20000 * k)})
@@ -79,7 +77,7 @@ def test_times_may_have_units_or_be_fractions(read_any, cell):
 
 @pytest.mark.parametrize(("unit", "time"), [("ft", "s"), ("mm", ""), ("(cm)", "(ms)")])
 def test_a_line_of_units_below_the_titles_is_read(read_any, unit, time):
-    """Before, its words were no numbers, and the file `damaged`."""
+    """Its words do not make the file `damaged`."""
     second = 1000.0 if "m" in time else 1.0
     stamps = {"time": lambda k: f"{second * k / RATE_HZ:.4f}"}
     titles, _, rows = table(stamps).partition("\n")
@@ -145,7 +143,7 @@ def test_times_of_day_continue_after_midnight(read_any):
 
 @pytest.mark.parametrize("by_marker", [False, True])
 def test_lines_of_markers_continue_after_midnight(read_any, by_marker):
-    """Before, frames of the new day came first, and they were refused for a gap of a day."""
+    """Sorted by time of day, the new day comes first, and the gap of a day is refused."""
     lines = [(k, number) for k in range(F) for number in range(len(NAMES))]
     if by_marker:
         lines.sort(key=lambda line: line[1])

@@ -118,7 +118,7 @@ def test_points_in_another_order_are_no_body(tmp_path, walker):
 
 @pytest.mark.parametrize("layout", ["Human3.6M", "Human3.6M without neck"])
 def test_legs_and_arms_with_other_orders_of_the_sides_are_no_body(tmp_path, walker, layout):
-    """Before, such legs came in crossed."""
+    """Otherwise such legs come in crossed."""
     points = ordered(walker, layout)
     points[:, 1:7] = points[:, [4, 5, 6, 1, 2, 3]]
 
@@ -161,7 +161,7 @@ def test_an_archive_of_joints_is_read(tmp_path, walker):
     ],
 )
 def test_an_archive_states_its_rate(tmp_path, walker, stated, rate):
-    """Before, joints at 60 Hz were read as 30 Hz."""
+    """Joints at 60 Hz are not read as 30 Hz."""
     said = []
     np.savez(tmp_path / "joints.npz", reconstruction=ordered(walker, "COCO"), **stated)
 

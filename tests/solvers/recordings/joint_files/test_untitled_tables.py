@@ -29,7 +29,7 @@ def body(walker):
 @pytest.mark.parametrize("above", [[], ["time"], ["frame", "time"]])
 @pytest.mark.parametrize("confidence", [False, True])
 def test_numbers_of_a_known_order_need_no_titles(read_any, body, above, confidence):
-    """Before, they were refused for the lack of titles."""
+    """They are not refused for the lack of titles."""
     if confidence:
         body = np.concatenate([body, np.ones((*body.shape[:2], 1))], axis=-1)
     stamps = {"frame": str, "time": lambda k: str(k / RATE_HZ)}
@@ -49,7 +49,7 @@ def test_numbers_of_a_known_order_need_no_titles(read_any, body, above, confiden
 
 @pytest.mark.parametrize("above", [[], ["time"], ["frame", "time"]])
 def test_the_values_of_pandas_in_json_are_such_a_table(read_any, body, above):
-    """Before, times among the values were taken for those of a joint, and refused."""
+    """Times among the values are not those of a joint."""
     stamps = {"frame": lambda k: k, "time": lambda k: k / RATE_HZ}
     rows = [
         [*(stamps[each](k) for each in above), *frame.ravel().tolist()]
@@ -83,7 +83,7 @@ def test_numbers_of_frames_are_no_seconds(read_any, body):
 
 @pytest.mark.parametrize(("step", "rate"), [(1, 20.0), (2, 15.0), (5, 6.0), (20, 50.0)])
 def test_small_steps_are_those_of_frames(read_any, body, step, rate):
-    """Before, numbers two apart were milliseconds, 500 Hz. SMPL has 20 Hz by default."""
+    """Numbers two apart are not milliseconds, 500 Hz. SMPL has 20 Hz by default."""
     lines = [
         f"{step * k} " + " ".join(f"{x:.5f}" for x in frame.flat)
         for k, frame in enumerate(body)

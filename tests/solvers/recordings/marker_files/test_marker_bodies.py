@@ -104,7 +104,7 @@ SQUAT = MARKERS | {
 @pytest.mark.parametrize("unit", [0.001, 0.01, 1.0])
 @pytest.mark.parametrize("size", [1.0, 0.8, 0.6, 0.45])
 def test_who_squats_keeps_the_unit(unit, size):
-    """Before, such adults in millimeters were ten times too large, and children inches."""
+    """In centimeters such adults are ten times too large; children are not in inches."""
     points = np.repeat(size / unit * np.array([*SQUAT.values()])[None], 3, axis=0)
 
     assert guess_unit_of_points(points, [*SQUAT], unwatched) == unit

@@ -201,7 +201,7 @@ def test_the_unit_is_the_header_s_or_gives_a_person_s_size(read, unit, meters):
 
 @pytest.mark.parametrize("meters", [0.3048, 0.0254, 0.01, 0.001])
 def test_the_height_of_named_markers_shows_a_unit_that_is_not_stated(tmp_path, rng, meters):
-    """Before, feet were read as meters and inches as centimeters."""
+    """Feet are not read as meters, nor inches as centimeters."""
     names = ("LFHD", "RFHD", "C7", "LANK", "RANK", "LHEE", "RHEE", "LASI")
     heights = np.array([1.66, 1.66, 1.5, 0.08, 0.08, 0.04, 0.04, 1.0])
     points = rng.uniform(-0.2, 0.2, size=(5, 8, 3))

@@ -85,7 +85,7 @@ def test_bones_become_joints_where_they_start(read):
 
 @pytest.mark.parametrize("length", [1, 10, 1000])
 def test_a_prop_has_its_stated_size(read, length):
-    """Before, one of 8 cm became as tall as a man."""
+    """One of 8 cm does not become as tall as a man."""
     arm = read(skeleton=SKELETON.replace("length 10\n", f"length {length}\n"))
 
     assert_allclose(arm.skeleton.rest_positions[2, 0], length * UNIT)

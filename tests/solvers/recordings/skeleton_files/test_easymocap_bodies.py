@@ -19,7 +19,7 @@ def save(path, **arrays):
 
 @pytest.mark.parametrize("n_numbers", [69, 72, 78, 87])
 def test_the_global_turn_and_travel_of_easymocap_are_read(tmp_path, n_numbers):
-    """Before, they were ignored: the body stayed in place and did not turn."""
+    """Ignored, they leave the body in place without a turn."""
     vectors = np.zeros((F, n_numbers))
     angles = np.linspace(0.0, 1.5, F)
     travel = np.linspace([0.0, 0.9, 0.0], [2.0, 0.9, 1.0], F)
@@ -59,7 +59,7 @@ def test_a_turn_without_one_for_each_pose_is_refused(tmp_path):
 
 
 def test_the_size_of_the_body_is_that_of_the_model_times_its_scale(tmp_path):
-    """Before, a child of EasyMocap came in as tall as an adult."""
+    """A child of EasyMocap does not come in as tall as an adult."""
     arrays = {"poses": np.zeros((F, 72)), "Th": np.zeros((F, 3))}
     adult = read_recording(save(tmp_path / "adult.npz", **arrays))
     child = read_recording(save(tmp_path / "child.npz", **arrays, scale=np.full((1, 1), 0.6)))
@@ -92,7 +92,6 @@ def test_fingers_as_components_are_reported_and_left_out(tmp_path, collected_mes
 
 
 def test_the_position_in_the_camera_of_romp_is_read(tmp_path, collected_messages):
-    """Before, the body stayed in place."""
     messages, progress = collected_messages
     path = save(
         tmp_path / "romp.npz", global_orient=np.tile([np.pi, 0.0, 0.0], (F, 1)),
@@ -115,7 +114,7 @@ def test_the_position_in_the_camera_of_romp_is_read(tmp_path, collected_messages
 def test_the_camera_of_a_cropped_picture_is_no_path(
     tmp_path, collected_messages, name, depth, moved
 ):
-    """Before, an actor whose size in the picture changed by a tenth ran 4 m."""
+    """Otherwise an actor whose size in the picture changes by a tenth runs 4 m."""
     messages, progress = collected_messages
     path = save(
         tmp_path / "hmr.npz", global_orient=np.tile([np.pi, 0.0, 0.0], (F, 1)),
@@ -131,7 +130,7 @@ def test_the_camera_of_a_cropped_picture_is_no_path(
 
 
 def test_the_names_and_the_pose_of_meshcapade_are_read(tmp_path):
-    """Before, its .smpl was a NumPy archive without joints of a known name."""
+    """Its .smpl is not a NumPy archive without joints of a known name."""
     path = save(
         tmp_path / "take.smpl.npz", codecVersion=2, smplVersion=1, gender=0, frameCount=F,
         frameRate=25.0, shapeParameters=np.zeros(10), headPose=np.zeros((F, 3, 3)),
@@ -147,7 +146,7 @@ def test_the_names_and_the_pose_of_meshcapade_are_read(tmp_path):
 
 
 def test_a_scale_of_another_program_does_not_change_the_size(tmp_path):
-    """Before, the size of a box around the actor in the picture made a giant of 400 m."""
+    """The size of a box around the actor in the picture would make a giant of 400 m."""
     arrays = {"poses": np.zeros((F, 72)), "trans": np.zeros((F, 3))}
 
     plain = read_recording(save(tmp_path / "plain.npz", **arrays))
@@ -158,7 +157,7 @@ def test_a_scale_of_another_program_does_not_change_the_size(tmp_path):
 
 @pytest.mark.parametrize("scale", [np.nan, -1.0, 1e9])
 def test_a_scale_of_no_body_is_refused(tmp_path, scale):
-    """Before, a body of 1.7 million kilometers was read."""
+    """No body of 1.7 million kilometers is read."""
     arrays = {"poses": np.zeros((F, 72)), "Th": np.zeros((F, 3))}
 
     with pytest.raises(InvalidFileError, match="times the size of the model"):

@@ -29,7 +29,6 @@ def travel_of(motion):
 
 @pytest.mark.parametrize("n_numbers", [69, 72, 78, 87])
 def test_a_file_for_each_frame_is_one_take(tmp_path, n_numbers):
-    """Before, it was refused as points without names."""
     for frame in range(F):
         people = [person(frame, 7, n_numbers)] + [person(frame, 9, n_numbers)] * (frame > 3)
         (tmp_path / f"{frame:06}.json").write_text(json.dumps(people))
@@ -86,7 +85,7 @@ def test_a_changing_number_of_parameters_is_refused(make_reader):
 
 
 def test_points_of_a_body_in_long_rows_are_no_rotations(make_reader):
-    """Before, 33 landmarks in a row were refused as numbers that no SMPL body has."""
+    """99 numbers in a row are 33 landmarks, not the parameters of an SMPL body."""
     rows = mediapipe(F)[..., :3].reshape(F, 99).round(4)
 
     recording = make_reader("take.json")(json.dumps({"fps": 25, "poses": rows.tolist()}))
@@ -106,7 +105,7 @@ def test_poses_alone_are_read_however_many_digits_they_have(make_reader, rng, n_
 @pytest.mark.parametrize("absent", [{"trans": None}, {}, {"trans": 5.0}])
 @pytest.mark.parametrize("frame", [0, 5])
 def test_a_position_may_be_missing_in_a_frame(make_reader, absent, frame):
-    """Before, null ended in a traceback, and all positions were those of the first frame."""
+    """null ends in no traceback, and positions are not all those of the first frame."""
     frames = [
         {"poses": [0.0] * 72, "betas": [0.0] * 10}
         | (absent if number == frame else {"trans": each.tolist()})
@@ -126,7 +125,7 @@ def test_a_number_called_pose_is_none(make_reader):
 
 
 def test_frames_are_in_the_order_of_their_numbers(make_reader):
-    """Before, frames in another order were read as they came, and lost ones left out."""
+    """Frames in another order are sorted, and missing ones are gaps."""
     frames = [
         {"frame": number, "poses": [0.0] * 72, "betas": [0.0], "trans": each.tolist()}
         for number, each in enumerate(TRAVEL)
@@ -152,7 +151,7 @@ def test_numbers_in_steps_or_without_sense_leave_no_gaps(make_reader, numbers):
 
 @pytest.mark.parametrize(("step", "rate"), [(1, 25.0), (2, 12.5), (40, 25.0)])
 def test_numbers_in_steps_are_of_the_video_or_milliseconds(make_reader, step, rate):
-    """Before, a take of which each second frame was saved played twice as fast."""
+    """A take of which each second frame was saved plays at its speed."""
     frames = [
         {"frame": step * number, "poses": [0.0] * 72, "betas": [0.0], "trans": each.tolist()}
         for number, each in enumerate(TRAVEL)

@@ -43,7 +43,7 @@ def check(motion):
 @pytest.mark.parametrize("key", ["{}", "{:06d}", "frame_{}"])
 @pytest.mark.parametrize("outer", [None, "frames"])
 def test_frames_may_be_keyed_by_their_numbers(read_any, key, outer):
-    """Before, they were refused as the pose of one frame."""
+    """They are not the pose of one frame."""
     keyed = {key.format(number): frame(number) for number in range(F)}
 
     check(read_any(json.dumps({outer: keyed} if outer else keyed)))
@@ -60,7 +60,6 @@ def test_keyed_frames_may_hold_people_and_leave_frames_out(make_writer):
 @pytest.mark.parametrize("n_numbers", [66, 72, 156, 165])
 @pytest.mark.parametrize("stated", [True, False])
 def test_all_frames_may_be_in_one_row(read_any, n_numbers, stated):
-    """Before, the row was taken for one frame."""
     positions = TRAVEL.ravel() if stated else TRAVEL
     content = {"poses": poses(n_numbers).ravel().tolist(), "trans": positions.tolist()}
 
@@ -76,7 +75,7 @@ def test_rows_without_positions_are_split_where_poses_change_least(rng):
 @pytest.mark.parametrize("n_frames", [1, F])
 @pytest.mark.parametrize("stated", [True, False])
 def test_a_row_may_hold_matrices(n_frames, stated):
-    """Before, the matrices of one frame were read as the vectors of three."""
+    """The matrices of one frame are not the vectors of three."""
     vectors = poses(72)[:n_frames]
     matrices = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
     arrays = {"poses": matrices.reshape(-1)}
@@ -113,7 +112,6 @@ def test_names_may_have_capitals(read_any, names, is_archive):
 
 
 def test_names_of_joints_in_archives_may_have_capitals(read_any):
-    """Before, the file was recognized and then refused."""
     file = io.BytesIO()
     np.savez(file, Keypoints3D=np.zeros((F, 17, 2)))
 

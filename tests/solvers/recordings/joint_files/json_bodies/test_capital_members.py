@@ -37,7 +37,7 @@ def two():
 
 
 def test_people_keep_their_identity_where_their_order_changes(tmp_path, two):
-    """Before, each of them jumped to the other's place and back."""
+    """None of them jumps to the other's place and back."""
     frames = [
         {"Bodies": [
             {"TrackingId": 7201 + who, "Joints": two(who, k)}
@@ -78,7 +78,7 @@ def test_people_by_name_are_found(tmp_path, two):
 
 
 def test_frames_with_the_position_of_the_camera_are_no_joints(tmp_path, two):
-    """Before, the frames were taken for places of a joint, and the folder was read instead."""
+    """Frames are no positions of a joint, and the folder is not read instead."""
     position = {"X": 0.0, "Y": 0.0, "Z": 0.0}
     frames = [{"Joints": two(0, k), "Position": position} for k in range(F)]
     write(tmp_path, {"Frames": frames}, "take_2.json")

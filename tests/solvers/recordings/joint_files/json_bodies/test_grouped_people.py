@@ -38,7 +38,7 @@ def arrays(frames):
 
 
 def test_people_of_the_same_name_in_two_groups_are_all_listed(tmp_path, frames):
-    """Before, those of the second group took the places of the first."""
+    """Those of the second group do not take the places of the first."""
     group = {"1": {"frames": frames}, "2": {"frames": frames}}
     path = write(tmp_path, {"team1": group, "team2": group})
 
@@ -86,7 +86,7 @@ RATES = {
 
 @pytest.mark.parametrize("layout", RATES)
 def test_the_rate_next_to_frames_is_that_of_the_take(tmp_path, frames, layout):
-    """Before, it was left out, and the take had half its speed."""
+    """It counts as a frame: otherwise the take has half its speed."""
     path = write(tmp_path, RATES[layout](frames))
     bodies = list_bodies(path)
 
@@ -116,7 +116,7 @@ def test_start_frames_say_when_each_person_is_seen(tmp_path, frames):
 
 
 def test_numbers_of_frames_that_repeat_do_not_count(tmp_path, frames):
-    """Before, frames with the same number were dropped without a word."""
+    """Frames with the same number are not dropped without a word."""
     content = {"anna": {"frame_ids": [k // 2 for k in range(F)], "frames": frames}}
 
     assert read_recording(write(tmp_path, content)).tracks.n_frames == F

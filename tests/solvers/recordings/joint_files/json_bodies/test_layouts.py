@@ -265,7 +265,7 @@ def test_frame_with_a_place_of_its_own_is_no_joint(tmp_path, walk):
     },
 ])  # fmt: skip
 def test_numbers_in_a_frame_are_those_of_people(tmp_path, walk, wrap, inside):
-    """Before, two people could be one who jumps."""
+    """Two people are never one who jumps."""
     frames = [{who: inside(named(walk, k)) for who in ("1", "2")} for k in range(F)]
 
     bodies = list_bodies(write(tmp_path / "take.json", wrap(frames)))

@@ -100,7 +100,7 @@ LAYOUTS = {
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_people_are_listed_with_all_their_frames(tmp_path, two, layout):
-    """Before, one was left out without a word, or jumped to the other's place."""
+    """None is left out without a word, or jumps to the other's place."""
     path = write(tmp_path, LAYOUTS[layout](two))
 
     bodies = list_bodies(path)
@@ -166,7 +166,7 @@ def test_frames_that_all_state_one_number_stay_in_their_order(tmp_path, two):
     lambda two: {"frames": [{"people": [with_identity(two, 0), with_identity(two, 1)]}]},
 ])  # fmt: skip
 def test_people_in_one_frame_are_no_take(tmp_path, two, content):
-    """Before, two people by name were one who jumps from place to place."""
+    """Two people by name are not one who jumps from place to place."""
     with pytest.raises(InvalidFileError, match="holds the joints of one frame"):
         read_recording(write(tmp_path, content(two)))
 
@@ -181,7 +181,7 @@ def test_pictures_by_name_are_frames(tmp_path, two):
     "key", ["cam{c}/{k:06}.jpg", "{c}_frame_{k:04}.png", "view {c} {k}.jpg"]
 )
 def test_pictures_of_several_cameras_are_takes_to_choose_from(tmp_path, two, key):
-    """Before, the frames of the last camera replaced those of the others."""
+    """The frames of the last camera do not replace those of the others."""
     path = write(
         tmp_path, {key.format(c=c, k=k): two(c == "B", k) for c in "AB" for k in range(F)}
     )
@@ -203,7 +203,7 @@ def test_pictures_of_several_cameras_are_takes_to_choose_from(tmp_path, two, key
     ],
 )
 def test_numbered_cameras_are_takes_to_choose_from(tmp_path, two, key, names):
-    """Before, one body alternated between the cameras, or frames replaced each other."""
+    """No body alternates between the cameras, and no frame replaces another."""
     path = write(tmp_path, {key.format(c=c, k=k): two(c, k) for k in range(F) for c in (0, 1)})
 
     bodies = list_bodies(path)
@@ -234,7 +234,7 @@ def write(folder, content):
     lambda anna, ben: [{"anna": a, "ben": b} for a, b in zip(anna, ben, strict=True)],
 ])  # fmt: skip
 def test_people_may_have_joints_of_other_names(tmp_path, two, nest):
-    """Before, each had the names of both, so the second was refused as no body."""
+    """With the names of both, each would be no body."""
     path = tmp_path / "two.json"
     ben = [
         {NAMES_OF_UNREAL[name]: place for name, place in two(1, k).items()} for k in range(F)

@@ -57,7 +57,7 @@ def two(joints, frame):
 
 
 def test_rows_with_rounded_times_are_of_one_person(tmp_path, joints):
-    """Before, a second person was seen in every fifth of them."""
+    """There is no second person in every fifth of them."""
     content = rows(joints, "time", [round(k / 120, 2) for k in range(240)])
 
     assert list(people_in(write(tmp_path, content))) == [""]
@@ -104,7 +104,7 @@ def test_people_whose_numbers_restart_are_joined_by_their_place(tmp_path, joints
 
 @pytest.mark.parametrize("keyed", [True, False])
 def test_rounded_numbers_have_no_gaps(tmp_path, joints, keyed):
-    """Before, 29 frames without a body were between those of 24 of 60 frames per second."""
+    """Otherwise 29 frames without a body are between those of 24 of 60 frames per second."""
     numbers = [int(2.5 * k) for k in range(F)]
     content = {str(number): joints(k) for k, number in enumerate(numbers)}
 
@@ -171,7 +171,7 @@ def of_openpose(joints, frame):
     lambda joints, k: [points(joints, k), points(joints, k, 2.0)],
 ])  # fmt: skip
 def test_files_with_two_people_each_are_frames(tmp_path, joints, content):
-    """Before, the first file was a take of two frames, whose body jumps."""
+    """The first file alone would be a take of two frames, whose body jumps."""
     for k in range(F):
         path = write(tmp_path, content(joints, k), f"{k:04}_keypoints.json")
 

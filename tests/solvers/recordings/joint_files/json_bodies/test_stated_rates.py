@@ -32,7 +32,7 @@ FRAMES = [frame(k) for k in range(N)]
     ],
 )
 def test_the_rate_of_frames_comes_first(read_any, collected_messages, others):
-    """Before, the first rate of a file was that of its frames."""
+    """The first rate of a file need not be that of its frames."""
     messages, progress = collected_messages
 
     recording = read_any(json.dumps({**others, "frames": FRAMES}), progress=progress)
@@ -48,7 +48,7 @@ def test_a_rate_of_sound_is_not_one_of_frames(read_any):
 
 
 def test_numbers_in_steps_do_not_matter_to_frames_with_times(read_any, collected_messages):
-    """Before, a remark stated a rate that was not the one of the take."""
+    """The remark states the rate of the take."""
     messages, progress = collected_messages
     frames = [frame(k, frame=2 * k, time=k / 25.0) for k in range(N)]
 
@@ -82,7 +82,6 @@ def test_the_time_of_one_frame_does_not_stand_still():
 def test_frames_in_steps_have_a_part_of_the_rate(
     read_any, collected_messages, layout, stated, rate, step
 ):
-    """Before, they counted in lists of files that state the rate only."""
     messages, progress = collected_messages
     take = layout([frame(k, frame=step * k) for k in range(N)])
     if stated:
@@ -102,7 +101,7 @@ def test_frames_in_steps_have_a_part_of_the_rate(
 )
 @pytest.mark.parametrize("is_keyed", [False, True])
 def test_numbers_that_are_times_do_not_divide_the_rate(read_any, step, stated, rate, is_keyed):
-    """Before, 16 ms at 60 Hz became 3.75 Hz, and microseconds were refused."""
+    """Rounded to 16 ms, 60 Hz must not become 3.75 Hz; microseconds are times."""
     frames = [frame(k, frame=step * k) for k in range(N)]
     keyed = {str(each["frame"]): each["landmarks"] for each in frames}
     take = {"frames": keyed if is_keyed else frames} | ({"fps": stated} if stated else {})

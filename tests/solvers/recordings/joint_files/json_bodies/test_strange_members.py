@@ -42,7 +42,7 @@ def joints(walk, k, origin=0.0, wrap=list):
 
 
 def test_points_in_the_world_come_before_those_in_the_picture(read_any):
-    """Before, the recording of a web page was refused as one of a picture."""
+    """Such a recording of a web page is none of a picture."""
     frames = [{"keypoints": picture(k), "worldKeypoints": landmarks(k)} for k in range(N)]
 
     recording = read_any(json.dumps({"id": "a", "frames": frames}))
@@ -53,7 +53,6 @@ def test_points_in_the_world_come_before_those_in_the_picture(read_any):
 
 @pytest.mark.parametrize("key", ["lm", "poseData"])
 def test_landmarks_may_have_any_key(read_any, key):
-    """Before, the format was unknown."""
     frames = [{"t": 40 * k, key: landmarks(k, visibility=0.9)} for k in range(N)]
 
     recording = read_any(json.dumps({"videoId": "a", "frames": frames}))
@@ -82,7 +81,6 @@ def test_bones_of_a_game_engine_may_have_any_key(read_any, walk):
 
 @pytest.mark.parametrize("header", ["metadata", "video_info"])
 def test_the_rate_may_stand_in_a_header(read_any, header):
-    """Before, 30 Hz were assumed."""
     frames = [{"landmarks": landmarks(k)} for k in range(N)]
 
     assert read_any(json.dumps({header: {"fps": 60}, "frames": frames})).frame_rate == 60.0
@@ -91,7 +89,7 @@ def test_the_rate_may_stand_in_a_header(read_any, header):
 def test_frames_that_are_numbered_in_steps_have_a_part_of_the_rate(
     read_any, collected_messages
 ):
-    """Before, a take of which each second frame was saved played twice as fast."""
+    """A take of which each second frame was saved plays at its speed."""
     messages, progress = collected_messages
     frames = [{"frame_index": 2 * k, "landmarks": landmarks(k)} for k in range(N)]
 
@@ -112,7 +110,6 @@ def test_numbers_that_are_milliseconds_leave_the_rate(read_any):
 def test_times_that_stand_still_are_reported_and_not_used(
     read_any, collected_messages, stated, rate, time
 ):
-    """Before, the file was refused, also with a rate."""
     messages, progress = collected_messages
     frames = [{**time, "landmarks": landmarks(k)} for k in range(N)]
 
@@ -123,7 +120,7 @@ def test_times_that_stand_still_are_reported_and_not_used(
 
 
 def test_positions_relative_to_the_hips_are_reported(read_any, collected_messages, walk):
-    """Before, the actor of a phone walked in place without a word."""
+    """Otherwise the actor of a phone walks in place without a word."""
     messages, progress = collected_messages
     frames = [{"joints": joints(walk, k, origin=walk["hips"][k])} for k in range(N)]
 
@@ -145,7 +142,7 @@ def test_who_travels_or_stands_still_is_not_reported(
 
 
 def test_the_joints_of_sam_3d_body_are_recognized(walk):
-    """Before, its 70 points were refused, and became markers in an archive."""
+    """Its 70 points are neither refused nor markers of an archive."""
     points = moving(N, 70)[..., :3].copy()
     columns = {5: "leftUpperArm", 6: "rightUpperArm", 7: "leftLowerArm", 8: "rightLowerArm",
                62: "leftHand", 41: "rightHand", 9: "leftUpperLeg", 10: "rightUpperLeg",
@@ -195,7 +192,7 @@ def test_hips_at_the_origin_may_turn(read_any, collected_messages, walk):
 @pytest.mark.parametrize("key", ["v", "p", "value", "location"])
 @pytest.mark.parametrize("wrap", [dict, lambda row: {"position": row}])
 def test_numbers_next_to_coordinates_are_no_positions(read_any, key, wrap):
-    """Before, `v` for visibility or `p` for probability took the place of the coordinates."""
+    """`v` for visibility or `p` for probability are no coordinates."""
     frames = [{"landmarks": [*map(wrap, landmarks(k, **{key: 0.9}))]} for k in range(N)]
 
     recording = read_any(json.dumps({"fps": 30, "frames": frames}))
@@ -213,7 +210,7 @@ def test_points_of_a_face_do_not_hide_those_of_the_body(read_any):
 
 
 def test_many_coordinates_without_an_end_are_detected_in_a_moment():
-    """Before, a file of some kilobytes took 10 seconds."""
+    """A search that is not bounded takes 10 seconds for some kilobytes."""
     start = time.process_time()
 
     assert not is_frames_json(b"{" + 4096 * b'"x":1,"y":1,')

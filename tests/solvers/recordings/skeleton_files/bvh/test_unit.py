@@ -84,7 +84,7 @@ def test_units_of_no_program_give_an_adult_and_are_reported(read, scale, collect
 
 
 def test_feet_are_recognized_and_reported(read, collected_messages):
-    """Before, they were read as meters: a body of 5.6 m, without a word in scripts."""
+    """Read as meters, the body is 5.6 m tall."""
     messages, collect = collected_messages
 
     motion = read(bvh_text(hierarchy(1 / 30.48)), progress=collect)
@@ -160,7 +160,7 @@ def test_cut_files_and_unusual_rates_are_reported(read, collected_messages):
     ],
 )  # fmt: skip
 def test_a_frame_time_may_have_a_unit_or_be_a_fraction(read, time, rate):
-    """Before, 30 Hz were assumed, as without one."""
+    """30 Hz are assumed only without one."""
     head, row = bvh_text(hierarchy(1)).split("0.01\n")
 
     assert read(f"{head}{time}\n{row * 3}").frame_rate == pytest.approx(rate, rel=1e-4)
@@ -171,7 +171,6 @@ def test_a_frame_time_may_have_a_unit_or_be_a_fraction(read, time, rate):
 )
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
 def test_lines_above_the_hierarchy_are_comments(read_any, above, encoding):
-    """Before, the format was unknown."""
     motion = read_any((above + bvh_text(hierarchy(1))).encode(encoding))
 
     assert motion.n_joints == 22
@@ -188,7 +187,7 @@ def test_lines_above_the_hierarchy_are_comments(read_any, above, encoding):
 def test_a_rate_or_milliseconds_in_place_of_the_frame_time(
     read, collected_messages, time, rate
 ):
-    """Before, the take played at a thirtieth of a frame per second."""
+    """Otherwise the take plays at a thirtieth of a frame per second."""
     messages, collect = collected_messages
     head, row = bvh_text(hierarchy(1)).split("0.01\n")
 

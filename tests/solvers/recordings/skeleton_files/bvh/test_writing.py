@@ -38,7 +38,7 @@ def test_end_sites_are_written_only_if_they_survive_reading(leg, tmp_path):
 
 @pytest.mark.parametrize("height", [-1.2, -0.9, 0.0, 0.4, 0.9, 3.0])
 def test_a_take_that_is_not_on_the_floor_keeps_its_place(swinging_leg, tmp_path, height):
-    """Before, the rest height was added to hips near 0, as of takes of video models."""
+    """The rest height is not added to hips near 0, as of takes of video models."""
     offsets = swinging_leg.skeleton.offsets.copy()
     offsets[0] = [0.1, -0.2, 0.95]
     skeleton = replace(swinging_leg.skeleton, offsets=offsets)
