@@ -19,7 +19,7 @@ from .body_tables import (
 )
 from .initial_poses import bone_frames
 from .joint_centers import JointCenters
-from .vectors import median
+from .vectors import median_or_zero
 
 TOES_END_M, HAND_END_M, HEAD_END_M = 0.06, 0.17, 0.17
 """Distances from the last joint to the end site in an adult body, by definition: end sites show
@@ -128,8 +128,8 @@ def _offset(joint: JointPrior, centers: JointCenters, frames: Mapping[str, Array
             "chest" if part == "UpperArm" else joint.parent
         )  # relative to the thorax, as the collar bone rests
         local = np.einsum("fji,fj->fi", frames[parent], stop - start)
-        return median(local)  # for toes: the mean of their markers
-    length = float(median(np.linalg.norm(stop - start, axis=-1)[:, None])[0])
+        return median_or_zero(local)  # for toes: the mean of their markers
+    length = float(median_or_zero(np.linalg.norm(stop - start, axis=-1)[:, None])[0])
     sign_of_axis = -1.0 if part in {"LowerLeg", "Foot"} else sign
     return np.asarray(sign_of_axis * length * np.eye(3)[axis])
 
@@ -169,4 +169,4 @@ def _marker_offset(
     if marker.offset is not None:
         return centers.scale * np.array(marker.offset)
     displacement = landmarks[marker.landmark] - centers.positions[marker.anchor]
-    return median(np.einsum("fji,fj->fi", frames[marker.bone], displacement))
+    return median_or_zero(np.einsum("fji,fj->fi", frames[marker.bone], displacement))

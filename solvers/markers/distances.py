@@ -1,6 +1,5 @@
 """Distances between neighboring markers, which identify a marker."""
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..signals import MAD_TO_SIGMA
 from .rigid_transform import MARKER_NOISE_M
+from .vectors import nan_median
 
 MAX_NEIGHBORS = 6
 """Number of markers, those at the most constant distance, that a label is compared with. Chosen
@@ -90,13 +90,6 @@ def learn_distances(positions: Array) -> Distances:
         median[marker, few] = spread[marker, few] = np.nan
     np.fill_diagonal(spread, np.nan)
     return Distances(median, np.maximum(spread, MARKER_NOISE_M))
-
-
-def nan_median(values: Array) -> Array:
-    """Return medians over the first axis without NaN; NaN where there is nothing else."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # of all-NaN columns
-        return np.asarray(np.nanmedian(values, axis=0))
 
 
 def nan_mean(values: Array) -> Array:

@@ -14,7 +14,7 @@ from ..rotations import (
 )
 from .body_tables import MARKER_SIDES
 from .joint_centers import JointCenters
-from .vectors import frame, median, swing_frames
+from .vectors import frame, median_or_zero, swing_frames
 
 MIN_FOOT_M = 0.05
 """Minimum distance between heel and toe markers. It guards a division where both labels are at
@@ -80,7 +80,7 @@ def _leveling_matrix(heel: Array, toe: Array) -> Array:
         np.nanpercentile(marker[..., 2], 5.0) if np.isfinite(marker).any() else 0.0
         for marker in (heel, toe)
     )
-    length = float(median(np.linalg.norm(heel - toe, axis=-1)[:, None])[0])
+    length = float(median_or_zero(np.linalg.norm(heel - toe, axis=-1)[:, None])[0])
     sine = np.clip(
         (low_heel - low_toe) / max(length, MIN_FOOT_M), -MAX_SLOPE_SINE, MAX_SLOPE_SINE
     )
@@ -102,7 +102,7 @@ def _arm(
     )
     local = np.einsum("fji,fj->fi", thorax, shoulder - collar)
     frames[f"{side}Shoulder"] = swing_frames(
-        thorax, normalize(median(local)), shoulder - collar
+        thorax, normalize(median_or_zero(local)), shoulder - collar
     )
     upward = landmarks[f"{letter}ELB"] - elbow
     frames[f"{side}UpperArm"] = frame(0, sign * (elbow - shoulder), 2, upward)

@@ -4,8 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from .distances import Distances, nan_median
+from .distances import Distances
 from .pair_swaps import PairSwap
+from .vectors import nan_median
 
 MIN_BAD_MISFIT = 4.0
 """Median misfit, relative to the spread of the distances, above which a label is wrong. Chosen

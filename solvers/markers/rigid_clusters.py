@@ -10,8 +10,9 @@ from ..motion import Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from ..signals import MAD_TO_SIGMA
-from .distances import MIN_OBSERVED_FRACTION, nan_median
+from .distances import MIN_OBSERVED_FRACTION
 from .rigid_transform import fit_rigid_transform
+from .vectors import nan_median
 
 UNLINKED_M = 1.0
 """Linkage distance of pairs that are never observed together. It guards such pairs from sharing

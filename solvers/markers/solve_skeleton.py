@@ -19,6 +19,7 @@ from .fit_body import fit_body
 from .fit_poses import fit_poses
 from .joint_centers import joint_centers
 from .marker_sets import PELVIS, MarkerSet, find_marker_set
+from .vectors import median_or_zero
 
 MIN_MARKER_FRACTION = 0.95
 """Fraction of the largest number of markers that a frame needs for the fit of the body. Chosen
@@ -167,16 +168,9 @@ def _extend_to_all_frames(rotations: Array, roots: Array, observed: Array) -> Po
     rotations, roots = rotations.copy(), roots.copy()
     for frame in np.flatnonzero(~np.isfinite(roots).all(axis=-1)):
         nearest = valid[np.abs(valid - frame).argmin()]
-        roots[frame] = roots[nearest] + _median_displacement(observed[nearest], observed[frame])
+        roots[frame] = roots[nearest] + median_or_zero(observed[frame] - observed[nearest])
         rotations[frame] = rotations[nearest]
     return Poses(rotations, roots)
-
-
-def _median_displacement(start: Array, end: Array) -> Array:
-    """Return the median displacement of the markers observed in both frames; 0 without any."""
-    displacements = end - start
-    displacements = displacements[np.isfinite(displacements).all(axis=-1)]
-    return np.median(displacements, axis=0) if len(displacements) else np.zeros(3)
 
 
 def _fit_dimensions(
@@ -206,10 +200,7 @@ def _refit_outliers(body: MarkerBody, observed: Array, poses: Poses) -> Poses:
         return poses
     frames = np.flatnonzero(bad)
     nearest = good[np.rint(np.interp(frames, good, np.arange(len(good)))).astype(np.intp)]
-    shift = np.array([
-        _median_displacement(observed[start], observed[end])
-        for start, end in zip(nearest, frames, strict=True)
-    ])
+    shift = median_or_zero((observed[frames] - observed[nearest]).swapaxes(0, 1))
     candidate = fit_poses(
         body, observed[frames], Poses(poses.rotations[nearest], poses.roots[nearest] + shift)
     )

@@ -9,7 +9,7 @@ from ..rotations import normalize, skew_matrices
 
 
 def perpendicular(vectors: Array, axis: Array) -> Array:
-    """Return the component of vectors perpendicular to a unit axis."""
+    """Return the component of vectors perpendicular to a unit axis, shape (..., 3)."""
     return np.asarray(vectors - dot(vectors, axis)[..., None] * axis)
 
 
@@ -37,9 +37,17 @@ def frame(first: int, along: Array, second: int, hint: Array) -> Array:
 
 
 def swing_frames(frames: Array, axis: Array, onto: Array) -> Array:
-    """Rotate frames by the shortest rotation that points their `axis`, (3,), along `onto`.
+    """Rotate frames by the shortest rotation that points their `axis` along `onto`.
 
     Opposite directions, without a shortest rotation, give NaN.
+
+    Parameters
+    ----------
+    frames : shape (..., 3, 3)
+        Columns are axes.
+    axis : shape (3,)
+        In each frame.
+    onto : shape (..., 3)
     """
     start = frames @ axis
     stop = normalize(onto)
@@ -65,8 +73,13 @@ def matrix_from_rotation_vector(vectors: Array) -> Array:
     return np.asarray(np.eye(3) + first * skew + second * skew @ skew)
 
 
-def median(values: Array) -> Array:
-    """Return the median over frames, leaving out NaN; 0 where all are NaN."""
+def nan_median(values: Array) -> Array:
+    """Return medians over the first axis without NaN; NaN where there is nothing else."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of all-NaN columns
-        return np.asarray(np.nan_to_num(np.nanmedian(values, axis=0)))
+        return np.asarray(np.nanmedian(values, axis=0))
+
+
+def median_or_zero(values: Array) -> Array:
+    """Return medians over the first axis without NaN; 0 where there is nothing else."""
+    return np.nan_to_num(nan_median(values))
