@@ -67,7 +67,7 @@ class MOCAP_PG_live(bpy.types.PropertyGroup):
 
 @settings_from(SimulateBundle)
 class MOCAP_PG_simulate(bpy.types.PropertyGroup):
-    """Settings of the button Physics."""
+    """Settings of the button Simulate."""
 
 
 @settings_from(TrackBundle)

@@ -1,4 +1,4 @@
-"""The verb `simulate`: what the button Physics does."""
+"""The verb `simulate`: what the button Simulate does."""
 
 import argparse
 from typing import Any

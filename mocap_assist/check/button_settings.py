@@ -1,4 +1,4 @@
-"""Settings of Check."""
+"""Settings of Check: what is measured, and its thresholds."""
 
 from typing import NamedTuple
 

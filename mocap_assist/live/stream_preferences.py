@@ -1,4 +1,4 @@
-"""Preferences of live streams."""
+"""Preferences of live streams: who may send to this machine."""
 
 import bpy
 

@@ -1,1 +1,1 @@
-"""The button Physics."""
+"""The button Simulate."""

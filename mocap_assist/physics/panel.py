@@ -16,7 +16,7 @@ PURPOSE = "Gives the body weight: feet carry it, and it neither floats nor sinks
 
 
 class PhysicsPanel(PanelMixin):
-    """Settings of Physics, and its button."""
+    """Settings of Simulate, and its button."""
 
     bl_label = "Simulate"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}

@@ -1,4 +1,4 @@
-"""Physics: read the scene and write the result."""
+"""Simulate: read the scene and write the result."""
 
 from functools import partial
 from typing import NamedTuple

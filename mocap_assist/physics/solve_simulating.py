@@ -1,4 +1,4 @@
-"""Solve of the button Physics."""
+"""Solve of the button Simulate."""
 
 from dataclasses import replace
 from typing import NamedTuple

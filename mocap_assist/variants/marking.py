@@ -1,4 +1,4 @@
-"""Variants as assets."""
+"""Mark variants as assets, with tags, a catalog and previews."""
 
 import bpy
 

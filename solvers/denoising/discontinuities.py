@@ -44,7 +44,15 @@ def remove_path_jumps(
 def restore_path_jumps(
     take: Motion | Tracks, cleaned: Motion | Tracks, offsets: Array, kept: Flags
 ) -> Motion | Tracks:
-    """Return the cleaned take with the jumps of its root; kept joints are as in the take."""
+    """Return the cleaned take with the jumps of its root; kept joints are as in the take.
+
+    Parameters
+    ----------
+    take, cleaned : Motion or Tracks
+    offsets : shape (n_frames, 3), meters
+        Of the root, from `path_offsets`.
+    kept : shape (n_frames, n_joints)
+    """
     if not (isinstance(cleaned, Motion) and offsets.any()):
         return cleaned
     return restore_observed(take, move_root(cleaned, offsets), kept)

@@ -95,7 +95,10 @@ def restore_edge_poses(
     confidence: Array,
     poses: Sequence[EdgePose],
 ) -> tuple[Motion | Tracks, Array]:
-    """Return the cleaned recording and its confidence with these poses as recorded."""
+    """Return the cleaned recording and its confidence with these poses as recorded.
+
+    The confidence has the shape (n_frames, n_joints).
+    """
     if not poses or isinstance(recording, Tracks) or isinstance(cleaned, Tracks):
         return cleaned, confidence
     rotations, roots = cleaned.rotations.copy(), cleaned.root_positions.copy()

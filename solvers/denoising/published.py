@@ -128,7 +128,13 @@ def _pattern_weights(motion: Array, patterns: Array) -> Array:
 def published_cost(
     motion: Array, observed: Array, observed_mask: Array, patterns: Array
 ) -> float:
-    """Return eq. 2.16 with the best pattern weights; both motions are centered."""
+    """Return eq. 2.16 with the best pattern weights; both motions are centered.
+
+    Parameters
+    ----------
+    motion, observed, observed_mask : shape (n_frames, n_channels)
+    patterns : shape (n_patterns, length, n_channels)
+    """
     weights = _pattern_weights(motion, patterns)
     frame_power = (motion**2).sum(axis=1)
     in_windows = sum(

@@ -1,4 +1,4 @@
-"""Settings of planting feet."""
+"""Settings of planting: blends, and what may move to hold a foot."""
 
 from dataclasses import dataclass
 

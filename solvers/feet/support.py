@@ -74,7 +74,7 @@ def resting_steps(height: Array, contact: Flags, size: float) -> Array:
 
 
 def median_contact_heights(height: Array, contact: Flags) -> Array:
-    """Return the median height of each contact; the height itself elsewhere."""
+    """Return the median height of each contact, (n_frames,); the height itself elsewhere."""
     contact_height = height.copy()
     for start, stop in find_runs(contact):
         contact_height[start:stop] = np.median(height[start:stop])

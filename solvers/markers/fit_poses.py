@@ -131,7 +131,10 @@ def cost_of(body: MarkerBody, observed: Array, poses: Poses) -> Array:
 
 
 def compute_residuals(body: MarkerBody, observed: Array, poses: Poses) -> Residuals:
-    """Return the weighted residuals of markers, then those of the joint priors."""
+    """Return the weighted residuals of markers, then those of the joint priors.
+
+    `observed` has the shape (n_frames, n_markers, 3), meters; NaN where missing.
+    """
     world = body.body_in_pose(poses)
     residuals_of_markers = _marker_residuals(body, observed, world)
     square = (residuals_of_markers**2).sum(axis=-1, keepdims=True) / CAUCHY_SCALE**2

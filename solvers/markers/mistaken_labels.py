@@ -27,6 +27,7 @@ def find_mistaken_labels(positions: Array, distances: Distances) -> list[PairSwa
 
     An interval is between gaps or jumps of the label. It must fit the distances of the missing
     marker well and its own badly; or fit the former better and start or end at its position.
+    `positions` has the shape (n_frames, n_markers, 3), meters.
     """
     missing = ~np.isfinite(positions).all(axis=-1)
     swaps = []

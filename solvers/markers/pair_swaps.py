@@ -49,7 +49,8 @@ def find_candidate_pairs(positions: Array, distances: Distances) -> list[tuple[i
     """Return the pairs of markers that may be swapped.
 
     Either they seem to jump to each other's position; or both labels are bad at one time and
-    one marker has gaps in which a swap may start.
+    one marker has gaps in which a swap may start. `positions` has the shape (n_frames,
+    n_markers, 3), meters.
     """
     n_markers = positions.shape[1]
     is_bad = _bad_frames(positions, distances)

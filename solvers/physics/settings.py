@@ -1,4 +1,4 @@
-"""Settings of Physics."""
+"""Settings of Simulate: the ground, and how closely the body follows the take."""
 
 from dataclasses import dataclass
 

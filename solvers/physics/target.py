@@ -125,7 +125,7 @@ def smooth_target(
 def blend_motions(
     motion: Motion, other: Motion, joints: Sequence[int], weights: Array
 ) -> Motion:
-    """Blend a motion with another by a weight for each frame, 0 to 1.
+    """Blend a motion with another by a weight for each frame, 0 to 1, shape (n_frames,).
 
     Only the root's position and the rotations of these joints change. Weight 1 gives the
     other's bits, and weight 0 those of the motion.

@@ -31,7 +31,7 @@ def joined(components: Sequence[Array]) -> Array:
 
 
 def multiply_components(a: Components, b: Components) -> tuple[Array, Array, Array, Array]:
-    """Return the rotation that applies `b` first, then `a`."""
+    """Return the rotation that applies `b` first, then `a`; components of equal shape."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (

@@ -56,7 +56,7 @@ def rotate(rotations: Array, vectors: ArrayLike) -> Array:
 
 
 def normalize(rotations: Array) -> Array:
-    """Return quaternions or vectors (last axis) of length 1; those of length 0 become NaN."""
+    """Return quaternions or vectors, shape (..., n), of length 1; NaN for those of length 0."""
     norms = np.linalg.norm(rotations, axis=-1, keepdims=True)
     return np.asarray(rotations / np.where(norms > 0.0, norms, np.nan))
 

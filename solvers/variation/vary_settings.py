@@ -1,4 +1,4 @@
-"""Settings of Vary."""
+"""Settings of Vary: the method, and how far each part of the body may vary."""
 
 from dataclasses import dataclass
 

@@ -52,7 +52,10 @@ def to_world(motion: Motion, heading: HeadingJoint) -> tuple[Array, Array]:
 def to_local(
     motion: Motion, heading: HeadingJoint, world: Array, positions: Array
 ) -> tuple[Array, Array]:
-    """Return local rotations of the joint, and root positions; inverts `to_world`."""
+    """Return local rotations of the joint, (n_frames, 4), and root positions, (n_frames, 3).
+
+    It inverts `to_world`.
+    """
     rotation, displacement = _above(motion, heading)
     return multiply(inverse(rotation), world), positions - displacement
 

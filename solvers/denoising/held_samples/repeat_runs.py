@@ -72,7 +72,15 @@ def are_still(repeats: Flags) -> Flags:
 def find_repeat_runs(
     recording: Motion | Tracks, trajectories: Array, repeats: Flags
 ) -> RepeatRuns | None:
-    """Return the runs of repeats between two changes of all parts that are not still."""
+    """Return the runs of repeats between two changes of all parts that are not still.
+
+    Parameters
+    ----------
+    recording : Motion or Tracks
+    trajectories : shape (n_frames, n_parts, n_components)
+        Of the joints, and of the root's position, or of the points.
+    repeats : shape (n_frames, n_parts)
+    """
     found = [
         run
         for part in np.flatnonzero(~are_still(repeats))

@@ -35,7 +35,10 @@ def select_training_frames(
     gap: Flags,
     frame_rate: float,
 ) -> NDArray[np.intp]:
-    """Subsample the training frames, except near the gaps."""
+    """Return some of the training frames, indices, and all those near the gaps.
+
+    `observed` and `gap` have the shape (n_frames,); the frame rate is in hertz.
+    """
     n_steps = -(-len(training_frames) // MAX_TRAINING_FRAMES)
     step = max(round(frame_rate / MAX_TRAINING_RATE_HZ), n_steps, 1)
     selected = np.zeros(len(observed), dtype=bool)
@@ -89,7 +92,10 @@ def extrapolate_boundary_errors(
 
 
 def estimate_gap_error(prediction: PredictedMarker, gap: Flags) -> Array:
-    """Return the expected error of a coordinate, meters, in each frame of the gaps."""
+    """Return the expected error of a coordinate, meters, in each frame of the gaps, (n_gap,).
+
+    `gap` has the shape (n_frames,).
+    """
     n_frames = len(gap)
     frames = np.arange(n_frames)
     before = np.maximum.accumulate(np.where(gap, -n_frames, frames))

@@ -123,7 +123,13 @@ class BodyModel:
 
 
 def default_body(stature: float = ADULT_STATURE_M) -> BodyModel:
-    """Return an adult of default proportions, `stature` meters tall."""
+    """Return an adult of default proportions, `stature` meters tall.
+
+    Raises
+    ------
+    InvalidMotionError
+        The stature is not between 0.5 and 2.5 m.
+    """
     if not 0.5 <= stature <= 2.5:
         raise InvalidMotionError(
             f"The stature {stature:g} m is invalid. Give between 0.5 and 2.5 m."

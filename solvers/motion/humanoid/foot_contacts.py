@@ -154,7 +154,7 @@ def probabilities_of_points(
 
 
 def foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.intp]:
-    """Return the joints of foot contact: rows left and right, columns ankle and toes.
+    """Return the joints of foot contact, shape (2, 2): left and right, ankle and toes.
 
     Without a toe joint, the end site of the foot replaces it, or else the ankle.
 
@@ -274,7 +274,7 @@ def measure_feet(
 
 
 def foot_noise(positions: Array) -> float:
-    """Return the standard deviation of white noise along each axis, whatever the heading is."""
+    """Return the standard deviation per axis of white noise in positions (n_frames, ..., 3)."""
     differences = np.linalg.norm(np.diff(positions, DIFFERENCE_ORDER, axis=0), axis=-1)
     known = differences[np.isfinite(differences)]
     return float(np.median(known)) / DIFFERENCE_GAIN / MEDIAN_LENGTH if known.size else 0.0

@@ -180,7 +180,7 @@ def _is_reversed(unit: Array, frame_rate: float) -> NDArray[np.bool_]:
 
 
 def rotate_about_vertical(postures: Array, angles: Array) -> Array:
-    """Rotate each frame about Z by its angle, in radians."""
+    """Rotate each frame of (n_frames, n_joints, 3) about Z by its angle, radians."""
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = np.moveaxis(postures, -1, 0)
     return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)

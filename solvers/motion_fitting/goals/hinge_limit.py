@@ -100,7 +100,7 @@ def with_bent_hinge(fitted: FittedMotion, limit: HingeLimit) -> FittedMotion:
 
 
 def bone_directions(fitted: FittedMotion, joint: int, end: int) -> tuple[Array, Array]:
-    """Return the directions of upper and lower bone in the axes of the joint's parent."""
+    """Return the directions of both bones, (n_frames, 3), in the axes of the joint's parent."""
     skeleton, poses = fitted.motion.skeleton, fitted.poses
     parent = skeleton.parents[joint]
     parent_from_world = inverse(poses.rotations[:, parent])
@@ -113,14 +113,14 @@ def bone_directions(fitted: FittedMotion, joint: int, end: int) -> tuple[Array, 
 
 
 def hinge_flexion(fitted: FittedMotion, joint: int, end: int, axis: Array) -> Array:
-    """Return the signed angle between the bones about an axis, radians, 0 straight."""
+    """Return the angle between the bones about an axis, radians, (n_frames,); 0 is straight."""
     upper, lower = bone_directions(fitted, joint, end)
     sine = np.sum(np.cross(upper, lower) * axis, axis=1)
     return np.asarray(np.arctan2(sine, np.sum(upper * lower, axis=1)))
 
 
 def hinge_axis(fitted: FittedMotion, joint: int, end: int) -> Array | None:
-    """Return the mean axis about which a joint bends; None if it hardly bends."""
+    """Return the mean axis, (3,), about which a joint bends; None if it hardly bends."""
     upper, lower = bone_directions(fitted, joint, end)
     axis = np.cross(upper, lower).mean(axis=0)
     length = float(np.linalg.norm(axis))

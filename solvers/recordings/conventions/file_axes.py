@@ -67,7 +67,7 @@ def with_axes(
 
 
 def rotation_between(before: FileConventions, after: FileConventions) -> Array:
-    """Return the quaternion that rotates what was read by `before` as `after` would read it."""
+    """Return the quaternion, (4,), from what `before` reads to what `after` would read."""
     rotation = np.asarray(quaternion_from_matrix(_matrix(after) @ _matrix(before).T))
     return rotation * MIRRORED if before.is_mirrored else rotation
 

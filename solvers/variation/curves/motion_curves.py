@@ -132,7 +132,7 @@ def _about_z(angles: Array) -> Array:
 
 
 def unwrap_rotation_vectors(vectors: Array) -> Array:
-    """Choose equivalent rotation vectors so that no joint jumps by a full rotation.
+    """Choose equivalent rotation vectors, (n_frames, ..., 3), that never jump by a full turn.
 
     Of the two vectors of a rotation, it takes the one nearer to the frame before. A capture may
     flip a joint by more than `MAX_FRAME_ROTATION_RAD`; neither vector is near then. Repeated

@@ -6,7 +6,10 @@ from ...arrays import Array
 
 
 def clamp_softly(values: Array, low: Array, high: Array, width: Array) -> Array:
-    """Saturate values near a limit by tanh over `width`, so that they never pass it."""
+    """Saturate values near a limit by tanh over `width`, so that they never pass it.
+
+    All have shapes and the unit that the values have, or shapes that broadcast to theirs.
+    """
     width = np.maximum(width, 1e-12)
     above, below = values - (high - width), (low + width) - values
     values = np.where(above > 0.0, high - width + width * np.tanh(above / width), values)
