@@ -94,11 +94,13 @@ def estimate_in_groups(
                 part, n_frames, bases, channels.keys, columns, prior
             )
             prior, smooth_fraction = select_prior(
-                examples, prior, *part[:4], columns // 3, take.windows, step
+                examples, prior, part.noisy, part.is_error, part.values, part.noise,
+                columns // 3, take.windows, step,
             )  # fmt: skip
             smooth_fractions += [smooth_fraction] * len(columns)
         group_estimate = estimate_channels(
-            *part[:4], prior, take.windows, within(step, 0.4, 1.0),
+            part.noisy, part.is_error, part.values, part.noise, prior, take.windows,
+            within(step, 0.4, 1.0),
         )  # fmt: skip
         for complete, name in zip(parts, PARTS, strict=True):
             complete[:, columns] = getattr(group_estimate, name)

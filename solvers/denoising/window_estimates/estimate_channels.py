@@ -73,6 +73,8 @@ def estimate_channels(
     ----------
     noisy : shape (n_frames, n_channels)
         NaN where not observed.
+    is_error : same shape
+        Samples known to be wrong.
     start : same shape, without NaN
     noise : shape (n_channels,)
         First estimate of the standard deviation.

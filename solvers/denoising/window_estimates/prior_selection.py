@@ -157,14 +157,17 @@ def select_prior(
     if not len(scored):
         return candidates[SMOOTH_FRACTIONS[0]], SMOOTH_FRACTIONS[0]
     rough, noise = rough[:, scored], noise[scored]
-    scored_take = (noisy[:, scored], is_error[:, scored], rough, noise)
+    noisy, is_error = noisy[:, scored], is_error[:, scored]
     without_gaps = replace(windows, solve_gaps=False)
     trials = []
     for index, prior in enumerate(candidates.values()):
         progress(0.4 * index / len(candidates), "Comparing with the examples")
         trials.append(
             estimate_channels(
-                *scored_take,
+                noisy,
+                is_error,
+                rough,
+                noise,
                 prior.select_channels(scored),
                 without_gaps,
                 max_iterations=N_TRIAL_ITERATIONS,
