@@ -180,10 +180,12 @@ def test_missing_libraries_are_named_with_the_command(check_libraries):
     )
 
 
-def test_set_up_prints_nothing_when_nothing_is_missing(check_libraries):
+def test_set_up_prints_nothing_when_nothing_is_missing(check_libraries, capsys):
     check_libraries.there = set(check_libraries.PACKAGES)
 
     check_libraries.main()
+
+    assert capsys.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("helps", [True, False])

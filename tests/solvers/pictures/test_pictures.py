@@ -157,11 +157,16 @@ def test_view_turns_with_hips_below_a_still_bone():
     assert differs.mean() < 0.2 * (expected != 255).any(axis=-1).mean()
 
 
-def test_empty_motion_gives_a_picture(swinging_leg):
-    missing = swinging_leg.with_poses(np.full_like(swinging_leg.rotations, np.nan))
+def test_motion_that_is_missing_has_no_figures_and_a_shaded_plot(swinging_leg):
+    missing = swinging_leg.with_poses(
+        np.full_like(swinging_leg.rotations, np.nan),
+        np.full_like(swinging_leg.root_positions, np.nan),
+    )
 
-    assert draw_stick_figures({"leg": missing}).pixels.size
-    assert draw_curves({"leg": missing}, ["hip"]).pixels.size
+    assert not is_color(draw_stick_figures({"leg": missing}).pixels[44:], CLEAN).any()
+    plot = draw_curves({"leg": missing}, ["hip"]).pixels[64:, 70:]
+    assert not is_color(plot, CLEAN).any()
+    assert (plot == (246, 238, 226)).all(axis=-1).mean() > 0.5
 
 
 def test_drawing_raises_for_different_lengths(swinging_leg):
@@ -204,8 +209,13 @@ def test_gap_is_shaded_and_breaks_the_curve(swinging_leg):
     assert (pixels[70:200, middle] == (246, 238, 226)).all(axis=-1).mean() > 0.5
 
 
-def test_single_frame_has_a_curve(swinging_leg):
-    assert draw_curves({"a": swinging_leg.slice(0, 1)}, ["hip", "knee"]).pixels.size
+def test_single_frame_has_the_plots_of_many_without_a_curve(swinging_leg):
+    pixels, many = (
+        draw_curves({"a": each}, ["hip", "knee"]).pixels
+        for each in (swinging_leg.slice(0, 1), swinging_leg)
+    )
+    assert pixels.shape == many.shape
+    assert not is_color(pixels[64:, 70:], CLEAN).any()
 
 
 @pytest.mark.parametrize(
