@@ -92,7 +92,7 @@ class ArchiveLayout:
         return InvalidFileError(f"{path} holds {self.holds} ({fault}). {self.remedy}")
 
     def _check_kind(self, path: Path | str, archive: zipfile.ZipFile) -> None:
-        kind, version = (_single(archive, name) for name in ("kind", "version"))
+        kind, version = (_single_value(archive, name) for name in ("kind", "version"))
         if kind != self.kind:
             found = kind if isinstance(kind, str) else "something else"
             raise InvalidFileError(f"{path} holds {found}, not {self.kind}.")
@@ -104,7 +104,7 @@ class ArchiveLayout:
             )
 
 
-def _single(archive: zipfile.ZipFile, name: str) -> str | int | None:
+def _single_value(archive: zipfile.ZipFile, name: str) -> str | int | None:
     """Return the single text or integer of a member; None if it holds anything else."""
     if f"{name}.npy" not in archive.namelist():
         return None
@@ -124,6 +124,6 @@ def _is_own(path: Path | str) -> bool:
     """Return whether `ArchiveLayout.write` saved this file."""
     try:
         with open_regular(path) as file, zipfile.ZipFile(file) as archive:
-            return isinstance(_single(archive, "kind"), str)
+            return isinstance(_single_value(archive, "kind"), str)
     except READABLE:
         return False

@@ -139,13 +139,13 @@ def find_preset(verb: str, name: str) -> Preset:
     InvalidSettingError
         The verb has no such preset.
     """
-    found = {_plain(each): preset for each, preset in PRESETS[verb].items()}
-    if _plain(name) not in found:
+    found = {_plain_name(each): preset for each, preset in PRESETS[verb].items()}
+    if _plain_name(name) not in found:
         raise InvalidSettingError(
             f"{verb} has no preset {name!r}. Choose one of: {', '.join(found)}."
         )
-    return found[_plain(name)]
+    return found[_plain_name(name)]
 
 
-def _plain(name: str) -> str:
+def _plain_name(name: str) -> str:
     return name.strip().lower().replace(" ", "-").replace("_", "-")

@@ -48,11 +48,11 @@ def read_contacts(
         standing.append(channel.values(frames) > 0.5)
     others = [curves.get((_path(name), 0)) for name in SUPPORT_PROPERTIES]
     if any(channel is not None and len(channel.keys) for channel in others):
-        standing += [_bears(channel, frames) for channel in others]
+        standing += [_read_contact(channel, frames) for channel in others]
     return np.stack(standing, axis=1)
 
 
-def _bears(channel: Channel | None, frames: NDArray[np.float64]) -> Flags:
+def _read_contact(channel: Channel | None, frames: NDArray[np.float64]) -> Flags:
     """Return when a part bears on the floor: keys hold until the next one."""
     if channel is None or not len(channel.keys):
         return np.zeros(len(frames), dtype=np.bool_)
@@ -72,7 +72,7 @@ def contact_keys(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> list[A
 
 def animators_contacts(source: Source, frames: NDArray[np.float64]) -> Flags | None:
     """Return the contacts, but only if the animator keyed them or edited those detected."""
-    return None if _untouched(*source) else read_contacts(*source, frames)
+    return None if _are_keys_unchanged(*source) else read_contacts(*source, frames)
 
 
 def write_contacts(
@@ -98,7 +98,7 @@ def write_contacts(
     """
     bag = compat.ensure_channelbag(action, slot)
     keys = contact_keys(action, slot)
-    detected &= _untouched(action, slot) or not any(map(len, keys))
+    detected &= _are_keys_unchanged(action, slot) or not any(map(len, keys))
     n_feet = len(FOOT_PROPERTIES)
     are_rare = not contacts[:, n_feet:].any() and not any(map(len, keys[n_feet:]))
     for name, standing in zip(PROPERTIES, contacts.T, strict=False):
@@ -156,7 +156,7 @@ def _declare(armature: bpy.types.Object, name: str, value: int) -> None:
     )
 
 
-def _untouched(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> bool:
+def _are_keys_unchanged(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> bool:
     """Whether the contact keys are as they were detected."""
     return bool(action.get(DETECTED) == _digest(action, slot))
 

@@ -23,7 +23,7 @@ class Written(NamedTuple):
 
 def act_on_keys(curve: bpy.types.FCurve) -> bool:
     """Whether modifiers change the keyed values."""
-    return any(_acts(modifier) for modifier in curve.modifiers)
+    return any(_changes_curve(modifier) for modifier in curve.modifiers)
 
 
 def keep_outside(curve: bpy.types.FCurve, written: Written) -> None:
@@ -46,7 +46,7 @@ def keep_outside(curve: bpy.types.FCurve, written: Written) -> None:
             _add(curve, kind, settings | section)
 
 
-def _acts(modifier: bpy.types.FModifier) -> bool:
+def _changes_curve(modifier: bpy.types.FModifier) -> bool:
     return modifier.type not in HARMLESS and not modifier.mute
 
 

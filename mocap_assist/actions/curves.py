@@ -75,17 +75,17 @@ class Channel:
         curves with modifiers, Blender evaluates.
         """
         if len(self.curve.modifiers) or len(frames) == 1 or not len(self.keys):
-            return self._evaluated(frames)
+            return self._evaluate_curve(frames)
         if self.keyed_at(frames):
             return self.keys[:, 1]
         times, values = self.keys.T
         indices = np.searchsorted(times, frames - ON_FRAME).clip(max=len(times) - 1)
         between = np.abs(times[indices] - frames) > ON_FRAME
         found: Array = values[indices]
-        found[between] = self._evaluated(frames[between])
+        found[between] = self._evaluate_curve(frames[between])
         return found
 
-    def _evaluated(self, frames: Array) -> Array:
+    def _evaluate_curve(self, frames: Array) -> Array:
         values = map(self.curve.evaluate, frames.tolist())
         return np.fromiter(values, np.float64, len(frames))
 
@@ -168,7 +168,7 @@ def write_values(
             column[first:last] = rows
             points.foreach_set(name, column.ravel())
     else:
-        chosen = _chosen(points, times, frames)
+        chosen = _selected_frames(points, times, frames)
         _rebuild(points, first, last, new | dict.fromkeys(SELECTED, chosen[:, None]))
     curve.update()
 
@@ -189,7 +189,7 @@ def _rebuild(
         points.foreach_set(name, column.ravel())
 
 
-def _chosen(
+def _selected_frames(
     points: bpy.types.FCurveKeyframePoints, times: NDArray[Any], frames: Array
 ) -> NDArray[np.bool_]:
     """Return which of the frames have a selected key, shape (n_frames,)."""

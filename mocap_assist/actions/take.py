@@ -142,11 +142,13 @@ def part_of(
         rotations.append(rotation)
         if should_yield():
             yield 0.7 + 0.3 * number / len(bones)
-    build = partial(_built, rig, bones, channels, carrier, rest, frame_rate, world, rotations)
+    build = partial(
+        _assemble_part, rig, bones, channels, carrier, rest, frame_rate, world, rotations
+    )
     return (yield from in_thread.steps(build))
 
 
-def _built(
+def _assemble_part(
     rig: Rig,
     bones: list[int],
     channels: tuple[BoneChannels, ...],

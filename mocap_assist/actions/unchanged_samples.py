@@ -47,16 +47,20 @@ class UnchangedSamples:
         before, after = self._before.rotations[index], self._after.rotations[index]
         channels = rotation_curves(bone, self._curves)
         recorded = sampled_rotation(bone, channels, self._frames)
-        return _restored(values, recorded, np.abs(angle_between(before, after)) < MIN_CHANGE)
+        return _restore_recorded(
+            values, recorded, np.abs(angle_between(before, after)) < MIN_CHANGE
+        )
 
     def locations(self, bone: bpy.types.PoseBone, index: int, values: Array) -> Array:
         """Return location channels of a bone, with recorded values where nothing changed."""
         before, after = self._before.locations[index], self._after.locations[index]
         recorded = sampled(location_curves(bone, self._curves), bone.location, self._frames)
-        return _restored(values, recorded, (np.abs(after - before) < MIN_CHANGE).all(axis=1))
+        return _restore_recorded(
+            values, recorded, (np.abs(after - before) < MIN_CHANGE).all(axis=1)
+        )
 
 
-def _restored(values: Array, recorded: Array, same: Flags) -> Array:
+def _restore_recorded(values: Array, recorded: Array, same: Flags) -> Array:
     """Return the recorded values where the pose is the same.
 
     A rotation has many angles. Next to samples that did change, only those are recorded ones

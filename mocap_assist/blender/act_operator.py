@@ -11,7 +11,7 @@ from .last_press import note_press, noted_errors
 from .mixins import OperatorMixin
 
 
-def _always(context: bpy.types.Context) -> str:
+def _no_reason(context: bpy.types.Context) -> str:
     return ""
 
 
@@ -19,7 +19,7 @@ class ActOperator(OperatorMixin):
     """Mix in before an operator that defines `act` or `execute`, and `why_not` unless it is
     never gray."""
 
-    why_not: ClassVar[Callable[[bpy.types.Context], str]] = _always
+    why_not: ClassVar[Callable[[bpy.types.Context], str]] = _no_reason
     """Return why the button is unavailable, or an empty text."""
     act: Callable[[bpy.types.Context], str]
     """Act, and return the message for the status bar: a method of the operator."""

@@ -125,7 +125,7 @@ def _found_from_elsewhere(buffer: Any, folder: Path) -> Any:
     uri = dict_of(buffer).get("uri")
     if not isinstance(uri, str) or uri.startswith("data:"):
         return buffer
-    return {**buffer, "uri": _quoted(folder.as_posix()) + "/" + uri}
+    return {**buffer, "uri": _quote_path(folder.as_posix()) + "/" + uri}
 
 
 def list_of(value: Any) -> list[Any]:
@@ -138,7 +138,7 @@ def dict_of(value: Any) -> dict[str, Any]:
     return value if isinstance(value, dict) else {}
 
 
-def _quoted(path: str) -> str:
+def _quote_path(path: str) -> str:
     """Return a path as a URI: all but letters, digits and `-._~/` as percent signs and hex."""
     text = re.sub(rb"[^A-Za-z0-9._~/-]", lambda match: b"%%%02X" % match[0][0], path.encode())
     return text.decode()

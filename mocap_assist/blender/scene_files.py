@@ -94,11 +94,11 @@ def _open_fbx(path: str) -> None:
         _run(path, importer)
     except InvalidFileError as error:
         if any(reason in str(error) for reason in DAMAGED_FBX):
-            raise _damaged(path) from None
+            raise _damaged_file_error(path) from None
         raise
 
 
-def _damaged(path: str) -> InvalidFileError:
+def _damaged_file_error(path: str) -> InvalidFileError:
     return InvalidFileError(f"{path} is damaged or incomplete. Export it again.")
 
 
@@ -151,14 +151,14 @@ def _gltf_content(path: str) -> dict[str, Any]:
         if len(head) == 20 and struct.unpack("<I", head[:4])[0] == GLB_MAGIC:
             total, length, kind = struct.unpack("<III", head[8:20])
             if kind != GLB_JSON or length > MAX_JSON_BYTES:
-                raise _damaged(path)
+                raise _damaged_file_error(path)
             text = file.read(length)
             if file.seek(0, SEEK_END) < total:
-                raise _damaged(path)
+                raise _damaged_file_error(path)
         else:
             text = head + file.read(MAX_JSON_BYTES)
     if not text:
-        raise _damaged(path)
+        raise _damaged_file_error(path)
     try:
         content = parse_json(text)
     except ValueError:
@@ -178,7 +178,7 @@ def _refuse_other_files(path: str, content: dict[str, Any]) -> None:
         uri = dict_of(part).get("uri")
         if uri is None or (isinstance(uri, str) and uri.startswith("data:")):
             continue
-        named = folder / _unquoted(str(uri)).replace("\\", "/")
+        named = folder / _unquote_uri(str(uri)).replace("\\", "/")
         if not (named.resolve().is_relative_to(folder) and named.is_file()):
             raise InvalidFileError(
                 f"{path} needs {str(uri)[:80]}, which is not a file in its folder. Export it as"
@@ -186,7 +186,7 @@ def _refuse_other_files(path: str, content: dict[str, Any]) -> None:
             )
 
 
-def _unquoted(uri: str) -> str:
+def _unquote_uri(uri: str) -> str:
     """Return a path with its percent signs decoded, as the importer will read it."""
     content = re.sub(
         rb"%([0-9A-Fa-f]{2})", lambda match: bytes([int(match[1], 16)]), uri.encode()

@@ -44,17 +44,19 @@ def parse_stored(text: str, kind: type[Any]) -> Any:
 def _parsed(text: str) -> Any:
     """Return the value of a text; None if it is damaged."""
     try:
-        return parse_json(text, parse_constant=_finite, parse_float=_finite, parse_int=_integer)
+        return parse_json(
+            text, parse_constant=_finite_number, parse_float=_finite_number, parse_int=_integer
+        )
     except ValueError:
         return None
 
 
-def _finite(text: str) -> float:
+def _finite_number(text: str) -> float:
     if not isfinite(number := float(text)):
         raise ValueError(text)
     return number
 
 
 def _integer(text: str) -> int:
-    _finite(text)  # too large for float arithmetic otherwise
+    _finite_number(text)  # too large for float arithmetic otherwise
     return int(text)

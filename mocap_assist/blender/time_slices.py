@@ -47,7 +47,7 @@ class Sliced(Generic[Parameters, Result]):
         update_wrapper(self, steps)
 
     def __call__(self, *arguments: Parameters.args, **named: Parameters.kwargs) -> Result:
-        return _finished(self.steps(*arguments, **named), inf)
+        return _run_to_end(self.steps(*arguments, **named), inf)
 
 
 @Sliced
@@ -108,7 +108,7 @@ def _in_one_slice(function: Callable[..., Result], arguments: tuple[Any, ...]) -
     return function(*arguments)
 
 
-def _finished(steps: Steps[Result], deadline: float) -> Result:
+def _run_to_end(steps: Steps[Result], deadline: float) -> Result:
     before, _deadline[0] = _deadline[0], deadline
     try:
         next(steps)

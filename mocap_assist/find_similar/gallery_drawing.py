@@ -55,7 +55,7 @@ class Gallery:
         self._pointed = -1
         self._since = monotonic()
         self._handle: Any = bpy.types.SpaceView3D.draw_handler_add(
-            self._drawn, (), "WINDOW", "POST_PIXEL"
+            self._draw_gallery, (), "WINDOW", "POST_PIXEL"
         )
         self._timer = context.window_manager.event_timer_add(FRAME_S, window=context.window)
         _open.append(self)
@@ -87,7 +87,7 @@ class Gallery:
         below = space._replace(height=max(space.height - HEAD_PX * scale, 1.0))
         return cells_in(below, len(self.search.finding.found), scale)
 
-    def _drawn(self) -> None:
+    def _draw_gallery(self) -> None:
         context = bpy.context
         if context.area.as_pointer() != self._area:
             return

@@ -55,15 +55,15 @@ class BrowseOperator(OperatorMixin):
         """Play what is under the pointer; a click selects it, Esc ends."""
         area = self._shown_area(context)
         if area is None or self._gallery is None:
-            return self._ended(context, {"CANCELLED"})
+            return self._close_gallery(context, {"CANCELLED"})
         area.tag_redraw()
         is_pressed = event.value == "PRESS"
         if event.type in {"ESC", "RIGHTMOUSE"} and is_pressed:
-            return self._ended(context, {"CANCELLED"})
+            return self._close_gallery(context, {"CANCELLED"})
         scale = context.preferences.system.ui_scale
         pointed = self._gallery.point_at(area, event.mouse_x, event.mouse_y, scale)
         if event.type == "LEFTMOUSE" and is_pressed:
-            return self._clicked(context, area, event, pointed)
+            return self._select_match(context, area, event, pointed)
         is_timer = event.type.startswith("TIMER")
         return (
             {"PASS_THROUGH"} if is_timer or event.type in PASSED_EVENTS else {"RUNNING_MODAL"}
@@ -71,7 +71,7 @@ class BrowseOperator(OperatorMixin):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Remove the drawing; Blender calls this when the window closes, for example."""
-        self._ended(context, set())
+        self._close_gallery(context, set())
 
     def _shown_area(self, context: bpy.types.Context) -> bpy.types.Area | None:
         """Return the area, if it is still a 3D View of the window with the search listed."""
@@ -81,7 +81,7 @@ class BrowseOperator(OperatorMixin):
         is_there = any(area == self._area for area in context.window.screen.areas)
         return self._area if is_there and self._area and self._area.type == "VIEW_3D" else None
 
-    def _clicked(
+    def _select_match(
         self,
         context: bpy.types.Context,
         area: bpy.types.Area,
@@ -91,16 +91,16 @@ class BrowseOperator(OperatorMixin):
         if pointed >= 0:
             context.window_manager.mocap_assist_matches.active = pointed
             note_press(self)
-            return self._ended(context, {"FINISHED"})
+            return self._close_gallery(context, {"FINISHED"})
         region = window_region(area)
         inside_x = region.x <= event.mouse_x < region.x + region.width
         inside_y = region.y <= event.mouse_y < region.y + region.height
         if inside_x and inside_y:
             return {"RUNNING_MODAL"}
-        self._ended(context, set())
+        self._close_gallery(context, set())
         return {"CANCELLED", "PASS_THROUGH"}
 
-    def _ended(self, context: bpy.types.Context, status: set[str]) -> set[str]:
+    def _close_gallery(self, context: bpy.types.Context, status: set[str]) -> set[str]:
         if self._gallery is not None:
             self._gallery.close(context)
             self._gallery = None

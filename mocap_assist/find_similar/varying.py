@@ -56,7 +56,7 @@ def write_best(
         if clip is None:
             continue
         frames = FIRST_FRAME + np.arange(clip.n_frames, dtype=np.float64)
-        name = f"{_short(found)}.{armature.name}".replace(SEPARATOR, ",")
+        name = f"{_short_name(found)}.{armature.name}".replace(SEPARATOR, ",")
         action, _ = write_action(armature, name, frames, clip.keys, reading.switches)
         note_clip(action, found)
         names.append(action.name)
@@ -80,9 +80,11 @@ def _read(
         )
     taken = LoadChoices(part=scene.mocap_assist.load.settings().choices.part)
     pairs = [problem_of(scene, armature, taken, search, found) for found in best]
-    problems = FetchProblems(tuple(problem for problem, _ in pairs), tuple(map(_short, best)))
+    problems = FetchProblems(
+        tuple(problem for problem, _ in pairs), tuple(map(_short_name, best))
+    )
     return _MatchesToVary(best, pairs[0][1], problems)
 
 
-def _short(found: Found) -> str:
+def _short_name(found: Found) -> str:
     return found.entry.name.rpartition("/")[2]

@@ -31,7 +31,9 @@ def catalog_path(language: str) -> Path:
 def read_catalog(path: Path) -> dict[str, str]:
     """Return the texts of a file by their English; untranslated ones are empty."""
     entries = ENTRY.findall(path.read_text(encoding="utf-8"))
-    return {_plain(english): _plain(text) for english, text in entries if english}
+    return {
+        _unescape_text(english): _unescape_text(text) for english, text in entries if english
+    }
 
 
 def write_catalog(path: Path, texts: Mapping[str, str]) -> None:
@@ -39,17 +41,17 @@ def write_catalog(path: Path, texts: Mapping[str, str]) -> None:
     language = path.stem
     header = HEADER.format(name=LANGUAGES[language], language=language)
     entries = [
-        f'msgid "{_quoted(english)}"\nmsgstr "{_quoted(text)}"\n'
+        f'msgid "{_quote_text(english)}"\nmsgstr "{_quote_text(text)}"\n'
         for english, text in sorted(texts.items())
     ]
     path.write_text("\n".join([header, *entries]), encoding="utf-8")
 
 
-def _quoted(text: str) -> str:
+def _quote_text(text: str) -> str:
     return text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
 
 
-def _plain(text: str) -> str:
+def _unescape_text(text: str) -> str:
     if "\\" not in text:
         return text
     return ESCAPED.sub(lambda found: "\n" if found[1] == "n" else found[1], text)

@@ -109,7 +109,7 @@ def update_libraries() -> float:
     for problem in [each for each in _watchers if each not in listed]:
         _watchers.pop(problem).stop()
     if _running:
-        _attend(*_running[0])
+        _follow_indexing(*_running[0])
     elif not (why_indexing() or why_busy()):
         _start(listed)
     return INDEXING_INTERVAL_S if _running else CHECK_INTERVAL_S
@@ -125,7 +125,7 @@ def _start(listed: list[IndexProblem]) -> None:
             _running.append((_watchers[problem], indexing))
 
 
-def _attend(watcher: SourceWatcher, indexing: Indexing) -> None:
+def _follow_indexing(watcher: SourceWatcher, indexing: Indexing) -> None:
     """Show the progress of the running Index; end it when its library is unlisted."""
     if not indexing.is_on:  # Another file was loaded: it begins again.
         _running.clear()

@@ -31,13 +31,14 @@ def is_kept(problem: IndexProblem) -> bool:
 def keep(problem: IndexProblem) -> None:
     """Update a library automatically from these sources, which replace earlier ones."""
     permissions.change(
-        permissions.LIBRARIES, [*_without(problem.library), _stored_from_problem(problem)]
+        permissions.LIBRARIES,
+        [*_stored_without(problem.library), _stored_from_problem(problem)],
     )
 
 
 def stop_keeping(library: str) -> None:
     """Index a library only when Index is pressed."""
-    permissions.change(permissions.LIBRARIES, _without(library))
+    permissions.change(permissions.LIBRARIES, _stored_without(library))
 
 
 def toggle_kept(choices: LibraryChoices) -> str:
@@ -79,7 +80,7 @@ def choices_are_kept(choices: LibraryChoices) -> bool:
     return bool(listed_sources(choices)) and is_kept(index_problem(choices))
 
 
-def _without(library: str) -> list[Any]:
+def _stored_without(library: str) -> list[Any]:
     return [
         _stored_from_problem(each)
         for each in auto_updated_libraries()

@@ -164,12 +164,12 @@ def _read_file(
     if suffix_by_content(path) == ".fbx" and (missing := describe_missing_curves(path)):
         refused.append(missing)
     if stated is not None:
-        clips = _upright(_with_one_root(clips, stated))
+        clips = _stand_upright(_with_one_root(clips, stated))
     kept = pack_skinned_meshes() if meshes else None
     return BlendRead(tuple(clips), tuple(refused), is_empty=is_empty, meshes=kept)
 
 
-def _upright(clips: list[BlendClip]) -> list[BlendClip]:
+def _stand_upright(clips: list[BlendClip]) -> list[BlendClip]:
     """Turn all takes of a file whose bodies refute its up axis."""
     motions = stand_scene_upright([clip.motion for clip in clips])
     return [replace(clip, motion=motion) for clip, motion in zip(clips, motions, strict=True)]

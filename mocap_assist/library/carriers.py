@@ -50,7 +50,7 @@ def with_carriers(
     InvalidMotionError
         A carrier changes its size, or its scale differs between axes.
     """
-    carriers = [each for each in _above(armature) if _is_moving(each)]
+    carriers = [each for each in _objects_above(armature) if _is_moving(each)]
     if not carriers and not armature.constraints:
         return motion
     before = scene.frame_current
@@ -76,7 +76,7 @@ def with_carriers(
     return replace(motion, rotations=rotations, root_positions=positions)
 
 
-def _above(armature: bpy.types.Object) -> Iterator[bpy.types.Object]:
+def _objects_above(armature: bpy.types.Object) -> Iterator[bpy.types.Object]:
     carrier = armature.parent
     while carrier is not None:
         yield carrier

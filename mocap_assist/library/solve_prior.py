@@ -36,16 +36,16 @@ class LibraryPrior:
 
     def bases(self, body: Motion | Tracks, progress: Progress) -> LibraryBases:
         """Learn filter bases from the clips that are similar to the body's motion."""
-        with self._opened() as (library, reading):
+        with self._open_library() as (library, reading):
             return bases_from_library(body, library, progress=progress, **reading)
 
     def postures(self, body: Motion, progress: Progress) -> LibraryPostures:
         """Collect the postures of the clips that are similar to the body's motion."""
-        with self._opened() as (library, reading):
+        with self._open_library() as (library, reading):
             return postures_from_library(body, library, progress=progress, **reading)
 
     @contextmanager
-    def _opened(self) -> Iterator[tuple[ClipLibrary, dict[str, Any]]]:
+    def _open_library(self) -> Iterator[tuple[ClipLibrary, dict[str, Any]]]:
         with load_clip_library(self.path) as library:
             ignore = own_clips(library, self.own)
             fetch = partial(_fetch, blender=self.blender)

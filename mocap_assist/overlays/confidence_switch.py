@@ -54,11 +54,11 @@ def draw_confidence_switch(layout: bpy.types.UILayout, context: bpy.types.Contex
         cell.enabled = term in available
         cell.prop_enum(manager, "mocap_assist_confidence_term", term.name)
     draw_marks(layout, MARKS[StripRow.CONFIDENCE], columns=3)
-    for sentence in _missing(available):
+    for sentence in _describe_missing(available):
         draw_sentence(layout, context, sentence, icon="INFO")
 
 
-def _missing(available: frozenset[Term]) -> list[str]:
+def _describe_missing(available: frozenset[Term]) -> list[str]:
     """Return a message for each missing term."""
     if not available:
         return [NO_TERMS]

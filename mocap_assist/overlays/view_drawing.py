@@ -23,7 +23,7 @@ class ViewDrawing:
     ) -> None:
         self._draw = draw
         kind = "POST_PIXEL" if in_pixels else "POST_VIEW"
-        self._handle: Any = SpaceView3D.draw_handler_add(self._drawn, (), "WINDOW", kind)
+        self._handle: Any = SpaceView3D.draw_handler_add(self._draw_view, (), "WINDOW", kind)
 
     @property
     def is_on(self) -> bool:
@@ -36,7 +36,7 @@ class ViewDrawing:
             SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
             self._handle = None
 
-    def _drawn(self) -> None:
+    def _draw_view(self) -> None:
         context = bpy.context
         if context.space_data.overlay.show_overlays:
             self._draw(context)

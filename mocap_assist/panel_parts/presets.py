@@ -118,7 +118,7 @@ def _menu(group: str) -> type[bpy.types.Panel]:
     return type(f"MOCAP_PT_{group}_presets", (PresetMenu, bpy.types.Panel), own)
 
 
-def _own(group: str) -> type[bpy.types.Operator]:
+def _preset_operator(group: str) -> type[bpy.types.Operator]:
     own = {
         "group": group,
         "bl_idname": f"mocap_assist.{group}_preset_add",
@@ -135,5 +135,5 @@ MENUS = {group: _menu(group) for group in VERBS}
 register, unregister = bpy.utils.register_classes_factory((
     MOCAP_OT_use_preset,
     *MENUS.values(),
-    *map(_own, VERBS),
+    *map(_preset_operator, VERBS),
 ))

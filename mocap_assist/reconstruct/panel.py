@@ -28,7 +28,9 @@ class ReconstructPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(BUTTON) and (shows_all(context) or _suits(selected_armature(context)))
+        return exists(BUTTON) and (
+            shows_all(context) or _is_suitable(selected_armature(context))
+        )
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
         draw_presets(self.layout, "reconstruct")
@@ -53,7 +55,7 @@ class ReconstructPanel(PanelMixin):
         draw_confidence_switch(layout, context)
 
 
-def _suits(armature: bpy.types.Object | None) -> bool:
+def _is_suitable(armature: bpy.types.Object | None) -> bool:
     """Whether an armature was imported from joints of a camera, or not by Mocap Assist."""
     if armature is None:
         return False

@@ -137,7 +137,7 @@ def rebuild(
         reliability=solution.reliability,
         progress=within(progress, 0.8, 0.9),
     )
-    motion = _eased(problem.body, motion, finish.ease)
+    motion = _blend_outside(problem.body, motion, finish.ease)
     contacts = None if planted is None else planted.contacts
     before, after = (
         measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
@@ -146,7 +146,7 @@ def rebuild(
     return Rebuilt(motion, solution, planted, (*solution.remarks, *remarks), before, after)
 
 
-def _eased(raw: Motion, motion: Motion, ease: Array) -> Motion:
+def _blend_outside(raw: Motion, motion: Motion, ease: Array) -> Motion:
     """Blend into the frames outside, where the recording has data."""
     if (ease == 1.0).all():
         return motion

@@ -66,7 +66,7 @@ class _Value(NamedTuple):
             held = holder[name] if is_custom else getattr(holder, name)
         except (ValueError, KeyError, AttributeError):
             held = None
-        return cls(owner, name, is_custom, _animatable(held))
+        return cls(owner, name, is_custom, _animatable_value(held))
 
     def put_back(self, animated: bpy.types.Object) -> None:
         if self.held is None:
@@ -78,7 +78,7 @@ class _Value(NamedTuple):
             setattr(holder, self.name, self.held)
 
 
-def _animatable(held: Any) -> Any:
+def _animatable_value(held: Any) -> Any:
     """Return a number, a choice or a tuple of numbers; None for all that no keys change.
 
     A file may have curves of anything: groups of properties and pointers to data stay.

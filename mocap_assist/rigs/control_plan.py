@@ -62,9 +62,9 @@ class RigPlan:
 
 def role_above(role: str, played: Sequence[str]) -> str:
     """Return the nearest role above that is played too, or nothing for the topmost one."""
-    above = _above(role)
+    above = _role_above(role)
     while above and above not in played:
-        above = _above(above)
+        above = _role_above(above)
     return above
 
 
@@ -81,7 +81,7 @@ def _root_plan(root_bone: str) -> list[Plan]:
     return [Plan(root_bone, ROOT, ROOT, moves=True)] if root_bone else []
 
 
-def _above(role: str) -> str:
+def _role_above(role: str) -> str:
     if role in CENTRAL_ROLES:
         return CENTRAL_ROLES[CENTRAL_ROLES.index(role) - 1] if role != CENTRAL_ROLES[0] else ""
     side = "left" if role.startswith("left") else "right"

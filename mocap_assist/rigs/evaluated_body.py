@@ -146,12 +146,12 @@ def _playing(
 
 def _parent(role: str, ordered: list[str]) -> int:
     """Return the index of the nearest existing part above; -1 for the hips."""
-    while (above := _above(role)) and above not in ordered:
+    while (above := _role_above(role)) and above not in ordered:
         role = above
     return ordered.index(above) if above else -1
 
 
-def _above(role: str) -> str:
+def _role_above(role: str) -> str:
     side = next((side for side in SIDES if role.startswith(side)), "")
     part = role.removeprefix(side)
     for inner, outer in pairwise(PHALANGES):

@@ -13,11 +13,11 @@ def movers_of(armature: bpy.types.Object, bones: Iterable[str]) -> frozenset[str
         name = waiting.pop()
         if name not in found:
             found.add(name)
-            waiting.extend(_directly(armature, armature.pose.bones[name]))
+            waiting.extend(_direct_movers(armature, armature.pose.bones[name]))
     return frozenset(found)
 
 
-def _directly(armature: bpy.types.Object, bone: bpy.types.PoseBone) -> Iterator[str]:
+def _direct_movers(armature: bpy.types.Object, bone: bpy.types.PoseBone) -> Iterator[str]:
     if bone.parent is not None:
         yield bone.parent.name
     for constraint in bone.constraints:

@@ -58,12 +58,16 @@ def find_carriers(
     moved = {name: np.stack([delta[name] for _, delta in probes]) for name in names}
     moved[""] = np.tile(np.eye(4), (N_POSES, 1, 1))
     return {
-        name: _same(carried[name], moved, name, height if name in movers else np.inf)
+        name: _movers_in_common(
+            carried[name], moved, name, height if name in movers else np.inf
+        )
         for name in names
     }
 
 
-def _same(carried: Array, moved: Mapping[str, Array], name: str, height: float) -> str | None:
+def _movers_in_common(
+    carried: Array, moved: Mapping[str, Array], name: str, height: float
+) -> str | None:
     """Return which controls move together; positions count only if the height is finite."""
     for other, movement in moved.items():
         difference = np.abs(carried - movement)

@@ -118,7 +118,9 @@ def keys_of(target: TargetRig, poses: WorldPoses, travel: Carried) -> Mapping[st
     travel : Carried
         Of controls that follow the travel.
     """
-    moved = [_moved(control, target.skeleton, poses, travel) for control in target.controls]
+    moved = [
+        _move_control(control, target.skeleton, poses, travel) for control in target.controls
+    ]
     n_frames = len(poses.positions)
     still = Carried(np.tile([1.0, 0.0, 0.0, 0.0], (n_frames, 1)), np.zeros(3), np.zeros(3))
     carriers = [
@@ -153,7 +155,9 @@ def _basis_shifts(control: Control, carrier: Carried, moved: Carried) -> Array:
     return np.asarray(rotate(inverse(control.location_axes), shift))
 
 
-def _moved(control: Control, skeleton: Skeleton, poses: WorldPoses, travel: Carried) -> Carried:
+def _move_control(
+    control: Control, skeleton: Skeleton, poses: WorldPoses, travel: Carried
+) -> Carried:
     if control.joint < 0:
         return travel
     rest = skeleton.rest_positions

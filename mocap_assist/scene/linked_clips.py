@@ -47,8 +47,8 @@ def linked_clips(
     present = {each.session_uid for each in scene.objects}
     try:
         with bpy.data.libraries.load(str(path), link=True) as (there, into):
-            into.actions = _chosen(there.actions, actions)
-            into.objects = _chosen(there.objects, objects)
+            into.actions = _chosen_names(there.actions, actions)
+            into.objects = _chosen_names(there.objects, objects)
     except OSError:
         raise InvalidFileError(
             f"{path} cannot be read as a .blend file. Save it again, or choose another."
@@ -67,5 +67,5 @@ def linked_clips(
                 bpy.data.libraries.remove(library)
 
 
-def _chosen(there: Sequence[str], names: Sequence[str] | None) -> list[str]:
+def _chosen_names(there: Sequence[str], names: Sequence[str] | None) -> list[str]:
     return [name for name in there if names is None or name in names]

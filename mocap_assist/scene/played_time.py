@@ -84,7 +84,7 @@ def played_strips(player: bpy.types.Object) -> tuple[bpy.types.NlaStrip, ...]:
     animation = player.animation_data
     found = result_player(player)
     if animation is not None and animation.use_tweak_mode and found in {None, animation}:
-        found = _tweaked(animation)
+        found = _tweaked_strip(animation)
         return () if found is None else (found,)
     if not isinstance(found, bpy.types.NlaStrip):
         return ()
@@ -93,7 +93,7 @@ def played_strips(player: bpy.types.Object) -> tuple[bpy.types.NlaStrip, ...]:
     return tuple(each for each in track if each.action == found.action and not each.mute)
 
 
-def _tweaked(animation: bpy.types.AnimData) -> bpy.types.NlaStrip | None:
+def _tweaked_strip(animation: bpy.types.AnimData) -> bpy.types.NlaStrip | None:
     """Return the strip whose action is assigned in Tweak Mode."""
     same = (each for each in playing_strips(animation) if each.action == animation.action)
     return max(same, key=lambda each: each.active, default=None)

@@ -54,7 +54,7 @@ class BaseExample(NamedTuple):
         held = tuple(
             Held(path, index, _group(channel.curve), float(channel.values(start)[0]))
             for (path, index), channel in animated_curves(*first).items()
-            if channel.is_on and not _moves(path, movers)
+            if channel.is_on and not _is_of_movers(path, movers)
         )
         return cls(takes[0], frozenset(rotated), held)
 
@@ -92,7 +92,7 @@ def without_still(keys: Mapping[str, BoneKeys]) -> Mapping[str, BoneKeys]:
     }
 
 
-def _moves(path: str, movers: Collection[str]) -> bool:
+def _is_of_movers(path: str, movers: Collection[str]) -> bool:
     """Whether a channel is of one of these bones."""
     named = BONE.match(path)
     return named is not None and named[1] in movers

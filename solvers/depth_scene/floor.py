@@ -129,7 +129,7 @@ def find_floor(
         inliers = points[np.abs(points @ up + height) <= fraction * _tolerance(points)]
         if len(inliers) < 3:
             return None
-        up, height, extent = _fitted(inliers)
+        up, height, extent = _fit_plane(inliers)
     steep = float(up @ LEVEL_UP) < np.cos(np.radians(settings.tilt))
     if steep or extent < settings.extent or len(inliers) < settings.min_fraction * len(points):
         return None
@@ -176,7 +176,7 @@ def _tolerance(points: Array) -> Array:
     return np.asarray(TOLERANCE_M + TOLERANCE_PER_M2 * points[..., 2] ** 2)
 
 
-def _fitted(points: Array) -> tuple[Array, float, float]:
+def _fit_plane(points: Array) -> tuple[Array, float, float]:
     """Return normal, height and narrower extent of the least-squares plane."""
     weights = _tolerance(points) ** -2
     center = np.average(points, axis=0, weights=weights)

@@ -100,7 +100,7 @@ def build_body(
     markers = markers_with(landmarks, names)
     frames = bone_frames(centers, landmarks, names)
     offsets = np.array([_offset(joint, centers, frames) for joint in joints])
-    offsets = _symmetric(offsets, names)
+    offsets = _average_sides(offsets, names)
     offsets[0] = [0.0, 0.0, _hips_height(offsets, names, centers.scale)]
     marker_offsets = [_marker_offset(marker, centers, frames, landmarks) for marker in markers]
     body = MarkerBody(joints, markers, offsets, np.array(marker_offsets))
@@ -134,7 +134,7 @@ def _offset(joint: JointPrior, centers: JointCenters, frames: Mapping[str, Array
     return np.asarray(sign_of_axis * length * np.eye(3)[axis])
 
 
-def _symmetric(offsets: Array, names: list[str]) -> Array:
+def _average_sides(offsets: Array, names: list[str]) -> Array:
     """Return offsets averaged over both sides, with X = 0 for central joints."""
     result = offsets.copy()
     for index, name in enumerate(names):

@@ -42,7 +42,7 @@ def fit_rigid_transform(template: Array, positions: Array) -> tuple[Array, Array
     observed = np.isfinite(positions).all(axis=-1)
     filled = np.where(observed[..., None], positions, 0.0)
     weights = observed.astype(float)
-    rotations, translations = _weighted(template, filled, weights)
+    rotations, translations = _fit_weighted(template, filled, weights)
     if len(template) > 3:
         for _ in range(N_REWEIGHTINGS):
             distances = np.linalg.norm(
@@ -51,7 +51,7 @@ def fit_rigid_transform(template: Array, positions: Array) -> tuple[Array, Array
             typical = float(np.median(distances[observed])) if observed.any() else 0.0
             scale = max(MARKER_NOISE_M, CAUCHY_FACTOR * typical)
             weights = observed / (1.0 + (np.nan_to_num(distances) / scale) ** 2)
-            rotations, translations = _weighted(template, filled, weights)
+            rotations, translations = _fit_weighted(template, filled, weights)
     return rotations, translations
 
 
@@ -60,7 +60,7 @@ def transform_shape(template: Array, rotations: Array, translations: Array) -> A
     return np.asarray(np.einsum("fij,pj->fpi", rotations, template) + translations[:, None])
 
 
-def _weighted(template: Array, positions: Array, weights: Array) -> tuple[Array, Array]:
+def _fit_weighted(template: Array, positions: Array, weights: Array) -> tuple[Array, Array]:
     total = weights.sum(axis=1)
     fraction = weights / np.where(total > 0.0, total, np.nan)[:, None]
     center = np.nan_to_num(np.einsum("fp,fpi->fi", fraction, positions))

@@ -71,7 +71,7 @@ class NormalEquations:
         self.cost += 0.5 * float(np.vdot(residuals, residuals))
 
     @cached_property
-    def _assembled(self) -> tuple[Array, Array, Array]:
+    def _blocks_and_gradient(self) -> tuple[Array, Array, Array]:
         """Blocks of frames, blocks of a frame's rows and the next one's columns, gradient.
 
         All residuals together need one product of matrices for each frame.
@@ -100,7 +100,7 @@ class NormalEquations:
     @property
     def gradient(self) -> Array:
         """Derivatives of `cost`, (n_frames, n_variables)."""
-        return self._assembled[2]
+        return self._blocks_and_gradient[2]
 
     @property
     def expected_decrease(self) -> float:
@@ -112,7 +112,7 @@ class NormalEquations:
         """The step to the least sum of squares, (n_frames, n_variables)."""
         from scipy.linalg import solveh_banded  # slow to import: only when needed
 
-        blocks, between, gradient = self._assembled
+        blocks, between, gradient = self._blocks_and_gradient
         solved = solveh_banded(
             lower_block_bands(blocks, self._second, between),
             -gradient.ravel(),

@@ -12,7 +12,7 @@ if sys.platform == "win32":
 
     SYNCHRONIZE, ACCESS_DENIED, WAIT_TIMEOUT = 0x00100000, 5, 0x102
 
-    def _answers(pid: int) -> bool:  # os.kill would end the process there
+    def _is_running(pid: int) -> bool:  # os.kill would end the process there
         kernel = ctypes.WinDLL("kernel32", use_last_error=True)
         process = kernel.OpenProcess(SYNCHRONIZE, False, pid)
         if not process:
@@ -23,7 +23,7 @@ if sys.platform == "win32":
 
 else:
 
-    def _answers(pid: int) -> bool:
+    def _is_running(pid: int) -> bool:
         try:
             os.kill(pid, 0)
         except ProcessLookupError:
@@ -53,7 +53,7 @@ def this_machine() -> str:
 
 def is_running(pid: int) -> bool:
     """Return whether a process of this machine runs; a zombie does not."""
-    if pid <= 0 or not _answers(pid):
+    if pid <= 0 or not _is_running(pid):
         return False
     try:
         state = Path(f"/proc/{pid}/stat").read_text(errors="replace").rpartition(")")[2]

@@ -85,7 +85,7 @@ def fit_curve(samples: Array, keys: Integers) -> KeyCurve:
     first = keys[:-1]
     squares = np.add.reduceat(weighted[:, :, None] * basis[:, None, :], first, axis=0)
     sides = np.add.reduceat(weighted[:, :, None] * samples[:, None, :], first, axis=0)
-    banded, side = _assembled(squares, sides)
+    banded, side = _assemble_equations(squares, sides)
     lengths = np.diff(keys).astype(np.float64)
     slope_weights = SLOPE_WEIGHT * (np.append(lengths, 0.0) ** 2 + np.append(0.0, lengths) ** 2)
     banded[3, 1::2] += slope_weights
@@ -107,7 +107,7 @@ def _basis(
     return 1.0 - stop, stop, u * (1.0 - u) ** 2 * length, u * u * (u - 1.0) * length
 
 
-def _assembled(squares: Array, sides: Array) -> tuple[Array, Array]:
+def _assemble_equations(squares: Array, sides: Array) -> tuple[Array, Array]:
     """Return the normal equations of value, slope, value, ... as LAPACK's upper bands."""
     n_keys = len(squares) + 1
     banded, side = np.zeros((4, 2 * n_keys)), np.zeros((2 * n_keys, sides.shape[2]))

@@ -167,12 +167,12 @@ class Thinning:
 
     def _refit(self, joint: int, keys: Integers) -> None:
         curve = fit_curve(self.samples[joint], keys)
-        fitted = self._evaluated(joint, curve)
+        fitted = self._evaluate_curve(joint, curve)
         self.changed |= (np.abs(fitted - self.fitted[joint]) > ROUNDING).any(axis=1)
         self.curves[joint], self.fitted[joint] = curve, fitted
         self.errors[joint] = np.linalg.norm(fitted - self.targets[joint], axis=-1)
 
-    def _evaluated(self, joint: int, curve: KeyCurve) -> Array:
+    def _evaluate_curve(self, joint: int, curve: KeyCurve) -> Array:
         frames = np.arange(self.motion.n_frames)
         if joint == ROOT:
             return curve.at(frames)

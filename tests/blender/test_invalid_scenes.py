@@ -95,7 +95,7 @@ def test_distant_single_key_is_refused_before_sampling(
     actor, refused, load, monkeypatch, button, frame
 ):
     channel = load("mocap_assist.actions.curves").Channel
-    monkeypatch.setattr(channel, "_evaluated", lambda *_: pytest.fail("It was sampled."))
+    monkeypatch.setattr(channel, "_evaluate_curve", lambda *_: pytest.fail("It was sampled."))
     curve = next(each for each in curves(actor) if "LeftArm" in each.data_path)
     curve.keyframe_points.insert(frame, 0.3)
 

@@ -105,7 +105,7 @@ def read_markers(
             markers = markers.found_again(holder, recorded)
     rate = scene.render.fps / scene.render.fps_base / grid.step
     names = point_names(markers.objects)
-    tracks = Tracks(names, np.stack(positions, axis=1), rate, _together(confidence))
+    tracks = Tracks(names, np.stack(positions, axis=1), rate, _join_confidence(confidence))
     return MarkerTake(markers.objects, markers.sources, grid, tracks, spaces)
 
 
@@ -237,7 +237,7 @@ def _confidence(curves: Curves, frames: Array) -> Array | None:
     return None if curve is None else np.clip(curve.values(frames), 0.0, 1.0)
 
 
-def _together(confidence: list[Array | None]) -> Array | None:
+def _join_confidence(confidence: list[Array | None]) -> Array | None:
     """Return the sensor's confidence in all points, (n_frames, n_points), or None."""
     known = [each for each in confidence if each is not None]
     if not known:

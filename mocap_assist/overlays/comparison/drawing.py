@@ -41,16 +41,16 @@ class Look(NamedTuple):
 def start(draw_all: Callable[[bpy.types.Context], None]) -> None:
     """Call `draw_all` whenever a 3D View is drawn."""
     _drawing.append(ViewDrawing(draw_all))
-    handlers.depsgraph_update_post.append(_changed)
+    handlers.depsgraph_update_post.append(_follow_edit)
     for each in _REPLACING:
-        each.append(_replaced)
+        each.append(_follow_replacement)
 
 
 def stop() -> None:
     """Undo `start`."""
     for each in _REPLACING:
-        each.remove(_replaced)
-    handlers.depsgraph_update_post.remove(_changed)
+        each.remove(_follow_replacement)
+    handlers.depsgraph_update_post.remove(_follow_edit)
     if bpy.app.timers.is_registered(refresh):
         bpy.app.timers.unregister(refresh)
     _drawing.pop().close()
@@ -113,7 +113,7 @@ def draw_faded(faded: onion_skin.FadedLines, matrix: Any, color: Color, width: f
 
 
 @handlers.persistent
-def _changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+def _follow_edit(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Read keys and rest poses again after an edit, but not while they are dragged."""
     kinds = (bpy.types.Action, bpy.types.Armature)
     if not any(isinstance(update.id, kinds) for update in depsgraph.updates):
@@ -131,7 +131,7 @@ def refresh() -> None:
 
 
 @handlers.persistent
-def _replaced(*_: object) -> None:
+def _follow_replacement(*_: object) -> None:
     """Clear the caches because undo, redo or loading replaced the data."""
     forget()
 

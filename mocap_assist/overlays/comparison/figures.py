@@ -79,10 +79,16 @@ def read_figures(
         if rig.parents[bone] in row and not rig.connected[bone]
     )
     names = tuple(rig.bones[bone] for bone in keyed)
-    return Figures(frames.start, names, _single(heads, keyed), _single(tails, keyed), joins)
+    return Figures(
+        frames.start,
+        names,
+        _single_precision(heads, keyed),
+        _single_precision(tails, keyed),
+        joins,
+    )
 
 
-def _single(points: Array, bones: list[int]) -> NDArray[np.float32]:
+def _single_precision(points: Array, bones: list[int]) -> NDArray[np.float32]:
     return points[:, bones].astype(np.float32)
 
 

@@ -27,11 +27,11 @@ def curves_near(source: Source, keys: Keys, frames: Array) -> Curves:
     """Return the F-Curves as they are now, with only the keys that the frames need."""
     curves = animated_curves(*source)
     for name in curves.keys() & keys.keys():
-        curves[name].keys = _near(keys[name], frames)
+        curves[name].keys = _keys_near(keys[name], frames)
     return curves
 
 
-def _near(keys: NDArray[np.float32], frames: Array) -> Array:
+def _keys_near(keys: NDArray[np.float32], frames: Array) -> Array:
     """Return the keys on the frames; if a frame has none, its neighboring keys too."""
     times = keys[:, 0]
     edges = np.array([frames[0] - ON_FRAME, frames[-1] + ON_FRAME], np.float32)

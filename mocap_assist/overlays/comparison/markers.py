@@ -91,7 +91,7 @@ def raw_and_clean(holder: bpy.types.Object) -> tuple[ComparedMarkers, ComparedMa
         result = played if recorded else _same_slot(newest.get(played[0]), played)
         if result is not None:
             clean.append((marker, result))
-    return _together(raw), _together(clean)
+    return _join_markers(raw), _join_markers(clean)
 
 
 def _newest_results() -> dict[bpy.types.Action, bpy.types.Action]:
@@ -107,7 +107,7 @@ def _same_slot(action: bpy.types.Action | None, like: Source) -> Source | None:
     return None if matching is None else (action, matching)
 
 
-def _together(pairs: list[tuple[bpy.types.Object, Source]]) -> ComparedMarkers:
+def _join_markers(pairs: list[tuple[bpy.types.Object, Source]]) -> ComparedMarkers:
     return ComparedMarkers(
         tuple(marker for marker, _ in pairs), tuple(source for _, source in pairs)
     )

@@ -66,7 +66,7 @@ def rings_at(armature: bpy.types.Object, frame: float) -> Rings | None:
     lines, colors = [], []
     for is_standing, names, (_, mark) in zip(standing, bones, CONTACT_ROWS, strict=True):
         if is_standing and names:
-            points = _circle * _radius(armature, feet or names) + _under(armature, names)
+            points = _circle * _radius(armature, feet or names) + _point_under(armature, names)
             lines.append(np.stack([points[:-1], points[1:]], axis=1))
             colors.append(np.full((N_SEGMENTS, 2, 4), COLORS[mark]))
     if not lines:
@@ -105,7 +105,7 @@ def _radius(armature: bpy.types.Object, names: tuple[str, ...]) -> float:
     return float(RADIUS * length * armature.matrix_world.median_scale)
 
 
-def _under(armature: bpy.types.Object, names: tuple[str, ...]) -> NDArray[np.float64]:
+def _point_under(armature: bpy.types.Object, names: tuple[str, ...]) -> NDArray[np.float64]:
     """Return the point of the scene below the middle of bones, at the height of their end."""
     ends: list[Vector] = []
     for name in names:

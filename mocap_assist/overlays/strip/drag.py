@@ -94,7 +94,7 @@ class RangeOperator(ActOperator):
         if event.type == "MOUSEMOVE":
             self._follow(context, event.mouse_region_x)
         is_released = event.type == "LEFTMOUSE" and event.value == "RELEASE"
-        return self._ended(context) if is_released else {"RUNNING_MODAL"}
+        return self._end_drag(context) if is_released else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Restore the range; Blender calls this when the window closes, for example."""
@@ -109,7 +109,7 @@ class RangeOperator(ActOperator):
             for editor in EDITORS:
                 redraw(context, editor)
 
-    def _ended(self, context: bpy.types.Context) -> set[str]:
+    def _end_drag(self, context: bpy.types.Context) -> set[str]:
         if not self._is_dragged:
             if not self._before.is_used:
                 return {"CANCELLED"}

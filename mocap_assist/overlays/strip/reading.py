@@ -112,7 +112,7 @@ def strip_of(context: bpy.types.Context) -> Strip | None:
     is_checked = shown.checked_action == source[0]
     block = _block(armature, source)
     time = played_time(armature, context.scene.frame_current_final)
-    bones = _selected(armature)
+    bones = _selected_bones(armature)
     report, n_issues = (shown.report, len(shown.issues)) if is_checked else ("", 0)
     key = _StripKey(block, bones, report, n_issues, time)
     if key not in _strips:
@@ -164,7 +164,7 @@ def _make_room(store: dict[Any, Any]) -> None:
         del store[next(iter(store))]
 
 
-def _selected(armature: bpy.types.Object) -> tuple[str, ...]:
+def _selected_bones(armature: bpy.types.Object) -> tuple[str, ...]:
     """Return the bones that are selected in Pose Mode, and those below them.
 
     None where these are all bones, or no bone is selected.
@@ -197,16 +197,16 @@ def strip_from(
     return Strip(keys.first, keys.last, keys.step, found) if found else None
 
 
-def _chosen(by_bone: Mapping[str, Array], bones: frozenset[str]) -> list[Array]:
+def _values_of_bones(by_bone: Mapping[str, Array], bones: frozenset[str]) -> list[Array]:
     return [each for bone, each in by_bone.items() if not bones or bone in bones]
 
 
 def _frames(by_bone: Mapping[str, Array], bones: frozenset[str]) -> Array:
-    return np.concatenate([np.empty(0), *_chosen(by_bone, bones)])
+    return np.concatenate([np.empty(0), *_values_of_bones(by_bone, bones)])
 
 
 def _confidence(keys: ActionKeys, bones: frozenset[str]) -> tuple[Range, ...]:
-    chosen = _chosen(keys.confidence, bones)
+    chosen = _values_of_bones(keys.confidence, bones)
     if not chosen:
         return ()
     frames = np.arange(keys.first, keys.last + 0.5 * keys.step, keys.step)

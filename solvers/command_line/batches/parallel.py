@@ -165,17 +165,17 @@ def _submit(executor: Executor, verb: Verb, task: Task, shared: Any) -> "Future[
 
 def _for_other_machines(task: Task, batch: str) -> Task:
     """Return a task with absolute paths: workers have other working folders."""
-    arguments = {name: _absolute(value) for name, value in vars(task.arguments).items()}
+    arguments = {name: _absolute_paths(value) for name, value in vars(task.arguments).items()}
     return task._replace(
-        sources=tuple(map(_absolute, task.sources)),
-        target=_absolute(task.target),
+        sources=tuple(map(_absolute_paths, task.sources)),
+        target=_absolute_paths(task.target),
         arguments=argparse.Namespace(**arguments),
         batch=batch,
     )
 
 
-def _absolute(value: Any) -> Any:
+def _absolute_paths(value: Any) -> Any:
     """Return a path, or a list of them, as absolute; anything else as it is."""
     if isinstance(value, list):
-        return [_absolute(each) for each in value]
+        return [_absolute_paths(each) for each in value]
     return value.absolute() if isinstance(value, Path) else value

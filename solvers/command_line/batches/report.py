@@ -187,7 +187,7 @@ def _severity(entry: Entry) -> float:
 
 def _overview(entries: Sequence[Entry]) -> str:
     """Return a table with a row of comparable numbers for each file."""
-    compared = [_compared(entry) for entry in entries]
+    compared = [_format_figures(entry) for entry in entries]
     columns = list(dict.fromkeys(name for numbers in compared for name in numbers))
     heads = "".join(f"<th>{_label(name)}</th>" for name in columns)
     lines = [
@@ -199,7 +199,7 @@ def _overview(entries: Sequence[Entry]) -> str:
     return f"<table><tr><th>file</th>{heads}</tr>{''.join(lines)}</table>"
 
 
-def _compared(entry: Entry) -> dict[str, str]:
+def _format_figures(entry: Entry) -> dict[str, str]:
     """Return the formatted numbers of a file, before and after where both exist."""
     figures = entry.figures or {}
     before, after = figures.get("before"), figures.get("after")

@@ -59,7 +59,9 @@ class WorkerCluster:
 
         # A function whose result is the value: Dask calls it again when its holders have ended.
         with config.set({"distributed.admin.large-graph-warning-threshold": "1TB"}):
-            return self._client.submit(*_sent(partial(_identity, value)), pure=False)
+            return self._client.submit(
+                *_call_for_workers(partial(_identity, value)), pure=False
+            )
 
 
 class ClusterExecutor(Executor):
@@ -76,7 +78,7 @@ class ClusterExecutor(Executor):
         future: Future[Any] = Future()
         call = partial(_call_after, self._check, function)
         try:
-            remote = self._executor.submit(*_sent(partial(call, **kwargs), *args))
+            remote = self._executor.submit(*_call_for_workers(partial(call, **kwargs), *args))
         except _scheduler_errors():
             raise MocapAssistError(_is_gone(self._address)) from None
         remote.add_done_callback(partial(self._pass_on, future))
@@ -157,7 +159,7 @@ async def _try_connection(address: str) -> None:
 
 def _check_workers(client: "Client", paths: Sequence[Path]) -> None:
     check = partial(_check_once, build(), tuple(paths))
-    answers = client.run(*_sent(check), on_error="return")
+    answers = client.run(*_call_for_workers(check), on_error="return")
     if not answers:
         raise InvalidSettingError(
             "The scheduler has no workers. Start some: dask worker, and its address."
@@ -204,7 +206,7 @@ def _identity(value: Any) -> Any:
     return value
 
 
-def _sent(call: Callable[..., Any], *arguments: Any) -> tuple[Any, ...]:
+def _call_for_workers(call: Callable[..., Any], *arguments: Any) -> tuple[Any, ...]:
     """Return a call as function and arguments for Dask; shared values stay as they are."""
     from distributed.protocol.pickle import dumps
 

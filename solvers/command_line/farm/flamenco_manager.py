@@ -111,7 +111,7 @@ class FlamencoManager:
                 answer = error
             with answer:
                 if answer.status in REDIRECTS:
-                    raise self._redirected(answer.headers.get("Location", ""))
+                    raise self._redirect_error(answer.headers.get("Location", ""))
                 content = answer.read(MAX_ANSWER_BYTES + 1)
         except HTTPException:
             raise self._not_flamenco() from None
@@ -153,7 +153,7 @@ class FlamencoManager:
             f"{self.address} answers, but not as a Flamenco Manager. Correct the address."
         )
 
-    def _redirected(self, location: str) -> MocapAssistError:
+    def _redirect_error(self, location: str) -> MocapAssistError:
         return MocapAssistError(
             f"{self.address} redirects to {_one_line(location)}, where nothing was sent. If"
             " that is your Flamenco Manager, enter its address."

@@ -65,7 +65,7 @@ def texts_of(
     parser = argparse.ArgumentParser(add_help=False)
     add_options(parser)
     for option in parser._actions:  # Numbers and angles stay as they were written.
-        option.type = _absolute if option.type is Path else None
+        option.type = _absolute_path if option.type is Path else None
         option.default = argparse.SUPPRESS
     given = vars(parser.parse_args(words))
     return {option.dest: _text(given.get(option.dest)) for option in options}
@@ -96,7 +96,7 @@ def words_of(options: Sequence[argparse.Action], texts: Mapping[str, str]) -> li
     return words
 
 
-def _absolute(path: str) -> str:
+def _absolute_path(path: str) -> str:
     """Return an absolute path: workers have other working folders."""
     return str(Path(path).absolute())
 

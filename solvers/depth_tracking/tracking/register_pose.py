@@ -136,7 +136,7 @@ def _descend(objective: _Objective, pose: Array, iterations: int) -> Registered:
         change = solve_step(best.equations, np.full(N_COORDINATES, damping))
         if np.abs(change).max() < _MIN_STEP:
             break
-        trial = objective.evaluate(best.pose + _limited(change, settings))
+        trial = objective.evaluate(best.pose + _limit_step(change, settings))
         if not settings.accept_only_better or trial.equations.cost <= best.equations.cost:
             best, damping = trial, max(damping / _DAMPING_FACTOR, settings.damping)
         else:
@@ -145,7 +145,7 @@ def _descend(objective: _Objective, pose: Array, iterations: int) -> Registered:
     return best
 
 
-def _limited(change: Array, settings: TrackerSettings) -> Array:
+def _limit_step(change: Array, settings: TrackerSettings) -> Array:
     largest_step = max(np.abs(change[3:]).max(), np.abs(change[:3]).max() / _METERS_PER_RADIAN)
     limited: Array = change * min(1.0, settings.max_step / max(largest_step, 1e-12))
     return limited

@@ -231,7 +231,7 @@ def _side_and_words(name: str, spelling: _Spelling) -> tuple[str, list[str]]:
             remainder = word.removeprefix(side)
             if remainder == word and len(side) > 1:
                 remainder = word.removesuffix(side)
-            other = [*words[:index], _swapped(word, side, remainder), *words[index + 1 :]]
+            other = [*words[:index], _swap_side(word, side, remainder), *words[index + 1 :]]
             if remainder not in {word, ""} and "".join(other) in spelling.names:
                 return SIDE_OF_WORD[side], [*words[:index], remainder, *words[index + 1 :]]
     return "", words
@@ -241,7 +241,7 @@ def _mirrored(words: list[str], index: int) -> str:
     return "".join([*words[:index], OPPOSITE[words[index]], *words[index + 1 :]])
 
 
-def _swapped(word: str, side: str, remainder: str) -> str:
+def _swap_side(word: str, side: str, remainder: str) -> str:
     return OPPOSITE[side] + remainder if word.startswith(side) else remainder + OPPOSITE[side]
 
 

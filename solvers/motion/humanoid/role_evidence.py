@@ -132,17 +132,17 @@ def _evidence(
 ) -> RoleEvidence:
     if is_named:
         if fault:
-            return _because(Reason.FAULT, fault=fault)
+            return _evidence_for(Reason.FAULT, fault=fault)
         if by_structure == joint:
-            return _because(Reason.BOTH)
+            return _evidence_for(Reason.BOTH)
         if weak_fault and not is_human:
-            return _because(Reason.FAULT, fault=weak_fault)
+            return _evidence_for(Reason.FAULT, fault=weak_fault)
         if by_structure and may_contradict:
-            return _because(Reason.CONTRADICTED, other=by_structure)
-        return _because(Reason.TRUNK if counts_differ else Reason.NAME)
+            return _evidence_for(Reason.CONTRADICTED, other=by_structure)
+        return _evidence_for(Reason.TRUNK if counts_differ else Reason.NAME)
     if by_structure != joint:
-        return _because(Reason.NEITHER)
-    return _because(_without_name(has_other_name, is_human, guesses_side))
+        return _evidence_for(Reason.NEITHER)
+    return _evidence_for(_without_name(has_other_name, is_human, guesses_side))
 
 
 def _without_name(has_other_name: bool, is_human: bool, guesses_side: bool) -> Reason:
@@ -154,7 +154,7 @@ def _without_name(has_other_name: bool, is_human: bool, guesses_side: bool) -> R
     return Reason.TREE_DECIDES if has_other_name else Reason.STRUCTURE
 
 
-def _because(reason: Reason, **words: str) -> RoleEvidence:
+def _evidence_for(reason: Reason, **words: str) -> RoleEvidence:
     return RoleEvidence(reason, reason.text.format(**words))
 
 

@@ -147,7 +147,7 @@ def _find_map(names: tuple[str, ...], parents: tuple[int, ...], offsets: bytes) 
     by_structure = HumanoidMap(
         joints, MAX_STRUCTURE_SCORE * structure.humanness * _coverage(joints)
     )
-    by_name = _corrected(skeleton, by_name, structure)
+    by_name = _correct_by_structure(skeleton, by_name, structure)
     if by_name.score >= MIN_NAME_SCORE:
         return _fill_from(skeleton, by_name, by_structure)
     return max(by_name, by_structure, key=lambda found: found.score)
@@ -211,7 +211,9 @@ def _without_false_hands(joints: Mapping[str, str]) -> dict[str, str]:
     }
 
 
-def _corrected(skeleton: Skeleton, by_name: HumanoidMap, structure: Structure) -> HumanoidMap:
+def _correct_by_structure(
+    skeleton: Skeleton, by_name: HumanoidMap, structure: Structure
+) -> HumanoidMap:
     """Return the map by names with the structure's roles where lengths contradict names."""
     joints = _without_false_hands(without_contradictions(skeleton, by_name.joints, structure))
     if joints == dict(by_name.joints):

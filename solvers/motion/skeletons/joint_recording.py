@@ -37,9 +37,9 @@ class JointRecording:
                 f" {', '.join(f'Sensor.{sensor.name}' for sensor in Sensor)}."
             )
         if self.tracking_state is not None:
-            object.__setattr__(self, "tracking_state", self._checked(self.tracking_state))
+            object.__setattr__(self, "tracking_state", self._check_state(self.tracking_state))
 
-    def _checked(self, tracking_state: NDArray[np.int8]) -> NDArray[np.int8]:
+    def _check_state(self, tracking_state: NDArray[np.int8]) -> NDArray[np.int8]:
         state = np.asarray(tracking_state)
         if state.shape != self.tracks.positions.shape[:2]:
             raise InvalidMotionError(

@@ -63,14 +63,14 @@ def find_path_jumps(recording: Motion | Tracks, cuts: tuple[int, ...]) -> tuple[
         noise = MIN_NOISE_RATIO * np.maximum(local_median(known, brief), np.median(known))
         for step in np.flatnonzero(sizes > np.maximum(limit, noise)):
             around = excess[max(step - brief, 0) : step + brief + 1]
-            if np.linalg.norm(around.sum(axis=0)) > 0.5 * sizes[step] and _stays(
+            if np.linalg.norm(around.sum(axis=0)) > 0.5 * sizes[step] and _is_lasting(
                 recording.root_positions[start:stop], int(step), excess[step], brief
             ):
                 jumps.append(PathJump(start + int(step) + 1, excess[step]))
     return tuple(jumps)
 
 
-def _stays(path: Array, step: int, jump: Array, brief: int) -> bool:
+def _is_lasting(path: Array, step: int, jump: Array, brief: int) -> bool:
     """Return whether the median of the path moves on by more than half of the jump.
 
     That is more than at its median speed, over frames on both sides; outliers do not matter.

@@ -58,9 +58,9 @@ class Tracks:
         object.__setattr__(self, "positions", positions)
         object.__setattr__(self, "frame_rate", float(self.frame_rate))
         if self.confidence is not None:
-            object.__setattr__(self, "confidence", self._checked(self.confidence))
+            object.__setattr__(self, "confidence", self._check_confidence(self.confidence))
 
-    def _checked(self, confidence: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _check_confidence(self, confidence: NDArray[np.float64]) -> NDArray[np.float64]:
         confidence = np.array(confidence, dtype=np.float64)
         if confidence.shape != self.positions.shape[:2]:
             raise InvalidMotionError(

@@ -63,7 +63,7 @@ def warp(
         )
     distances = frame_distances(a, b)
     allowed = np.where(_band(len(a), len(b), window), distances, np.inf)
-    path = _cheapest_path(_accumulated(allowed))
+    path = _cheapest_path(_accumulate_costs(allowed))
     path_distances = distances[path[:, 0], path[:, 1]]
     return Alignment(float(path_distances.mean()), path, path_distances)
 
@@ -104,7 +104,7 @@ def _band(n: int, m: int, window: float | None) -> NDArray[np.bool_]:
     return np.asarray(offset <= max(window * max(n, m), slope, 1.0))
 
 
-def _accumulated(distances: NDArray[np.float64]) -> NDArray[np.float64]:
+def _accumulate_costs(distances: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the least total cost up to each pair, shape (n + 1, m + 1), padded with infinity.
 
     All pairs (i, j) of one anti-diagonal i + j = k depend only on the two before it, so one

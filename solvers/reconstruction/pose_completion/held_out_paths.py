@@ -44,7 +44,9 @@ def rest_probability(
     float
         0 where nothing was observed for long enough.
     """
-    stays = _stays(tracked, reliable, gap, float(np.sqrt(3.0 * (deviation**2).mean())))
+    stays = _fraction_within(
+        tracked, reliable, gap, float(np.sqrt(3.0 * (deviation**2).mean()))
+    )
     if stays is None:
         return 0.0
     known = tracked[reliable]
@@ -61,7 +63,7 @@ def rest_probability(
     return float(1.0 / (1.0 + np.exp(-np.clip(log_odds, -50.0, 50.0))))
 
 
-def _stays(
+def _fraction_within(
     tracked: Array, reliable: NDArray[np.bool_], gap: slice, tolerance: float
 ) -> float | None:
     """Return the fraction of hidden windows whose interpolated path is within a tolerance."""

@@ -55,7 +55,7 @@ def describe_empty_frames(take: Take) -> str:
     """
     if isinstance(take, DepthRecording):
         return ""
-    empty = ~_observed(take).any(axis=1)
+    empty = ~_find_observed(take).any(axis=1)
     runs = find_runs(empty)
     if not runs or empty.all():
         return ""
@@ -78,7 +78,7 @@ def observed_samples(recording: Motion | Tracks) -> Flags:
     return np.asarray(recording.observed[:, rotating])
 
 
-def _observed(take: Motion | Tracks | JointRecording | MotionFromJoints) -> Flags:
+def _find_observed(take: Motion | Tracks | JointRecording | MotionFromJoints) -> Flags:
     match take:
         case MotionFromJoints():
             return observed_samples(take.motion)

@@ -39,7 +39,7 @@ def work_of(load, monkeypatch):
     channel = load("mocap_assist.actions.curves").Channel
     count(load("mocap_assist.actions.armature_read"), "read_bone", "bone")
     count(channel, "read_keys", "keys")
-    count(channel, "_evaluated", "frames", lambda _, frames: len(frames))
+    count(channel, "_evaluate_curve", "frames", lambda _, frames: len(frames))
 
     def time_slice():
         done = dict(counted)
