@@ -1,14 +1,15 @@
 """Measure the confidence of each role of a humanoid map, with reasons."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 from ..skeletons import Skeleton
 from .name_conflicts import MIN_HUMANNESS, contradicted_roles, odd_limbs
 from .names import name_matches, with_fingers
 from .roles import MIN_MATCH, HumanoidMap
-from .structure import roles_by_structure
+from .structure import Structure, roles_by_structure
 from .tables import SIDES
 from .tree_agreement import missing_ends, role_faults
 
@@ -78,31 +79,33 @@ def explain_roles(skeleton: Skeleton, humanoid: HumanoidMap) -> dict[str, RoleEv
 
     The map may be edited by hand or come from a preset.
     """
-    named = _roles_by_name(skeleton)
     structure = roles_by_structure(skeleton)
     joints = {r: j for r, j in humanoid.joints.items() if j in skeleton.names}
-    faults = role_faults(skeleton, joints)
     contradicted = contradicted_roles(skeleton, joints, structure)
-    weak_faults = missing_ends(joints) | dict.fromkeys(
-        odd_limbs(skeleton, joints, structure), ODD
-    )
     if structure.humanness >= MIN_HUMANNESS:
         contradicted |= joints.keys() - TRUNK - HINGES
-    return {
-        role: _evidence(
-            joint,
-            structure.joints.get(role),
-            is_named=role in named.get(joint, set()),
-            has_other_name=bool(named.get(joint)),
-            fault=faults.get(role, ""),
-            weak_fault=weak_faults.get(role, ""),
-            may_contradict=role in contradicted,
-            counts_differ=role in TRUNK,
-            is_human=structure.humanness >= MIN_HUMANNESS,
-            guesses_side=structure.guesses_sides and role.startswith(SIDES),
-        )
-        for role, joint in joints.items()
-    }
+    clues = _Clues(
+        _roles_by_name(skeleton),
+        structure,
+        role_faults(skeleton, joints),
+        missing_ends(joints) | dict.fromkeys(odd_limbs(skeleton, joints, structure), ODD),
+        contradicted,
+    )
+    return {role: _evidence(role, joint, clues) for role, joint in joints.items()}
+
+
+class _Clues(NamedTuple):
+    """What is known of a body and of the roles that a map gives to its joints."""
+
+    named: Mapping[str, Collection[str]]
+    """Roles that tables of names give to a joint."""
+    structure: Structure
+    faults: Mapping[str, str]
+    """What is wrong with a role in the tree."""
+    weak_faults: Mapping[str, str]
+    """What is wrong with a role unless the body is human."""
+    contradicted: Collection[str]
+    """Roles whose names the structure may contradict."""
 
 
 def _roles_by_name(skeleton: Skeleton) -> dict[str, set[str]]:
@@ -117,41 +120,31 @@ def _roles_by_name(skeleton: Skeleton) -> dict[str, set[str]]:
     return roles
 
 
-def _evidence(
-    joint: str,
-    by_structure: str | None,
-    *,
-    is_named: bool,
-    has_other_name: bool,
-    fault: str,
-    weak_fault: str,
-    may_contradict: bool,
-    counts_differ: bool,
-    is_human: bool,
-    guesses_side: bool,
-) -> RoleEvidence:
-    if is_named:
-        if fault:
-            return _evidence_for(Reason.FAULT, fault=fault)
-        if by_structure == joint:
-            return _evidence_for(Reason.BOTH)
-        if weak_fault and not is_human:
-            return _evidence_for(Reason.FAULT, fault=weak_fault)
-        if by_structure and may_contradict:
-            return _evidence_for(Reason.CONTRADICTED, other=by_structure)
-        return _evidence_for(Reason.TRUNK if counts_differ else Reason.NAME)
-    if by_structure != joint:
-        return _evidence_for(Reason.NEITHER)
-    return _evidence_for(_without_name(has_other_name, is_human, guesses_side))
+def _evidence(role: str, joint: str, clues: _Clues) -> RoleEvidence:
+    by_structure = clues.structure.joints.get(role)
+    if role not in clues.named.get(joint, ()):
+        if by_structure != joint:
+            return _evidence_for(Reason.NEITHER)
+        return _evidence_for(_without_name(role, joint, clues))
+    if fault := clues.faults.get(role):
+        return _evidence_for(Reason.FAULT, fault=fault)
+    if by_structure == joint:
+        return _evidence_for(Reason.BOTH)
+    weak_fault = clues.weak_faults.get(role)
+    if weak_fault and clues.structure.humanness < MIN_HUMANNESS:
+        return _evidence_for(Reason.FAULT, fault=weak_fault)
+    if by_structure and role in clues.contradicted:
+        return _evidence_for(Reason.CONTRADICTED, other=by_structure)
+    return _evidence_for(Reason.TRUNK if role in TRUNK else Reason.NAME)
 
 
-def _without_name(has_other_name: bool, is_human: bool, guesses_side: bool) -> Reason:
+def _without_name(role: str, joint: str, clues: _Clues) -> Reason:
     """Return why the structure decides on a joint that no table names so."""
-    if not is_human:
+    if clues.structure.humanness < MIN_HUMANNESS:
         return Reason.UNCLEAR
-    if guesses_side:
+    if clues.structure.guesses_sides and role.startswith(SIDES):
         return Reason.SIDE_GUESSED
-    return Reason.TREE_DECIDES if has_other_name else Reason.STRUCTURE
+    return Reason.TREE_DECIDES if clues.named.get(joint) else Reason.STRUCTURE
 
 
 def _evidence_for(reason: Reason, **words: str) -> RoleEvidence:
