@@ -5,8 +5,13 @@ from dataclasses import dataclass
 from enum import Enum
 
 from ..skeletons import Skeleton
-from .name_conflicts import MIN_HUMANNESS, contradicted_roles, odd_limbs
-from .names import name_matches, with_fingers
+from .name_conflicts import (
+    MIN_HUMANNESS,
+    contradicted_roles,
+    matches_in_tree,
+    odd_limbs,
+)
+from .names import with_fingers
 from .roles import MIN_MATCH, HumanoidMap
 from .structure import roles_by_structure
 from .tables import SIDES
@@ -107,7 +112,7 @@ def explain_roles(skeleton: Skeleton, humanoid: HumanoidMap) -> dict[str, RoleEv
 
 def _roles_by_name(skeleton: Skeleton) -> dict[str, set[str]]:
     """Return the roles that tables of names give to each joint, those that match most."""
-    matches = name_matches(skeleton.names)
+    matches = matches_in_tree(skeleton)
     most = max(map(len, matches), default=0)
     roles: dict[str, set[str]] = {}
     for match in matches:
