@@ -10,6 +10,7 @@ from solvers.recordings.conventions import (
     correct_stated_unit,
     describe_guesses,
     describe_lying,
+    question_of_size,
     stand_scene_upright,
     stature,
 )
@@ -88,6 +89,19 @@ def test_an_actor_who_never_stands_is_reported_with_the_axis_to_choose(
 
     assert f"{conventions.up} up; set Up to {up} if" in message
     assert trunk_of(reinterpreted(lying, up, None))[2] > 0.9
+
+
+def test_an_animal_is_not_questioned():
+    """Its trunk lies, and is as long as that of a giant."""
+    trunk = [NAMES.index(name) for name in ("spine1", "spine2", "spine3", "neck", "head")]
+    offsets = OFFSETS.copy()
+    offsets[trunk] = 3.0 * offsets[trunk][:, [0, 2, 1]] * (1.0, -1.0, 0.0)
+    still = walk()
+    animal = replace(still, skeleton=Skeleton(NAMES, PARENTS, offsets))
+
+    assert trunk_of(animal)[2] < 0.3
+    assert not describe_lying([animal])
+    assert not question_of_size(animal)
 
 
 def test_a_take_that_stands_confirms_the_axis_of_the_file():
