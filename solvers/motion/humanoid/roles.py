@@ -196,12 +196,17 @@ def _without_false_hands(joints: Mapping[str, str]) -> dict[str, str]:
 
 
 def _corrected(skeleton: Skeleton, by_name: HumanoidMap, structure: Structure) -> HumanoidMap:
-    """Return the map by names with the structure's roles where lengths contradict names."""
+    """Return the map by names with the structure's roles where lengths contradict names.
+
+    Names stand where the tree agrees better with them: the legs of a cartoon may be short.
+    """
     joints = _without_false_hands(without_contradictions(skeleton, by_name.joints, structure))
     if joints == dict(by_name.joints):
         return by_name
     joints = _fingers_below_hands(skeleton, joints)
     corrected = _score_names(skeleton, joints)
+    if corrected.score < by_name.score:
+        return by_name
     return replace(corrected, score=min(corrected.score, MAX_STRUCTURE_SCORE))
 
 

@@ -5,6 +5,7 @@ from rigs import RIGS, Row, built
 
 from solvers.motion import Skeleton, find_humanoid_map
 from solvers.motion.humanoid import explain_roles
+from solvers.motion.humanoid.name_conflicts import MIN_HUMANNESS
 from solvers.motion.humanoid.structure import roles_by_structure
 
 TRUNK: tuple[Row, ...] = (
@@ -38,6 +39,17 @@ WITH_WRISTS: tuple[Row, ...] = (
     ("lowerarm.{}", "upperarm.{}", (0.28, 0.0, 0.0)),
     ("wrist.{}", "lowerarm.{}", (0.25, 0.0, 0.0)),
     ("hand.{}", "wrist.{}", (0.08, 0.0, 0.0)),
+)
+CARTOON: tuple[Row, ...] = (
+    *TRUNK,
+    ("UpLeg_{}", "Hips", (0.1, 0.0, -0.05)),
+    ("LoLeg_{}", "UpLeg_{}", (0.0, -0.06, -0.42)),
+    ("Foot_{}", "LoLeg_{}", (0.03, 0.15, -0.21)),
+    ("Toe_{}", "Foot_{}", (0.0, -0.04, -0.2)),
+    ("Clavicle_{}", "Chest", (0.03, 0.0, 0.15)),
+    ("UpArm_{}", "Clavicle_{}", (0.14, 0.0, 0.0)),
+    ("LoArm_{}", "UpArm_{}", (0.28, 0.0, 0.0)),
+    ("Hand_{}", "LoArm_{}", (0.25, 0.0, 0.0)),
 )
 SHORT_LEGS: tuple[Row, ...] = (
     ("pelvis_ctrl", "", (0.0, 0.0, 0.72)),
@@ -83,6 +95,18 @@ def test_a_hand_begins_at_the_wrist():
     humanoid = find_humanoid_map(skeleton)
 
     assert (humanoid.joint("leftHand"), humanoid.joint("rightHand")) == ("wrist.l", "wrist.r")
+    assert humanoid.score == 1.0
+
+
+def test_short_shanks_do_not_make_toes_feet():
+    """As of a Bitmoji that dances: only the lengths contradict its names."""
+    skeleton = built(CARTOON, ("L", "R"), 1.0)
+    structure = roles_by_structure(skeleton)
+
+    humanoid = find_humanoid_map(skeleton)
+
+    assert structure.joints["leftFoot"] == "Toe_L" and structure.humanness > MIN_HUMANNESS
+    assert humanoid.joint("leftFoot") == "Foot_L"
     assert humanoid.score == 1.0
 
 
