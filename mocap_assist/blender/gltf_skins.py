@@ -22,6 +22,25 @@ MAX_SCALE_ERROR = 0.05
 joints. It guards against rounding of scales that exporters bake."""
 
 
+NO_PICTURE = (
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAC"
+    "hwGA60e6kgAAAABJRU5ErkJggg=="
+)
+"""A picture of one pixel in place of a file."""
+
+
+def without_picture_files(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the JSON of a glTF file whose pictures are in no other files: they do not move.
+
+    They may be missing, or name a device or a private file.
+    """
+    images = [dict_of(each) for each in list_of(content.get("images"))]
+    if not any("uri" in image for image in images):
+        return dict(content)
+    kept = [{**image, "uri": NO_PICTURE} if "uri" in image else image for image in images]
+    return {**content, "images": kept}
+
+
 def find_joint_trees(content: Mapping[str, Any]) -> list[list[int]]:
     """Return the nodes of each animated tree that needs a skin.
 

@@ -32,7 +32,7 @@ N_FRAMES = 31
 def write(tmp_path):
     """Write a body in which all joints rotate, with a skin for some, and an animated prop."""
 
-    def write(skinned):
+    def write(skinned, picture=None):
         names = [*JOINTS, "avatar", "prop"]
         nodes = [
             {"name": name, "translation": JOINTS.get(name, ("", (0.0, 0.0, 0.0)))[1]}
@@ -74,6 +74,16 @@ def write(tmp_path):
                 + base64.b64encode(data).decode(),
             }],
         }  # fmt: skip
+        if picture is not None:
+            texture = {"baseColorTexture": {"index": 0}}
+            content |= {
+                "images": [{"uri": picture}],
+                "textures": [{"source": 0}],
+                "materials": [{"pbrMetallicRoughness": texture}],
+                "meshes": [{"primitives": [{"attributes": {"POSITION": 2}, "material": 0}]}],
+            }
+            content["accessors"].append({**accessor(1, "VEC3"), "count": 3})
+            nodes[names.index("prop")]["mesh"] = 0
         path = tmp_path / "take.gltf"
         path.write_text(json.dumps(content))
         return path
@@ -104,3 +114,11 @@ def test_a_complete_skin_is_kept(bring, write):
     (armature,), _ = bring(write([*JOINTS]))
 
     assert set(armature.data.bones.keys()) == JOINTS.keys()
+
+
+@pytest.mark.parametrize("picture", ["gone.png", "/dev/zero", "../secret.png"])
+def test_pictures_in_other_files_are_not_needed_for_a_motion(bring, write, picture):
+    (armature,), _ = bring(write([*JOINTS], picture))
+
+    assert len(armature.data.bones) == len(JOINTS)
+    assert armature.animation_data.action.frame_range[1] == N_FRAMES
