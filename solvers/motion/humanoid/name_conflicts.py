@@ -39,13 +39,16 @@ def matches_in_tree(skeleton: Skeleton) -> list[dict[str, str]]:
 
     Of a joint and a namesake below it, such as a helper "__UpLeg" at the hips and "UpLeg" or
     wrappers "Root" and "root", the lower one moves. A hand begins at the wrist, and a foot at
-    the ankle, where a rig has joints of both names.
+    the ankle, where a rig has joints of both names. Hips that carry the legs only, next to the
+    spine as in MikuMikuDance, leave their role to the joint that carries both.
     """
     names = ["".join((side, *words)) for side, words in split_names(skeleton.names)]
-    return [
-        _beginning_at_wrists(skeleton, names, row, _lowest_namesakes(skeleton, names, match))
-        for row, match in zip(TABLES.values(), name_matches(skeleton.names), strict=True)
-    ]
+    found = []
+    for row, match in zip(TABLES.values(), name_matches(skeleton.names), strict=True):
+        match = _lowest_namesakes(skeleton, names, match)
+        match = _beginning_at_wrists(skeleton, names, row, match)
+        found.append(_with_hips_of_all_limbs(skeleton, match))
+    return found
 
 
 def _lowest_namesakes(
@@ -92,6 +95,23 @@ def _beginning_at_wrists(
         if above is not None and names[above].endswith(tuple(spellings)):
             match = {**match, side + end: skeleton.names[above]}
     return match
+
+
+def _with_hips_of_all_limbs(skeleton: Skeleton, match: dict[str, str]) -> dict[str, str]:
+    limbs = [
+        _lineage(skeleton, match[side + limb])
+        for limb in ("UpperLeg", "UpperArm")
+        for side in SIDES
+        if side + limb in match
+    ]
+    if len(limbs) < 2 * len(SIDES) or "hips" not in match:
+        return match
+    legs, arms = (set.intersection(*pair) for pair in (limbs[:2], limbs[2:]))
+    shared = [skeleton.index(name) for name in legs & arms]
+    if match["hips"] not in legs - arms or not shared:
+        return match
+    lowest = skeleton.names[max(shared)]
+    return match if lowest in match.values() else {**match, "hips": lowest}
 
 
 def has_human_limbs(skeleton: Skeleton, joints: Mapping[str, str]) -> bool:

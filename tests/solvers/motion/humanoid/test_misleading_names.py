@@ -40,6 +40,20 @@ WITH_WRISTS: tuple[Row, ...] = (
     ("wrist.{}", "lowerarm.{}", (0.25, 0.0, 0.0)),
     ("hand.{}", "wrist.{}", (0.08, 0.0, 0.0)),
 )
+LIKE_MIKU = {
+    "Chest": ("上半身2", "上半身"),
+    "Neck": ("首", "上半身2"),
+    "Head": ("頭", "首"),
+    "UpLeg_{}": ("{}足", "下半身"),
+    "LoLeg_{}": ("{}ひざ", "{}足"),
+    "Foot_{}": ("{}足首", "{}ひざ"),
+    "Toe_{}": ("{}つま先", "{}足首"),
+    "Clavicle_{}": ("{}肩", "上半身2"),
+    "UpArm_{}": ("{}腕", "{}肩"),
+    "LoArm_{}": ("{}ひじ", "{}腕"),
+    "Hand_{}": ("{}手首", "{}ひじ"),
+}
+"""Name and parent in MikuMikuDance."""
 CARTOON: tuple[Row, ...] = (
     *TRUNK,
     ("UpLeg_{}", "Hips", (0.1, 0.0, -0.05)),
@@ -87,6 +101,31 @@ def test_a_helper_of_the_same_name_leaves_the_role_to_the_joint_below(role, join
 
     assert humanoid.joint(role) == joint
     assert not explain_roles(skeleton, humanoid)[role].has_low_confidence
+
+
+def test_hips_carry_arms_and_legs():
+    """In MikuMikuDance the lower body is next to the upper one, below the center."""
+    skeleton = built(
+        (
+            ("全ての親", "", (0.0, 0.0, 0.0)),
+            ("センター", "全ての親", (0.0, 0.0, 0.95)),
+            ("下半身", "センター", (0.0, 0.0, 0.0)),
+            ("上半身", "センター", (0.0, 0.0, 0.1)),
+            *(
+                (*LIKE_MIKU[name], offset)
+                for name, _, offset in WITH_HELPERS
+                if name in LIKE_MIKU
+            ),
+        ),
+        ("左", "右"),
+        1.0,
+    )
+
+    humanoid = find_humanoid_map(skeleton)
+
+    assert humanoid.joint("hips") == "センター"
+    assert humanoid.joint("spine") == "上半身"
+    assert humanoid.score == 1.0
 
 
 def test_a_hand_begins_at_the_wrist():
