@@ -19,7 +19,8 @@ below which they point backward. Chosen by hand: of 490 BVH files of 40 makers t
 right sides have -0.1 and more for toes, apart from two whose feet end at the heel, and six
 mirrored ones -0.5 and less; elbows have -0.15 and more in 91 of 94 takes."""
 MIN_AHEAD = (0.1, 0.0, 0.1)
-"""The same from which they show that the sides are right. Chosen by hand on the same takes."""
+"""The same, the cosine with forward, from which they show that the sides are right. Chosen by
+hand on the same takes."""
 MIN_FLEXION = 0.1
 """Distance of a bent knee from the middle of hip and ankle, relative to the leg. Chosen by
 hand: straight knees of captured skeletons are up to 0.05 behind it."""
@@ -75,12 +76,15 @@ def _elbows(positions: Array, roles: Mapping[str, int]) -> list[Array]:
         return []
     left = positions[:, roles["leftUpperArm"]] - positions[:, roles["rightUpperArm"]]
     forward = np.cross(left, positions[:, roles["head"]] - positions[:, roles["hips"]])
-    arms = [[f"{side}{part}" for part in ("UpperArm", "LowerArm", "Hand")] for side in SIDES]
-    return [
-        _ahead_of_bent(*np.moveaxis(positions[:, [roles[part] for part in arm]], 1, 0), forward)
-        for arm in arms
-        if set(arm) <= roles.keys()
-    ]
+    found = []
+    for side in SIDES:
+        arm = [f"{side}{part}" for part in ("UpperArm", "LowerArm", "Hand")]
+        if set(arm) <= roles.keys():
+            shoulder, elbow, wrist = np.moveaxis(
+                positions[:, [roles[each] for each in arm]], 1, 0
+            )
+            found.append(_ahead_of_bent(shoulder, elbow, wrist, forward))
+    return found
 
 
 def _tip(skeleton: Skeleton, roles: Mapping[str, int], side: str) -> int | None:
