@@ -1,7 +1,8 @@
-"""Give the joints of a glTF file without a skin one, so that Blender makes an armature of them.
+"""Give the joints of a glTF file that no skin names one, so that Blender makes them bones.
 
 Animations of web pages and game engines come without the mesh that they move: a tree of nodes.
-Blender makes an armature only of nodes that a skin names.
+Others have the skin of one mesh, such as of the head, whose exporter left out what it does not
+deform. Blender makes an armature only of nodes that a skin names.
 """
 
 import json
@@ -21,15 +22,35 @@ MAX_SCALE_ERROR = 0.05
 joints. It guards against rounding of scales that exporters bake."""
 
 
-def find_joint_trees(content: Mapping[str, Any]) -> list[list[int]]:
-    """Return the nodes of each animated tree that is large enough for a body.
+NO_PICTURE = (
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAC"
+    "hwGA60e6kgAAAABJRU5ErkJggg=="
+)
+"""A picture of one pixel in place of a file."""
 
-    Empty where the file has a skin: it says which nodes are joints.
+
+def without_picture_files(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the JSON of a glTF file whose pictures are in no other files: they do not move.
+
+    They may be missing, or name a device or a private file.
+    """
+    images = [dict_of(each) for each in list_of(content.get("images"))]
+    if not any("uri" in image for image in images):
+        return dict(content)
+    kept = [{**image, "uri": NO_PICTURE} if "uri" in image else image for image in images]
+    return {**content, "images": kept}
+
+
+def find_joint_trees(content: Mapping[str, Any]) -> list[list[int]]:
+    """Return the nodes of each animated tree that needs a skin.
+
+    Without any skin these are the trees that are large enough for a body; otherwise each body
+    whose skins leave out joints.
     """
     nodes = [dict_of(each) for each in list_of(content.get("nodes"))]
-    if list_of(content.get("skins")):
-        return []
     animated = _animated_nodes(content)
+    if skins := list_of(content.get("skins")):
+        return _incomplete_bodies(nodes, animated, skins)
     below = {child for node in nodes for child in _children(node, len(nodes))}
     visited: set[int] = set()
     trees = []
@@ -44,8 +65,8 @@ def find_joint_trees(content: Mapping[str, Any]) -> list[list[int]]:
 def write_with_skins(
     path: str, content: Mapping[str, Any], trees: list[list[int]], copy: Path
 ) -> None:
-    """Write a copy of a glTF file, text or binary, whose joints have skins."""
-    skins = [{"joints": tree, "skeleton": tree[0]} for tree in trees]
+    """Write a copy of a glTF file, text or binary, with a skin for each of these trees."""
+    skins = [*list_of(content.get("skins")), *({"joints": tree} for tree in trees)]
     folder = Path(path).resolve().parent
     changed = {
         **content,
@@ -66,6 +87,64 @@ def write_with_skins(
         total = HEADER_BYTES + len(text) + len(rest)
         target.write(struct.pack("<III", GLB_MAGIC, GLB_VERSION, total))
         target.write(struct.pack("<II", len(text), GLB_JSON) + text + rest)
+
+
+def _incomplete_bodies(
+    nodes: list[dict[str, Any]], animated: set[int], skins: list[Any]
+) -> list[list[int]]:
+    """Return the joints of each body whose skins leave some out: animated nodes around theirs.
+
+    A node that carries the joints, or a mesh, is an object. So is one that is attached to such
+    a node by itself, such as a prop.
+    """
+    parents = {
+        child: index
+        for index, node in enumerate(nodes)
+        for child in _children(node, len(nodes))
+    }
+    named = {
+        joint
+        for skin in skins
+        for joint in list_of(dict_of(skin).get("joints"))
+        if isinstance(joint, int) and 0 <= joint < len(nodes)
+    }
+    bodies: dict[int, list[int]] = {}
+    lineages = {node: _lineage(parents, node) for node in named | animated if node < len(nodes)}
+    for node in sorted(named):
+        bodies.setdefault(lineages[node][-1], []).append(node)
+    carriers = {above for node in named for above in lineages[node]} - named
+    left_out = {
+        node
+        for node in animated & lineages.keys() - carriers - named
+        if "mesh" not in nodes[node]
+    }
+    moved = left_out | named
+    found = []
+    for top, joints in bodies.items():
+        missing = [
+            node
+            for node in sorted(left_out)
+            if lineages[node][-1] == top
+            and (
+                parents.get(node) in moved
+                or not left_out.isdisjoint(_children(nodes[node], len(nodes)))
+            )
+        ]
+        if missing:
+            together = [*joints, *missing]
+            shared = set.intersection(*(set(lineages[node]) for node in together))
+            lowest = next((node for node in lineages[together[0]] if node in shared), -1)
+            is_joint = lowest in animated and _is_of_scale_one(nodes[lowest])
+            found.append(sorted({*together, *([lowest] if is_joint else [])}))
+    return found
+
+
+def _lineage(parents: Mapping[int, int], node: int) -> list[int]:
+    """Return a node and those above it, up to its root."""
+    chain = [node]
+    while (above := parents.get(chain[-1], -1)) >= 0 and above not in chain:
+        chain.append(above)
+    return chain
 
 
 def _joint_roots(nodes: list[dict[str, Any]], top: int, animated: set[int]) -> list[int]:

@@ -23,6 +23,7 @@ from .gltf_skins import (
     dict_of,
     find_joint_trees,
     list_of,
+    without_picture_files,
     write_with_skins,
 )
 from .stated_conventions import read_stage
@@ -123,18 +124,20 @@ def _open_collada(path: str) -> None:
 def _open_gltf(path: str) -> None:
     """Import glTF, GLB, VRM or VRMA; times become frames at the rate of the file's keys."""
     addon_utils.enable("io_scene_gltf2")
-    content = _gltf_content(path)
-    _refuse_other_files(path, content)
+    stored = _gltf_content(path)
+    _refuse_other_files(path, stored)
+    content = without_picture_files(stored)
     render = bpy.context.scene.render
     rate = _gltf_rate(content)
     render.fps = max(1, round(rate))
     render.fps_base = rate / render.fps  # Blender's importer multiplies by it
     trees = find_joint_trees(content)
+    is_changed = bool(trees) or content != stored
     with TemporaryDirectory() as folder:
         copy = Path(folder) / Path(path).name
-        if trees:
+        if is_changed:
             write_with_skins(path, content, trees, copy)
-        _run(path, _import_gltf, opened=str(copy) if trees else path)
+        _run(path, _import_gltf, opened=str(copy) if is_changed else path)
     render.fps_base = render.fps / rate
 
 
@@ -169,13 +172,13 @@ def _gltf_content(path: str) -> dict[str, Any]:
 
 
 def _refuse_other_files(path: str, content: dict[str, Any]) -> None:
-    """Raise InvalidFileError if a file refers to another one outside its folder.
+    """Raise InvalidFileError if the numbers of a file are in another one outside its folder.
 
     It is a stranger's: it may name devices, pipes, private files or those of a server.
     """
     folder = Path(path).resolve().parent
-    for part in (*list_of(content.get("buffers")), *list_of(content.get("images"))):
-        uri = dict_of(part).get("uri")
+    for buffer in list_of(content.get("buffers")):
+        uri = dict_of(buffer).get("uri")
         if uri is None or (isinstance(uri, str) and uri.startswith("data:")):
             continue
         named = folder / _unquote_uri(str(uri)).replace("\\", "/")

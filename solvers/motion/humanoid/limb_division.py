@@ -70,6 +70,34 @@ def is_folded(skeleton: Skeleton, limbs: MirroredLimbs, height: float) -> bool:
     return bool(spread < MIN_SPREAD_FRACTION * height)
 
 
+def rest_directions(
+    skeleton: Skeleton, limbs: MirroredLimbs, legs: Sequence[list[int]], height: float
+) -> tuple[Array, Array | None]:
+    """Return up and forward in the rest pose; +Z and None where it does not show them.
+
+    Toes are in front of the ankle, and knees in front of the line from hip to ankle.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    limbs : both legs
+    legs : hip, knee and ankle of each (`divide_leg`)
+    height : of the person whose bones are as long
+    """
+    up, positions = np.array([0.0, 0.0, 1.0]), skeleton.rest_positions
+    if is_folded(skeleton, limbs, height) or not all(legs):
+        return up, None
+    hip, knee, ankle = positions[np.array(legs)].mean(axis=0)
+    trunk = positions[limbs.branch] - ankle
+    if np.linalg.norm(trunk) > MIN_SPREAD_FRACTION * height:
+        up = trunk / np.linalg.norm(trunk)
+    tips = positions[[leg[-1] for leg in limbs.limbs]].mean(axis=0)
+    ahead = tips - ankle + knee - (hip + ankle) / 2.0
+    ahead -= (ahead @ up) * up
+    shows_forward = np.linalg.norm(ahead) > MIN_SPREAD_FRACTION * height
+    return up, ahead / np.linalg.norm(ahead) if shows_forward else None
+
+
 def divide_leg(
     skeleton: Skeleton, leg: Sequence[int], height: float
 ) -> tuple[list[int], float]:

@@ -1,5 +1,7 @@
 """Find limbs in the tree of a skeleton: branches of one joint that mirror each other."""
 
+from collections.abc import Sequence
+from functools import cache
 from itertools import combinations
 from typing import NamedTuple
 
@@ -7,6 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..skeletons import Skeleton
+from .names import split_names
+from .tables import (
+    ARM_ROLES,
+    CENTRAL_ROLES,
+    COLUMNS,
+    FINGER_ROLES,
+    LEG_ROLES,
+    TABLES,
+)
 
 MIN_LIMB_FRACTION = 0.12
 """Shortest limb, relative to the longest path along the bones; an arm takes 0.25. Chosen by
@@ -26,6 +37,11 @@ MAX_PAIRS = 16
 """Pairs that are returned, the longest; hair and skirts would make hundreds."""
 MAX_COMPARED_BONES = 20_000
 """Comparisons of two bones, after which a rig is too large to be searched further."""
+
+
+MIN_NAMED_JOINTS = 2
+"""Joints with words of the other limb, from which a limb is not the one in question. One joint
+may be called after what it carries or controls."""
 
 
 class MirroredLimbs(NamedTuple):
@@ -123,3 +139,44 @@ def are_separate(skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs) -
     """Whether two pairs of limbs share no joint and start from different joints."""
     shared = legs.joints(skeleton) & arms.joints(skeleton)
     return legs.branch != arms.branch and not shared.any()
+
+
+def named_as_other_limb(
+    words: Sequence[Sequence[str]], limbs: MirroredLimbs, limb: str
+) -> bool:
+    """Whether the names of both limbs have words of arms where they should be legs, or reverse.
+
+    Parameters
+    ----------
+    words : of the name of each joint
+    limbs : MirroredLimbs
+    limb : "Leg" or "Arm"
+    """
+    own, other = _limb_words(limb), _limb_words("Arm" if limb == "Leg" else "Leg")
+    joints = [set(words[joint]) for side in limbs.limbs for joint in side]
+    n_own, n_other = (
+        sum(not each.isdisjoint(vocabulary) for each in joints) for vocabulary in (own, other)
+    )
+    return n_other > n_own and n_other >= 2 * MIN_NAMED_JOINTS
+
+
+@cache
+def _limb_words(limb: str) -> frozenset[str]:
+    """Return the words that only the names of an arm or only those of a leg have."""
+    words: dict[str, set[str]] = {"Leg": set(), "Arm": set(), "": set()}
+    of_column = dict.fromkeys(LEG_ROLES, "Leg") | dict.fromkeys(ARM_ROLES, "Arm")
+    of_column |= dict.fromkeys(CENTRAL_ROLES, "")
+    columns = [
+        (of_column[column], spellings.split())
+        for row in TABLES.values()
+        for column, spellings in zip(COLUMNS, row, strict=True)
+    ]
+    for key, names in (*columns, ("Arm", FINGER_ROLES)):
+        words[key] |= {word for _, split in split_names(names) for word in split}
+    others = set().union(*(group for key, group in words.items() if key != limb))
+    return frozenset(filter(_has_meaning, words[limb] - others))
+
+
+def _has_meaning(word: str) -> bool:
+    """Whether a word is more than a number, a single letter, or the remainder of one."""
+    return word.isalpha() and (len(word) > 2 or word[0] >= "\u3000")

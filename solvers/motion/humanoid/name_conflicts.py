@@ -1,15 +1,17 @@
-"""Find names of joints that contradict the lengths of the bones, and choose between both."""
+"""Find names of joints that the tree or the lengths contradict, and choose between both."""
 
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
 from ...arrays import Array
 from ..skeletons import Skeleton
 from .limb_division import ARM_FRACTIONS, LEG_FRACTIONS
+from .names import name_matches, split_names
 from .structure import HEIGHT_FACTORS, Structure
-from .tables import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES, SIDES
+from .tables import ARM_ROLES, CENTRAL_ROLES, COLUMNS, LEG_ROLES, SIDES, TABLES
+from .tree_agreement import joint_between
 
 MIN_HUMANNESS = 0.6
 """Humanness of the proportions, as a fraction, from which the structure may contradict names.
@@ -30,6 +32,86 @@ HINGES = {"Leg": ("UpperLeg", "LowerLeg", "Foot"), "Arm": ("UpperArm", "LowerArm
 LENGTHS = {"Leg": LEG_FRACTIONS, "Arm": ARM_FRACTIONS}
 PARTS = {"Leg": LEG_ROLES, "Arm": ARM_ROLES}
 LIMBS = tuple((side, limb) for side in SIDES for limb in HINGES)
+
+
+def matches_in_tree(skeleton: Skeleton) -> list[dict[str, str]]:
+    """Return joint names by role, one match for each table of `TABLES`, as the tree has them.
+
+    Of a joint and a namesake below it, such as a helper "__UpLeg" at the hips and "UpLeg" or
+    wrappers "Root" and "root", the lower one moves. A hand begins at the wrist, and a foot at
+    the ankle, where a rig has joints of both names. Hips that carry the legs only, next to the
+    spine as in MikuMikuDance, leave their role to the joint that carries both.
+    """
+    names = ["".join((side, *words)) for side, words in split_names(skeleton.names)]
+    found = []
+    for row, match in zip(TABLES.values(), name_matches(skeleton.names), strict=True):
+        match = _lowest_namesakes(skeleton, names, match)
+        match = _beginning_at_wrists(skeleton, names, row, match)
+        found.append(_with_hips_of_all_limbs(skeleton, match))
+    return found
+
+
+def _lowest_namesakes(
+    skeleton: Skeleton, names: Sequence[str], match: Mapping[str, str]
+) -> dict[str, str]:
+    found = dict(match)
+    for role in ("hips", *(side + part for side, limb in LIMBS for part in PARTS[limb])):
+        joint = skeleton.index(match[role]) if role in match else None
+        if joint is None or names.count(names[joint]) < 2:
+            continue
+        below = set(skeleton.subtree(joint))
+        carried = [
+            skeleton.index(match[each])
+            for each in _carried_roles(role)
+            if each in match and skeleton.index(match[each]) in below
+        ]
+        lineages = [{each, *skeleton.ancestors(each)} for each in carried]
+        between = below.intersection(*lineages) if lineages else below
+        lowest = max(each for each in between if names[each] == names[joint])
+        found[role] = skeleton.names[lowest]
+    return found
+
+
+def _carried_roles(role: str) -> list[str]:
+    """Return the roles that descend from that of the hips or of a part of a limb."""
+    if role == "hips":
+        return [f"{side}UpperLeg" for side in SIDES]
+    side = next(each for each in SIDES if role.startswith(each))
+    parts = next(each for each in PARTS.values() if role.removeprefix(side) in each)
+    return [side + part for part in parts[parts.index(role.removeprefix(side)) + 1 :]]
+
+
+def _beginning_at_wrists(
+    skeleton: Skeleton, names: Sequence[str], row: Sequence[str], match: dict[str, str]
+) -> dict[str, str]:
+    taken = {skeleton.index(name) for name in match.values()}
+    for side, (_, middle, end) in product(SIDES, HINGES.values()):
+        ends = [match.get(side + part) for part in (middle, end)]
+        if None in ends:
+            continue
+        upper, lower = (skeleton.index(str(name)) for name in ends)
+        above = joint_between(skeleton, taken, upper, lower)
+        spellings = row[COLUMNS.index(end)].lower().split()
+        if above is not None and names[above].endswith(tuple(spellings)):
+            match = {**match, side + end: skeleton.names[above]}
+    return match
+
+
+def _with_hips_of_all_limbs(skeleton: Skeleton, match: dict[str, str]) -> dict[str, str]:
+    limbs = [
+        _lineage(skeleton, match[side + limb])
+        for limb in ("UpperLeg", "UpperArm")
+        for side in SIDES
+        if side + limb in match
+    ]
+    if len(limbs) < 2 * len(SIDES) or "hips" not in match:
+        return match
+    legs, arms = (set.intersection(*pair) for pair in (limbs[:2], limbs[2:]))
+    shared = [skeleton.index(name) for name in legs & arms]
+    if match["hips"] not in legs - arms or not shared:
+        return match
+    lowest = skeleton.names[max(shared)]
+    return match if lowest in match.values() else {**match, "hips": lowest}
 
 
 def has_human_limbs(skeleton: Skeleton, joints: Mapping[str, str]) -> bool:

@@ -110,10 +110,10 @@ def _without_export_numbers(names: Sequence[str]) -> list[str]:
     return [EXPORT_NUMBER.sub(r"\1", name) for name in names]
 
 
-def sides_of_names(names: Sequence[str]) -> list[str]:
-    """Return "left", "right" or "" for each joint of a skeleton, from its name."""
+def split_names(names: Sequence[str]) -> list[tuple[str, list[str]]]:
+    """Return "left", "right" or "" and the other words of each joint's name."""
     spelling = _find_spelling(names)
-    return [_side_and_words(name, spelling)[0] for name in names]
+    return [_side_and_words(name, spelling) for name in names]
 
 
 def _match_table(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:

@@ -6,8 +6,13 @@ from enum import Enum
 from typing import NamedTuple
 
 from ..skeletons import Skeleton
-from .name_conflicts import MIN_HUMANNESS, contradicted_roles, odd_limbs
-from .names import name_matches, with_fingers
+from .name_conflicts import (
+    MIN_HUMANNESS,
+    contradicted_roles,
+    matches_in_tree,
+    odd_limbs,
+)
+from .names import with_fingers
 from .roles import MIN_MATCH, HumanoidMap
 from .structure import Structure, roles_by_structure
 from .tables import SIDES
@@ -110,7 +115,7 @@ class _Clues(NamedTuple):
 
 def _roles_by_name(skeleton: Skeleton) -> dict[str, set[str]]:
     """Return the roles that tables of names give to each joint, those that match most."""
-    matches = name_matches(skeleton.names)
+    matches = matches_in_tree(skeleton)
     most = max(map(len, matches), default=0)
     roles: dict[str, set[str]] = {}
     for match in matches:

@@ -11,8 +11,8 @@ import numpy as np
 
 from ...errors import InvalidMotionError
 from ..skeletons import Skeleton
-from .name_conflicts import has_human_limbs, without_contradictions
-from .names import name_matches, with_fingers
+from .name_conflicts import has_human_limbs, matches_in_tree, without_contradictions
+from .names import with_fingers
 from .structure import Structure, roles_by_structure
 from .tables import ARM_ROLES, CENTRAL_ROLES, FINGER_ROLES, LEG_ROLES, SIDES
 from .tree_agreement import tree_agreement
@@ -155,12 +155,10 @@ def _find_map(names: tuple[str, ...], parents: tuple[int, ...], offsets: bytes) 
 
 def _best_names(skeleton: Skeleton) -> HumanoidMap:
     """Return the match of one table of names that covers most and that the tree confirms."""
-    matches = name_matches(skeleton.names)
+    matches = matches_in_tree(skeleton)
     most = max(map(len, matches))
     scored = [
-        _score_names(skeleton, _with_lowest_hips(skeleton, joints))
-        for joints in matches
-        if len(joints) > MIN_MATCH * most
+        _score_names(skeleton, joints) for joints in matches if len(joints) > MIN_MATCH * most
     ]
     best = max(scored, key=lambda found: (found.score, len(found.joints)), default=None)
     if best is None:
@@ -168,20 +166,6 @@ def _best_names(skeleton: Skeleton) -> HumanoidMap:
     return replace(
         best, joints=_fingers_below_hands(skeleton, with_fingers(skeleton.names, best.joints))
     )
-
-
-def _with_lowest_hips(skeleton: Skeleton, joints: Mapping[str, str]) -> Mapping[str, str]:
-    """Return the map with the lowest joint above the legs that has the name of the hips.
-
-    A wrapper may have the same one: "Root" above the "root" that moves.
-    """
-    legs = [joints[role] for role in ("leftUpperLeg", "rightUpperLeg") if role in joints]
-    if not legs or "hips" not in joints:
-        return joints
-    shared = set.intersection(*(set(skeleton.ancestors(skeleton.index(leg))) for leg in legs))
-    name = joints["hips"].casefold()
-    lowest = max((j for j in shared if skeleton.names[j].casefold() == name), default=None)
-    return joints if lowest is None else {**joints, "hips": skeleton.names[lowest]}
 
 
 def _fingers_below_hands(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]:
@@ -214,12 +198,17 @@ def _without_false_hands(joints: Mapping[str, str]) -> dict[str, str]:
 def _correct_by_structure(
     skeleton: Skeleton, by_name: HumanoidMap, structure: Structure
 ) -> HumanoidMap:
-    """Return the map by names with the structure's roles where lengths contradict names."""
+    """Return the map by names with the structure's roles where lengths contradict names.
+
+    Names stand where the tree agrees better with them: the legs of a cartoon may be short.
+    """
     joints = _without_false_hands(without_contradictions(skeleton, by_name.joints, structure))
     if joints == dict(by_name.joints):
         return by_name
     joints = _fingers_below_hands(skeleton, joints)
     corrected = _score_names(skeleton, joints)
+    if corrected.score < by_name.score:
+        return by_name
     return replace(corrected, score=min(corrected.score, MAX_STRUCTURE_SCORE))
 
 

@@ -17,10 +17,16 @@ from .limb_division import (
     is_folded,
     is_human_angle,
     path_length,
+    rest_directions,
     without_end_sites,
 )
-from .mirrored_limbs import MirroredLimbs, are_separate, find_mirrored_limbs
-from .names import sides_of_names
+from .mirrored_limbs import (
+    MirroredLimbs,
+    are_separate,
+    find_mirrored_limbs,
+    named_as_other_limb,
+)
+from .names import split_names
 
 TRUNK_FRACTION = 0.288
 """Of the height, from hips to shoulders (Winter 2009, figure 4.1); arms branch off lower."""
@@ -81,8 +87,9 @@ def roles_by_structure(skeleton: Skeleton) -> Structure:
     Legs and arms are two pairs of branches that mirror each other, with the trunk between
     them. Knee and ankle, elbow and wrist are the joints that divide each limb most like a
     human limb. Lengths decide, so that the rest pose may have any axes and even be folded up.
-    Sides follow the names, where they have any; else the toes show where the rest pose faces,
-    or else -Y. Fingers get no role.
+    Sides follow the names, where they have any; else toes and knees show where the rest pose
+    faces, or else -Y. A limb whose names are those of an arm is no leg, and reverse. Fingers
+    get no role.
     """
     found = _find_structure(skeleton.names, skeleton.parents, skeleton.offsets.tobytes())
     return found._replace(joints=dict(found.joints))  # the cached one stays as it is
@@ -101,9 +108,14 @@ def _find_structure(
         """Return the misfit; cached, since each leg is tried with many arms."""
         return divide_leg(skeleton, leg, height)[1]
 
+    words = [split for _, split in split_names(names)]
+    legs_of, arms_of = (
+        [pair for pair in pairs if not named_as_other_limb(words, pair, limb)]
+        for limb in ("Leg", "Arm")
+    )
     rough = [
         _match(skeleton, legs, arms, ROUGH_FACTORS, leg_misfit)
-        for legs, arms in product(pairs, (*pairs, None))
+        for legs, arms in product(legs_of, (*arms_of, None))
         if arms is None or are_separate(skeleton, legs, arms)
     ]
     if not rough:
@@ -197,9 +209,9 @@ class _LimbedSkeleton:
         self.skeleton = skeleton
         self.match = match
         self.positions: Array = skeleton.rest_positions
-        self.sides = sides_of_names(skeleton.names)
+        self.sides = [side for side, _ in split_names(skeleton.names)]
         self.legs = [divide_leg(skeleton, leg, match.height)[0] for leg in match.legs.limbs]
-        self.up, self.forward = self._directions()
+        self.up, self.forward = rest_directions(skeleton, match.legs, self.legs, match.height)
 
     def roles(self) -> dict[str, int]:
         """Return joints by role; a joint of two roles keeps the first."""
@@ -216,27 +228,14 @@ class _LimbedSkeleton:
                 arm, _ = divide_arm(self.skeleton, self.match.arms, side, self.match.height)
                 parts = (f"{name}UpperArm", f"{name}LowerArm", f"{name}Hand")
                 roles |= dict(zip(parts, arm, strict=False))
-                if arm and arm[0] != self.match.arms.limbs[side][0]:
-                    roles[f"{name}Shoulder"] = self.match.arms.limbs[side][0]
+                limb = self.match.arms.limbs[side]
+                if above := limb[: limb.index(arm[0])] if arm else []:
+                    away = [joint for joint in above if self.skeleton.offsets[joint].any()]
+                    roles[f"{name}Shoulder"] = (away or above)[0]
         first_role: dict[int, str] = {}
         for role, joint in roles.items():
             first_role.setdefault(joint, role)
         return {role: joint for joint, role in first_role.items()}
-
-    def _directions(self) -> tuple[Array, Array | None]:
-        """Return up and forward in the rest pose; +Z and None where it does not show them."""
-        up = np.array([0.0, 0.0, 1.0])
-        legs, height = self.match.legs, self.match.height
-        if is_folded(self.skeleton, legs, height) or not all(self.legs):
-            return up, None
-        ankles = self.positions[[leg[-1] for leg in self.legs]].mean(axis=0)
-        toes = self.positions[[leg[-1] for leg in legs.limbs]].mean(axis=0) - ankles
-        trunk = self.positions[legs.branch] - ankles
-        if np.linalg.norm(trunk) > MIN_SPREAD_FRACTION * height:
-            up = trunk / np.linalg.norm(trunk)
-        toes -= (toes @ up) * up
-        shows_forward = np.linalg.norm(toes) > MIN_SPREAD_FRACTION * height
-        return up, toes / np.linalg.norm(toes) if shows_forward else None
 
     def _assumed_forward(self) -> Array:
         return np.array([0.0, -1.0, 0.0]) if self.forward is None else self.forward

@@ -245,6 +245,11 @@ TABLES: dict[str, tuple[str, ...]] = {
         "mCollar", "mShoulder", "mElbow", "mWrist",
         "mHip", "mKnee", "mAnkle", "mFoot",
     ),
+    "Bitmoji": (
+        "C_spine0001", "C_spine0002 C_spine0006", "C_spine0006", "", "C_neck0001", "C_head0001",
+        "clavicle", "armUpper0001", "armLower0001", "hand0001",
+        "legUpper0001", "legLower0001", "foot0001", "foot0002",
+    ),
     "Life Forms": (  # the first BVH files, of Biovision and Poser
         "Hips", "Chest Ab", "", "", "Neck", "Head",
         "Collar", "UpArm", "LowArm", "Hand",

@@ -164,7 +164,7 @@ def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]
         name = skeleton.names[upper]
         if upper not in skeleton.ancestors(lower):
             faults[role_of[lower]] = f"it is not a descendant of {name}"
-        elif (left := _joint_between(skeleton, set(role_of), upper, lower)) is not None:
+        elif (left := joint_between(skeleton, set(role_of), upper, lower)) is not None:
             for joint in (upper, lower):
                 faults[role_of[joint]] = f"{skeleton.names[left]} lies between two parts"
     faults |= _missing_middles(roles) | _trunk_faults(skeleton, roles)
@@ -236,12 +236,12 @@ def _skips_joint(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
     """Whether a joint lies between two of a limb that is neither a helper nor a twist bone."""
     taken = set(roles.values())
     return any(
-        _joint_between(skeleton, taken, upper, lower) is not None
+        joint_between(skeleton, taken, upper, lower) is not None
         for upper, lower in _links(roles)
     )
 
 
-def _joint_between(skeleton: Skeleton, taken: set[int], upper: int, lower: int) -> int | None:
+def joint_between(skeleton: Skeleton, taken: set[int], upper: int, lower: int) -> int | None:
     """Return a joint without a role between two of a limb, no helper and no twist bone."""
     above = skeleton.ancestors(lower)
     if upper not in above:

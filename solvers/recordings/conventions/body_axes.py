@@ -162,8 +162,7 @@ def _weigh(
     """Weigh the evidence; the rest pose gets the axis of the motion.
 
     A body that stands along an axis that the format does not have is no clear case. Neither is
-    one that lies on zero along another axis, if its feet are far from zero, or if its rest pose
-    stands along that axis and its feet do not rest clearly.
+    one that may lie along another axis.
     """
     standing = measure_standing(positions, body)
     floor = measure_floor(positions, body)
@@ -175,26 +174,63 @@ def _weigh(
         + (expected or EXPECTED).get(axis, 0.0)
         for axis in expected or AXES
     }
-    resting = measure_rest(positions, body, floor)
+    rest = measure_rest(positions, body, floor)
+    resting = {axis: rest[axis] for axis in totals}
     best, second = sorted(totals, key=lambda axis: totals[axis], reverse=True)[:2]
     lead = (totals[best] - totals[second]) / CLEAR_LEAD
     on_floor = floor[best] - floor[second] >= CLEAR_FLOOR_LEAD
     stands = min(standing[best], floor[best]) if on_floor else 0.0
     elsewhere = max((standing[axis] for axis in AXES if axis not in totals), default=0.0)
     is_elsewhere = elsewhere >= CLEAR_STANDING and elsewhere > standing[best]
-    lying = max((axis for axis in totals if axis != best), key=lambda axis: resting[axis])
+    may_lie = (
+        _rests_elsewhere(best, resting, contact)
+        if min(standing[best], in_rest[best]) >= CLEAR_STANDING
+        else _may_lie(best, in_rest, floor, resting, contact, stands < CLEAR_STANDING)
+    )
+    sure = 0.0 if is_elsewhere or may_lie else max(lead, stands)
+    is_clear = sure > 0.0 and (lead >= 1.0 or stands >= CLEAR_STANDING)
+    confidence = 1.0 if is_clear else float(np.clip(sure, 0.0, 0.99))
+    return UpAxis(best, best, is_clear, 0.5 + 0.5 * confidence)
+
+
+def _may_lie(
+    best: UpAxisName,
+    in_rest: Mapping[UpAxisName, float],
+    floor: Mapping[UpAxisName, float],
+    resting: Mapping[UpAxisName, float],
+    contact: Mapping[UpAxisName, float],
+    is_off_floor: bool,
+) -> bool:
+    """Whether a body may lie along another axis than that along which it would stand.
+
+    It does if it is on zero there, and its feet are far from zero or its rest pose stands along
+    that axis and its feet do not rest clearly; and if, off the floor, it rests there.
+    """
+    lying = max((axis for axis in resting if axis != best), key=lambda axis: resting[axis])
     is_rival = resting[lying] - floor[best] >= CLEAR_FLOOR_LEAD or (
         in_rest[lying] > MIN_REST_STANDING
         and contact[best] - contact[lying] < CLEAR_CONTACT_LEAD
     )
-    may_lie = resting[lying] >= MIN_LYING_FLOOR and is_rival
-    resting_on = max(contact[axis] for axis in totals if axis[-1] != best[-1])
-    may_rest = stands < CLEAR_STANDING and resting_on - contact[best] >= CLEAR_CONTACT_LEAD
-    is_against = is_elsewhere or may_lie or may_rest
-    is_clear = (lead >= 1.0 or stands >= CLEAR_STANDING) and not is_against
-    sure = 0.0 if is_against else max(lead, stands)
-    confidence = 1.0 if is_clear else float(np.clip(sure, 0.0, 0.99))
-    return UpAxis(best, best, is_clear, 0.5 + 0.5 * confidence)
+    rests = max(contact[axis] for axis in resting if axis[-1] != best[-1]) - contact[best]
+    return (resting[lying] >= MIN_LYING_FLOOR and is_rival) or (
+        is_off_floor and rests >= CLEAR_CONTACT_LEAD
+    )
+
+
+def _rests_elsewhere(
+    best: UpAxisName,
+    resting: Mapping[UpAxisName, float],
+    contact: Mapping[UpAxisName, float],
+) -> bool:
+    """Whether a body that stands like its rest pose both is on zero and rests along an axis.
+
+    One of these by itself is an accident, such as of a camera next to the feet.
+    """
+    return any(
+        resting[axis] >= MIN_LYING_FLOOR and contact[axis] - contact[best] >= CLEAR_CONTACT_LEAD
+        for axis in resting
+        if axis[-1] != best[-1]
+    )
 
 
 def stand_upright(

@@ -160,8 +160,8 @@ def question_of_size(recording: Motion | Tracks | JointRecording) -> str:
 
 
 def _stature_of_skeleton(motion: Motion) -> float | None:
-    skeleton = motion.skeleton
-    roles = find_humanoid_map(skeleton).indices(skeleton)
+    skeleton, humanoid = motion.skeleton, find_humanoid_map(motion.skeleton)
+    roles = humanoid.indices(skeleton) if humanoid.score >= MIN_MAP_SCORE else {}
     ankle = next((roles[each] for each in ("leftFoot", "rightFoot") if each in roles), None)
     if ankle is None or "head" not in roles:
         return None

@@ -8,6 +8,7 @@ import numpy as np
 from ...motion import FileConventions, Motion, find_humanoid_map
 from .axes import ADULT_REACH_M, MIN_BODY_JOINTS, longest_bone_path, rotation_to_z_up
 from .body_axes import describe_guessed_axis, estimate_up_axis
+from .body_unit import MIN_MAP_SCORE
 from .file_axes import conventions_of, rotated_conventions
 from .unit_estimate import describe_guessed_unit
 
@@ -53,7 +54,10 @@ def describe_lying(takes: Sequence[Motion]) -> list[str]:
 
 
 def _has_body(motion: Motion) -> bool:
-    return find_humanoid_map(motion.skeleton).has("hips", "head", "leftFoot", "rightFoot")
+    """Whether a take shows a person, whose trunk stands; that of an animal lies."""
+    humanoid = find_humanoid_map(motion.skeleton)
+    roles = "hips", "head", "leftFoot", "rightFoot"
+    return humanoid.score >= MIN_MAP_SCORE and humanoid.has(*roles)
 
 
 def correct_stated_unit(motion: Motion, stated: FileConventions, factor: float) -> Motion:

@@ -9,10 +9,17 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import Motion, Skeleton
-from ...progress import Progress, unwatched
+from ...progress import Progress, Remark, unwatched
 from ...rotations import IDENTITY, inverse, multiply, normalize, rotate, slerp, unroll
 from ..containers import GlbFile, UniqueNames, check_n_joints, printable, vector
-from ..conventions import check_scale, rotations_z_up_from_y_up, z_up_from_y_up
+from ..conventions import (
+    check_scale,
+    correct_stated_unit,
+    describe_guesses,
+    file_conventions,
+    rotations_z_up_from_y_up,
+    z_up_from_y_up,
+)
 
 EXTENSION = "VRMC_vrm_animation"
 MARK = f'"{EXTENSION}"'.encode()
@@ -59,14 +66,13 @@ def read_vrma(
 
     The rest pose is that of the file, a T-pose by definition, in which joints do not rotate.
     Nodes between two bones are kept still in it. Keys have times but no rate: it is the first
-    of common rates on which all keys are, otherwise 60 Hz. Expressions and the direction of
-    the eyes are not read.
+    of common rates on which all keys are, otherwise 60 Hz. Expressions and gaze are not read.
 
     Parameters
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
-        None: 1.
+        None: 1, or what makes an absurd body plausible; converters of BVH wrote centimeters.
     progress : Progress
 
     Raises
@@ -102,14 +108,19 @@ def read_vrma(
     offsets = rest - np.where(np.array(parents)[:, None] >= 0, rest[parents], 0.0)
     world_rotation, origin = _world_rest(nodes, nodes[order[0]].parent)
     path_of_hips = origin + rotate(world_rotation, _sampled_position(nodes[order[0]], times))
-    progress(1.0, "Reading")
+    stated = file_conventions("Y", unit=unit)
     skeleton = Skeleton(tuple(names), tuple(parents), z_up_from_y_up(unit * offsets))
-    return Motion(
+    motion = Motion(
         skeleton,
         rotations_z_up_from_y_up(normalize(rotations)),
         z_up_from_y_up(unit * path_of_hips),
         rate,
+        stated,
     )
+    corrected = correct_stated_unit(motion, stated, 1.0) if scale is None else motion
+    for message in ("Reading", *map(Remark, describe_guesses(corrected))):
+        progress(1.0, message)
+    return corrected
 
 
 def _bones(file: GlbFile, n_nodes: int) -> dict[int, str]:
@@ -180,8 +191,7 @@ def _objects(value: Any) -> list[Mapping[str, Any]]:
 
 
 def _unit(rotation: Array) -> Array:
-    length = np.linalg.norm(rotation)
-    return rotation / length if length > 0.0 else np.array(IDENTITY)
+    return rotation / np.linalg.norm(rotation) if rotation.any() else np.array(IDENTITY)
 
 
 def _channel(
@@ -254,15 +264,12 @@ def _sample_times(file: GlbFile, nodes: list[_Node], bones: list[int]) -> tuple[
             " motion."
         )
     times = np.unique(np.concatenate(keys))
-    rate = next((rate for rate in RATES_HZ if _fits(times, rate)), DEFAULT_RATE_HZ)
+    off = {rate: np.abs(times - np.round(times * rate) / rate).max() for rate in RATES_HZ}
+    rate = next((each for each in off if off[each] < KEY_TOLERANCE_S), DEFAULT_RATE_HZ)
     n_frames = int(np.floor(times[-1] * rate + 0.5)) + 1
     if not 0 < n_frames <= MAX_FRAMES:
         raise file.damaged()
     return np.arange(n_frames) / rate, rate
-
-
-def _fits(times: Array, rate: float) -> bool:
-    return bool((np.abs(times - np.round(times * rate) / rate) < KEY_TOLERANCE_S).all())
 
 
 def _sampled_rotation(node: _Node, times: Array) -> Array:

@@ -10,16 +10,19 @@ from solvers.recordings.conventions import (
     correct_stated_unit,
     describe_guesses,
     describe_lying,
+    question_of_size,
     stand_scene_upright,
     stature,
 )
+from solvers.recordings.conventions.body_axes import estimate_up_axis
 from solvers.recordings.conventions.file_axes import reinterpreted, rotate_motion
 from solvers.recordings.skeleton_files.smpl_bodies.joints import smpl_joints
-from solvers.rotations import quaternion_from_euler
+from solvers.rotations import quaternion_from_euler, rotate
 
 NAMES, PARENTS, Y_UP_OFFSETS = smpl_joints(hands=False)
 OFFSETS = Y_UP_OFFSETS @ np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])
 Y_UP, Z_UP = FileConventions("Y", "Z"), FileConventions("Z", "-Y")
+SIDES = ("left", "right")
 STILL = np.array([1.0, 0.0, 0.0, 0.0])
 
 
@@ -88,6 +91,21 @@ def test_an_actor_who_never_stands_is_reported_with_the_axis_to_choose(
 
     assert f"{conventions.up} up; set Up to {up} if" in message
     assert trunk_of(reinterpreted(lying, up, None))[2] > 0.9
+
+
+def test_an_animal_is_not_questioned():
+    """The trunk of a bird lies, and is as long as that of a giant."""
+    trunk = [NAMES.index(name) for name in ("spine1", "spine2", "spine3", "neck", "head")]
+    legs = [NAMES.index(f"{side}_{part}") for side in SIDES for part in ("knee", "ankle")]
+    offsets = OFFSETS.copy()
+    offsets[trunk] = 3.0 * offsets[trunk][:, [0, 2, 1]] * (1.0, -1.0, 0.0)
+    offsets[legs] = rotate(about("X", 20), offsets[legs])
+    high = walk().root_positions + np.array([0.0, 0.0, 3.0])
+    bird = replace(walk(), skeleton=Skeleton(NAMES, PARENTS, offsets), root_positions=high)
+
+    assert estimate_up_axis(bird).axis != "Y"
+    assert not describe_lying([bird])
+    assert not question_of_size(bird)
 
 
 def test_a_take_that_stands_confirms_the_axis_of_the_file():

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, world_poses
 from solvers.recordings import read_recording
+from solvers.recordings.skeleton_files.vrma import read_vrma
 
 
 def joints(motion):
@@ -38,6 +39,26 @@ def test_the_rest_pose_is_a_t_pose_in_which_nothing_turns(read_any):
     assert_allclose(motion.rotations[:, 0, 0], 1.0, atol=1e-6)
     head = motion.skeleton.rest_positions[motion.skeleton.names.index("head")]
     assert_allclose(head, (0.0, 0.0, 1.62), atol=1e-6)
+
+
+def test_centimeters_are_recognized_and_reported(tmp_path):
+    """A VRM animation is in meters by definition, but not every converter minded it."""
+
+    def enlarge(document):
+        for node in document["nodes"]:
+            node["translation"] = [100.0 * each for each in node["translation"]]
+
+    (tmp_path / "take.vrma").write_bytes(vrma(enlarge))
+    messages = []
+
+    motion = read_vrma(
+        tmp_path / "take.vrma", progress=lambda _, message="": messages.append(message)
+    )
+
+    head = motion.skeleton.rest_positions[motion.skeleton.names.index("head")]
+    assert_allclose(head, (0.0, 0.0, 1.62), atol=1e-6)
+    assert any("Lengths are interpreted as centimeters" in each for each in messages)
+    assert read_vrma(tmp_path / "take.vrma", scale=1.0).skeleton.rest_positions.max() > 100.0
 
 
 @pytest.mark.parametrize(("rate", "expected"), [(24.0, 24.0), (60.0, 60.0), (37.0, 60.0)])

@@ -76,6 +76,20 @@ def test_a_lying_actor_is_left_lying_and_reported(walk, tmp_path):
     assert any("Y is interpreted as up" in message for message in messages)
 
 
+@pytest.mark.parametrize("n_frames", [1, 100])
+def test_who_stands_like_the_rest_pose_next_to_zero_is_no_question(walk, tmp_path, n_frames):
+    """In the space of a camera, a shoulder may be at zero and the feet far from it."""
+    start = walk.root_positions[:1] - (0.25, 0.0, 0.0)
+    positions = 0.02 * (walk.root_positions - walk.root_positions[:1]) + start - (0, 0, 2.0)
+    stands = Motion(walk.skeleton, walk.rotations, positions, walk.frame_rate)
+    write_bvh(stands.slice(0, n_frames), tmp_path / "stand.bvh")
+    messages = []
+
+    read_bvh(tmp_path / "stand.bvh", progress=lambda _, message="": messages.append(message))
+
+    assert not any("is interpreted as up" in message for message in messages)
+
+
 @pytest.mark.parametrize("along", np.arange(-1.2, 1.3, 0.2))
 def test_who_lies_with_a_rest_pose_that_leans_is_a_question(walk, tmp_path, along):
     """Feet at zero made an actor of ACCAD stand up without a word."""

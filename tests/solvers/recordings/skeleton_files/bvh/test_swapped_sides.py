@@ -141,6 +141,20 @@ def test_knees_as_bent_as_of_a_walk_show_the_front(tmp_path):
     assert SWAPPED in messages
 
 
+@pytest.mark.parametrize(("foot", "swapped"), [(TOES, True), (HEEL, False)])
+def test_elbows_show_the_front_of_who_stands_straight(tmp_path, foot, swapped):
+    """Feet that end somewhere are no toes; bent elbows are behind the arm."""
+    take = with_feet(foot, name="ankle_end", knees=0.0)
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        bend = quaternion_from_euler([0.0, 0.0, sign], "XYZ")
+        take.rotations[:, NAMES.index(f"{side}_elbow")] = bend
+    take = in_left_handed_axes(take) if swapped else take
+
+    _, messages = as_read(take, tmp_path / "a.bvh")
+
+    assert (SWAPPED in messages) == swapped
+
+
 def test_toes_that_point_down_show_no_front(tmp_path):
     """Feet of the rest pose of some rigs are those of a dancer."""
     _, messages = as_read(with_feet((0.0, 0.02, -0.13), knees=0.0), tmp_path / "a.bvh")
