@@ -72,6 +72,7 @@ RECORDINGS = {
         "gait.c3d": "formats/c3d/PiG_Motion-FlatFoot-Hole.c3d",
     },
     "track": {"walk.npz": "depth/truth/walk_front.npz"},
+    "undo": {},
     "vary": {
         f"kicks/{name}": f"mocap/hdm05/{name}"
         for name in (
