@@ -209,5 +209,5 @@ def _remarks(
     n_empty = int((image_indices == NO_IMAGE).sum())
     if n_empty and is_good.all():
         first = int(np.argmax(image_indices == NO_IMAGE))
-        remarks.append(f"{n_empty} frames have no image, frame {first} first; they are empty.")
+        remarks.append(f"{n_empty} frames have no image, frame {first + 1} first; they are empty.")
     return remarks
