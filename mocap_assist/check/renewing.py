@@ -52,6 +52,7 @@ def renew_always(scene: bpy.types.Scene) -> None:
 def _await(scene: bpy.types.Scene, *, always: bool) -> None:
     if not scene.mocap_assist.report or bpy.app.background:
         return
+    watch.abandon_quiet(bpy.context)  # a check of what was played before
     is_forced = always or _awaited.get(scene.name, False)
     _awaited.clear()
     _awaited[scene.name] = is_forced

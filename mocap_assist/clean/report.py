@@ -7,14 +7,18 @@ from ...solvers.arrays import Flags
 from ...solvers.denoising import Quality
 from ...solvers.signals import find_runs
 from ..scene import history
-from .button_settings import CleanBundle
+from .button_settings import CleanBundle, Prior
 from .solve_cleaning import Cleaned
 
 
 def clean_report(
-    frames: Sequence[float], cleaned: Cleaned, name: str, n_modified: int = 0
+    frames: Sequence[float], cleaned: Cleaned, name: str, prior: Prior, n_modified: int = 0
 ) -> str:
-    """Return a few sentences for the status bar; `n_modified` curves had modifiers."""
+    """Return a few sentences for the status bar; `n_modified` curves had modifiers.
+
+    Blender cuts long ones in the middle. So the motion model is named only where the animator
+    has chosen one; the history always has it.
+    """
     body = cleaned.solution.denoised[0]
     done = [f"{_count(body.outliers)} spikes", f"{_count(cleaned.before.gaps)} gaps"]
     if swaps := cleaned.solution.swaps:
@@ -26,7 +30,7 @@ def clean_report(
     n_frames = len(frames)
     message = [
         f"{name}: cleaned {n_frames} frames: {', '.join(done)}.",
-        body.report(frames),
+        body.describe_separate_poses(frames) if prior is Prior.TAKE else body.report(frames),
     ]
     if n_modified:
         message.append(f"Applied the modifiers of {n_modified} curves.")
@@ -37,7 +41,7 @@ def clean_report(
     message += [f"{remark}." for remark in (planted.remarks if planted else ())]
     if cleaned.low_confidence:
         message.append(cleaned.low_confidence)
-    return " ".join(message)
+    return " ".join(filter(None, message))
 
 
 def entry_of(

@@ -7,8 +7,8 @@ class MOCAP_PG_match(bpy.types.PropertyGroup):
     """A clip that is similar to the query; `name` is the clip's."""
 
     score: bpy.props.FloatProperty(name="Score", subtype="FACTOR", min=0.0, max=1.0)
-    start: bpy.props.IntProperty(name="First Frame", description="Frame of the clip, counted from 1")
-    stop: bpy.props.IntProperty(name="Last Frame", description="Frame of the clip, counted from 1")
+    start: bpy.props.IntProperty(name="First Frame", description="Frame of the clip")
+    stop: bpy.props.IntProperty(name="Last Frame", description="Frame of the clip")
     tags: bpy.props.StringProperty(name="Tags")
 
 

@@ -9,12 +9,12 @@ from modal_events import event, nothing_is_left
 
 
 @pytest.fixture
-def renewing(load, monkeypatch):
+def renewing(load, blank, monkeypatch):
     """Renewing, as in a Blender with a window; its timers are listed in `renewing.timers`."""
     module = load("mocap_assist.check.renewing")
     timers = []
     app = SimpleNamespace(background=False, timers=Timers(timers))
-    monkeypatch.setattr(module, "bpy", SimpleNamespace(app=app))
+    monkeypatch.setattr(module, "bpy", SimpleNamespace(app=app, context=blank.context))
     monkeypatch.setattr(module, "timers", timers, raising=False)
     yield module
     module._awaited.clear()
@@ -264,6 +264,21 @@ def test_list_of_a_result_is_not_shown_for_the_recorded_action(blank, noisy, ren
 
     assert state_of_list(blank) in {raw, ("", ())}
     assert renewing.timers == [renewing.renew]
+
+
+def test_undo_ends_a_check_of_what_was_played_before(blank, noisy, renewing, check, window):
+    """It listed the issues of the result as those of the recorded action."""
+    blank.ops.mocap_assist.measure_quality("EXEC_DEFAULT", True)
+    blank.ops.ed.undo_push(message="start")
+    blank.ops.mocap_assist.denoise("EXEC_DEFAULT", True, plant_feet=False)
+    quiet = check(is_quiet=True)
+    assert quiet.invoke(window.context, None) == {"RUNNING_MODAL"}
+    renewing.bpy.context = window.context
+
+    blank.ops.ed.undo()
+
+    assert quiet.modal(window.context, event("TIMER")) == {"CANCELLED"}
+    assert renewing._awaited == {blank.context.scene.name: True}
 
 
 def test_revert_is_checked_again(blank, actor, renewing):
