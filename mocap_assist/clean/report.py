@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from ...solvers.arrays import Flags
+import numpy as np
+
 from ...solvers.denoising import Quality
 from ...solvers.signals import find_runs
 from ..scene import history
@@ -20,7 +21,8 @@ def clean_report(
     has chosen one; the history always has it.
     """
     body = cleaned.solution.denoised[0]
-    done = [f"{_count(body.outliers)} spikes", f"{_count(cleaned.before.gaps)} gaps"]
+    before, after = map(_faults, (cleaned.before, cleaned.after))
+    done = [f"spikes and gaps {before} → {after}"]
     if swaps := cleaned.solution.swaps:
         done.append(f"{len(swaps)} swapped labels")
     planted = cleaned.planted
@@ -67,6 +69,6 @@ def figures(quality: Quality) -> dict[str, Any]:
     return {name: value for name, value in every.items() if isinstance(value, (int, float))}
 
 
-def _count(flags: Flags) -> int:
-    """Count the runs of True along the frames, over all joints."""
-    return sum(len(find_runs(column)) for column in flags.T)
+def _faults(quality: Quality) -> int:
+    """Count the spikes and gaps over all joints, as Check and the card of Fix do."""
+    return sum(len(find_runs(column)) for column in np.hstack([quality.spikes, quality.gaps]).T)
