@@ -112,7 +112,7 @@ def passes(name: str, zip_path: Path) -> bool:
     except FileNotFoundError as error:
         print(f"{name}: skipped, since {error.filename} is missing.")
         return True
-    driver, picture = FOLDER / f"drive_{name}.py", out / f"{name}.png"
+    driver, picture = next(FOLDER.rglob(f"drive_{name}.py")), out / f"{name}.png"
     if TOOL.exists():
         options = {
             "BG_DEBS": PACKAGES,

@@ -2,38 +2,8 @@
 
 from contextlib import nullcontext
 from types import SimpleNamespace
-from typing import NamedTuple
 
-import pytest
 from modal_events import event, nothing_is_left
-
-
-@pytest.fixture
-def renewing(load, blank, monkeypatch):
-    """Renewing, as in a Blender with a window; its timers are listed in `renewing.timers`."""
-    module = load("mocap_assist.check.renewing")
-    timers = []
-    app = SimpleNamespace(background=False, timers=Timers(timers))
-    monkeypatch.setattr(module, "bpy", SimpleNamespace(app=app, context=blank.context))
-    monkeypatch.setattr(module, "timers", timers, raising=False)
-    yield module
-    module._awaited.clear()
-
-
-@pytest.fixture
-def check(load, make_button):
-    """Make a button Check, which is quiet or requested."""
-    settings = load("solvers.denoising")
-    kind = load("mocap_assist.check.button_settings").CheckBundle
-
-    def made(is_quiet):
-        button = make_button(
-            "measure_quality", kind(settings.QualitySettings(), settings.IssueSettings())
-        )
-        button.is_quiet = is_quiet
-        return button
-
-    return made
 
 
 def test_results_are_checked_again_where_check_was_pressed_before(blank, actor, renewing):
@@ -130,17 +100,6 @@ def test_quiet_check_makes_way_for_a_press(actor, blank, check, window):
     assert nothing_is_left(window)
 
 
-class Timers:
-    def __init__(self, registered):
-        self.registered = registered
-
-    def is_registered(self, function):
-        return function in self.registered
-
-    def register(self, function, first_interval):
-        self.registered.append(function)
-
-
 def test_quiet_check_leaves_the_status_bar(blank, actor, capsys):
     assert blank.ops.mocap_assist.measure_quality(is_quiet=True) == {"FINISHED"}
     assert "ound" not in capsys.readouterr().out
@@ -200,104 +159,3 @@ def test_a_list_whose_action_was_deleted_is_renewed(actor, blank, renewing):
     blank.ops.mocap_assist.denoise(plant_feet=False)
 
     assert renewing.timers == [renewing.renew]
-
-
-def test_undo_after_a_quiet_check_points_to_no_freed_action(blank, actor):
-    """The scene is the same before and after Clean in the steps, and is reused by undo."""
-    shown, buttons = blank.context.scene.mocap_assist, blank.ops.mocap_assist
-    played = actor.animation_data.action.name
-    blank.ops.ed.undo_push(message="start")
-    buttons.measure_quality("EXEC_DEFAULT", True)
-    blank.ops.ed.undo_push(message="another step")
-    buttons.denoise("EXEC_DEFAULT", True)
-    buttons.measure_quality("EXEC_DEFAULT", True, is_quiet=True)
-    assert shown.checked_action.name != played
-
-    blank.ops.ed.undo()
-
-    shown = blank.context.scene.mocap_assist
-    assert [action.name for action in blank.data.actions] == [played]
-    assert shown.checked_action in {None, blank.data.actions[played]}
-
-    blank.ops.ed.redo()
-    assert len(blank.data.actions) == 2
-
-
-@pytest.fixture
-def noisy(blank, load, monkeypatch):
-    """Two seconds of the sample take, which has issues."""
-    importing, walk = load("mocap_assist.importing.sample_take"), load("solvers.samples")
-    monkeypatch.setattr(importing, "noisy_walk", lambda: walk.noisy_walk().slice(0, 60))
-    blank.ops.mocap_assist.load_sample()
-
-
-def test_undo_keeps_the_list_of_the_action_that_is_still_played(blank, noisy, renewing):
-    """A check adds no undo step, so undo restored the list of before it, which was empty."""
-    buttons = blank.ops.mocap_assist
-    blank.ops.ed.undo_push(message="start")
-    blank.context.scene.frame_set(9)
-    blank.ops.ed.undo_push(message="another frame")
-    buttons.measure_quality("EXEC_DEFAULT", True)
-    before = state_of_list(blank)
-    assert before.issues
-
-    blank.ops.ed.undo()
-
-    assert blank.context.scene.frame_current != 9
-    assert state_of_list(blank) == before
-    assert renewing.timers == [renewing.renew]  # the keys may be others
-    assert renewing._awaited == {blank.context.scene.name: True}
-
-
-def test_list_of_a_result_is_not_shown_for_the_recorded_action(blank, noisy, renewing):
-    buttons = blank.ops.mocap_assist
-    buttons.measure_quality("EXEC_DEFAULT", True)
-    blank.ops.ed.undo_push(message="start")
-    raw = state_of_list(blank)
-    buttons.denoise("EXEC_DEFAULT", True, plant_feet=False)
-    buttons.measure_quality("EXEC_DEFAULT", True)
-    clean = state_of_list(blank)
-    assert clean.issues != raw.issues
-    renewing.timers.clear()
-
-    blank.ops.ed.undo()
-
-    assert state_of_list(blank) in {raw, ("", ())}
-    assert renewing.timers == [renewing.renew]
-
-
-def test_undo_ends_a_check_of_what_was_played_before(blank, noisy, renewing, check, window):
-    """It listed the issues of the result as those of the recorded action."""
-    blank.ops.mocap_assist.measure_quality("EXEC_DEFAULT", True)
-    blank.ops.ed.undo_push(message="start")
-    blank.ops.mocap_assist.denoise("EXEC_DEFAULT", True, plant_feet=False)
-    quiet = check(is_quiet=True)
-    assert quiet.invoke(window.context, None) == {"RUNNING_MODAL"}
-    renewing.bpy.context = window.context
-
-    blank.ops.ed.undo()
-
-    assert quiet.modal(window.context, event("TIMER")) == {"CANCELLED"}
-    assert renewing._awaited == {blank.context.scene.name: True}
-
-
-def test_revert_is_checked_again(blank, actor, renewing):
-    blank.ops.mocap_assist.denoise(plant_feet=False)
-    blank.ops.mocap_assist.measure_quality()
-    renewing.timers.clear()
-
-    blank.ops.mocap_assist.revert_to_raw()
-
-    assert renewing.timers == [renewing.renew]
-
-
-class ShownList(NamedTuple):
-    action: str
-    issues: tuple
-
-
-def state_of_list(bpy):
-    shown = bpy.context.scene.mocap_assist
-    action = shown.checked_action
-    issues = tuple((each.name, each.kind, each.start) for each in shown.issues)
-    return ShownList("" if action is None else action.name, issues)
