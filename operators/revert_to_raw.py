@@ -4,6 +4,7 @@ import bpy
 
 from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.check.reverting import revert, why_not_revert
+from ..mocap_assist.runtime.after_result import notify_listeners
 from ..mocap_assist.runtime.selection import selected_subject
 
 
@@ -15,4 +16,6 @@ class MOCAP_OT_revert_to_raw(ActOperator, bpy.types.Operator):
     why_not = why_not_revert
 
     def act(self, context: bpy.types.Context) -> str:
-        return revert(selected_subject(context))
+        message = revert(selected_subject(context))
+        notify_listeners(context.scene)
+        return message

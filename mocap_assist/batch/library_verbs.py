@@ -123,7 +123,7 @@ def perform_find(
 
 def _row(found: Found) -> str:
     frames = found.match.frames
-    return f"{found.match.score:5.0%}  {frames.start}-{frames.stop - 1}  {found.entry.name}"
+    return f"{found.match.score:5.0%}  {frames.start + 1}-{frames.stop}  {found.entry.name}"
 
 
 def _figures(found: Found) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import bpy
 from ..blender.mixins import PanelMixin
 from ..languages import translated
 from ..overlays.strip.switch import draw_strip_switch
-from ..panel_parts.figure_rows import figure_rows, frames_text
+from ..panel_parts.figure_rows import figure_rows, frame_text, frames_text
 from ..panel_parts.fix_card import shown_card
 from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, is_wide
 from ..panel_parts.visibility import shows_take
@@ -63,7 +63,7 @@ class MOCAP_UL_issues(bpy.types.UIList):
         row = row.split(factor=BONE_COLUMN)
         _jump(row, index, item.name, "NONE")
         first, last = shown_frames(context, item)
-        _jump(row, index, frames_text(first, last if wide else first), "NONE")
+        _jump(row, index, frames_text(first, last) if wide else frame_text(first), "NONE")
 
 
 class CheckPanel(PanelMixin):

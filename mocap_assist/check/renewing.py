@@ -9,8 +9,9 @@ from ..runtime.solver_operator import SolverOperator
 from . import raw_view
 from .checking import is_stale
 
-_awaited: list[str] = []
-"""Name of the scene that the next quiet check is for, until a check has ended there."""
+_awaited: dict[str, bool] = {}
+"""Name of the scene that the next quiet check is for, until a check has ended there, and
+whether it is checked even if the list is of the action that is played."""
 
 
 class CheckOperator(SolverOperator):
@@ -40,9 +41,21 @@ class CheckOperator(SolverOperator):
 
 def renew_later(scene: bpy.types.Scene) -> None:
     """Check again once Blender is idle, where Check was pressed in this scene before."""
+    _await(scene, always=False)
+
+
+def renew_always(scene: bpy.types.Scene) -> None:
+    """Do so even if the list is of the played action, whose keys may have changed."""
+    _await(scene, always=True)
+
+
+def _await(scene: bpy.types.Scene, *, always: bool) -> None:
     if not scene.mocap_assist.report or bpy.app.background:
         return
-    _awaited[:] = [scene.name]
+    watch.abandon_quiet(bpy.context)  # a check of what was played before
+    is_forced = always or _awaited.get(scene.name, False)
+    _awaited.clear()
+    _awaited[scene.name] = is_forced
     _renew_when_idle()
 
 
@@ -73,7 +86,7 @@ def renew() -> None:
         area = max(window.screen.areas, key=lambda each: each.type == "VIEW_3D")
         region = next(each for each in area.regions if each.type == "WINDOW")
         with bpy.context.temp_override(window=window, area=area, region=region):
-            if check.poll() and _is_outdated(window.scene):
+            if check.poll() and (_awaited[window.scene.name] or _is_outdated(window.scene)):
                 check("INVOKE_DEFAULT", is_quiet=True)
 
 

@@ -51,7 +51,7 @@ def why_no_raw(context: bpy.types.Context) -> str:
     if history.SOURCE in action:
         return f"The raw action of {action.name} is not in this file."
     if history.GIVEN_BY in action:
-        return f"{action.name} was made for {subject.name}. It has no raw action to revert to."
+        return f"{action.name} was made from another object; it has no raw action to revert to."
     return f"{action.name} is the raw action. Press Fix My Take or Clean first."
 
 

@@ -89,7 +89,7 @@ def write_cleaned(
     frames = timeline_frames(here.find()[1], found.raw.frames)
     entry = yield from in_thread.steps(partial(entry_of, "denoise", settings, cleaned, frames))
     name, n_modified = yield from found.write(settings.choices, cleaned, types, entry)
-    return clean_report(frames, cleaned, name, n_modified)
+    return clean_report(frames, cleaned, name, settings.choices.prior, n_modified)
 
 
 def key_types(

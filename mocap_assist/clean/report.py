@@ -3,20 +3,26 @@
 from collections.abc import Sequence
 from typing import Any
 
-from ...solvers.arrays import Flags
+import numpy as np
+
 from ...solvers.denoising import Quality
 from ...solvers.signals import find_runs
 from ..scene import history
-from .button_settings import CleanBundle
+from .button_settings import CleanBundle, Prior
 from .solve_cleaning import Cleaned
 
 
 def clean_report(
-    frames: Sequence[float], cleaned: Cleaned, name: str, n_modified: int = 0
+    frames: Sequence[float], cleaned: Cleaned, name: str, prior: Prior, n_modified: int = 0
 ) -> str:
-    """Return a few sentences for the status bar; `n_modified` curves had modifiers."""
+    """Return a few sentences for the status bar; `n_modified` curves had modifiers.
+
+    Blender cuts long ones in the middle. So the motion model is named only where the animator
+    has chosen one; the history always has it.
+    """
     body = cleaned.solution.denoised[0]
-    done = [f"{_count(body.outliers)} spikes", f"{_count(cleaned.before.gaps)} gaps"]
+    before, after = map(_faults, (cleaned.before, cleaned.after))
+    done = [f"spikes and gaps {before} → {after}"]
     if swaps := cleaned.solution.swaps:
         done.append(f"{len(swaps)} swapped labels")
     planted = cleaned.planted
@@ -26,7 +32,7 @@ def clean_report(
     n_frames = len(frames)
     message = [
         f"{name}: cleaned {n_frames} frames: {', '.join(done)}.",
-        body.report(frames),
+        body.describe_separate_poses(frames) if prior is Prior.TAKE else body.report(frames),
     ]
     if n_modified:
         message.append(f"Applied the modifiers of {n_modified} curves.")
@@ -37,7 +43,7 @@ def clean_report(
     message += [f"{remark}." for remark in (planted.remarks if planted else ())]
     if cleaned.low_confidence:
         message.append(cleaned.low_confidence)
-    return " ".join(message)
+    return " ".join(filter(None, message))
 
 
 def entry_of(
@@ -63,6 +69,6 @@ def figures(quality: Quality) -> dict[str, Any]:
     return {name: value for name, value in every.items() if isinstance(value, (int, float))}
 
 
-def _count(flags: Flags) -> int:
-    """Count the runs of True along the frames, over all joints."""
-    return sum(len(find_runs(column)) for column in flags.T)
+def _faults(quality: Quality) -> int:
+    """Count the spikes and gaps over all joints, as Check and the card of Fix do."""
+    return sum(len(find_runs(column)) for column in np.hstack([quality.spikes, quality.gaps]).T)

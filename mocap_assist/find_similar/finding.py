@@ -110,7 +110,7 @@ def fill_list(context: bpy.types.Context, search: searches.Search) -> None:
         row = listed.rows.add()
         row.name = found.entry.name
         row.score = found.match.score
-        row.start, row.stop = found.match.frames.start, found.match.frames.stop - 1
+        row.start, row.stop = found.match.frames.start + 1, found.match.frames.stop
         row.tags = ", ".join(found.entry.tags)
     listed.search, listed.query, listed.active = search.number, search.query, 0
 

@@ -174,7 +174,7 @@ def _draw_chosen(
     draw_sentence(
         column,
         context,
-        f"{entry.name}: frames {frames.start}–{frames.stop - 1} of {entry.n_frames},"
+        f"{entry.name}: frames {frames.start + 1}–{frames.stop} of {entry.n_frames},"
         f" {entry.frame_rate:g} Hz.{tags}",
     )
     switch = column.row()

@@ -5,7 +5,6 @@ from functools import partial
 from typing import Any
 
 import bpy
-import numpy as np
 
 from ...solvers.arrays import Array
 from ...solvers.denoising import DenoiseSettings, PlantSettings
@@ -31,7 +30,7 @@ from ..check.checking import list_issues, read_played
 from ..clean.button_settings import CleanBundle, CleanChoices
 from ..clean.cleaning import read_cleaning, write_cleaned
 from ..clean.solve_cleaning import Cleaned
-from ..depth.depth_preview import Shown, recording_of, shows_depth
+from ..depth.depth_preview import recording_of, shows_depth
 from ..jobs.protocol import PreviewSolve
 from ..markers.solving import SolveBundle, read_solving, write_solved
 from ..panel_parts.fix_card import keep_card
@@ -157,6 +156,7 @@ def write_fixed(
     scene, subject = here.find()
     take = yield from read_played.steps(scene, subject)
     scene, subject = here.find()
+    _key_contacts(subject, take.frames, fixed)
     name = played_source(subject)[0].name
     report = _report(scene, subject, take.frames, fixed.take)  # Esc may end the retargeting
     if settings.choices.rig:
@@ -201,16 +201,17 @@ def _write_depth(
     entry: dict[str, Any],
     solved_digest: str | None,
 ) -> None:
-    """Add the armature that Track makes, and key the contacts at which feet were planted."""
+    """Add the armature that Track makes."""
     fixed = FixedMotion(written.motion, entry)
     write_tracked(scene, preview, TRACK, written.tracked, solved_digest, fixed)
-    if written.contacts is None:
-        return
-    armature, shown = selected_armature(bpy.context), Shown.read(preview.data)
-    assert armature is not None
-    frames = shown.start + shown.step * np.arange(written.motion.n_frames)
-    source = played_source(armature)
-    write_contacts(armature, *source, frames, written.contacts, detected=True)
+
+
+def _key_contacts(armature: bpy.types.Object, frames: Array, fixed: Fixed) -> None:
+    """Key the contacts at which feet of a new armature were planted, as Clean does."""
+    planted = fixed.take.chain.planted
+    if planted is not None and isinstance(fixed.written, MarkerMotion | FixedDepth):
+        source = played_source(armature)
+        write_contacts(armature, *source, frames, planted.all_contacts, detected=True)
 
 
 def _limits_of(here: Subject) -> Steps[JointLimits | None]:

@@ -27,11 +27,10 @@ for one or two props."""
 
 @dataclass(frozen=True, eq=False)
 class FixedDepth:
-    """What Track would write, the motion after the other steps, and its contacts."""
+    """What Track would write, and the motion after the other steps."""
 
     tracked: Tracked
     motion: Motion
-    contacts: Flags | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,10 +139,9 @@ def _solved_from_fixed(fixed: FixedTake) -> MarkerMotion:
 
 
 def _tracked_from_fixed(fixed: FixedTake) -> FixedDepth:
-    captured, planted = fixed.chain.captured, fixed.chain.planted
+    captured = fixed.chain.captured
     assert captured is not None and isinstance(fixed.recording, Motion)
     tracked = build_tracked(
         0, captured.motion, captured.captured, captured.actor.floor, captured.remarks
     )
-    contacts = None if planted is None else planted.all_contacts
-    return FixedDepth(tracked, fixed.recording, contacts)
+    return FixedDepth(tracked, fixed.recording)

@@ -42,5 +42,10 @@ def frames_text(start: float, stop: float) -> str:
     return first if first == last else f"{first} – {last}"
 
 
+def frame_text(frame: float) -> str:
+    """Return the nearest frame, for a column of a sidebar of the default width."""
+    return str(round(frame))
+
+
 def _figure(value: float | None, factor: float, form: str) -> str:
     return UNKNOWN if value is None else format(factor * value, form)

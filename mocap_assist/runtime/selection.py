@@ -1,5 +1,7 @@
 """The selected armature, bones and markers, and why a button is unavailable."""
 
+from collections.abc import Sequence
+
 import bpy
 
 from ...solvers.arrays import Array
@@ -11,7 +13,7 @@ from ..actions.markers.holders import first_marker_of, holder_of, markers_of, po
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
-from ..scene.played_time import played_times
+from ..scene.played_time import PlayedTime, played_times
 
 
 class Bones(Choice):
@@ -106,14 +108,19 @@ def shown_frames(
     if subject is None:
         return issue.start, issue.stop
     times = played_times(first_animated_object(subject))
-    plays = (each for each in times if each.first <= issue.start <= each.last)
-    return next(plays, times[0]).scene_range(issue.start, issue.stop)
+    return _time_of(times, issue.start).scene_range(issue.start, issue.stop)
 
 
 def timeline_frames(subject: bpy.types.Object, frames: Array) -> list[float]:
     """Return the scene frames at which a subject plays these frames of its action."""
-    time = played_times(first_animated_object(subject))[0]
-    return [time.scene_frame(frame) for frame in frames.tolist()]
+    times = played_times(first_animated_object(subject))
+    return [_time_of(times, frame).scene_frame(frame) for frame in frames.tolist()]
+
+
+def _time_of(times: Sequence[PlayedTime], frame: float) -> PlayedTime:
+    """Return the time of the first strip that plays a frame of the action, or of the first."""
+    plays = (each for each in times if each.first <= frame <= each.last)
+    return next(plays, times[0])
 
 
 def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:

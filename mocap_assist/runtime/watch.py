@@ -57,8 +57,7 @@ class Watch:
         is_quiet: bool = False,
     ) -> None:
         self.is_cancelled, self.is_quiet = False, is_quiet
-        for quiet in [each for each in _on if each.is_quiet]:
-            quiet.abandon(context)
+        abandon_quiet(context)
         self._stop = stop
         self._began = monotonic()
         self._shown_at = float("-inf")
@@ -145,6 +144,12 @@ def time_left(fraction: float, elapsed_s: float) -> str:
 def why_busy() -> str:
     """Return why no other solve can start, or an empty text."""
     return BUSY if any(not each.is_quiet for each in _on) else ""
+
+
+def abandon_quiet(context: bpy.types.Context) -> None:
+    """End the solves that were not requested."""
+    for quiet in [each for each in _on if each.is_quiet]:
+        quiet.abandon(context)
 
 
 def is_quiet_on() -> bool:

@@ -87,7 +87,11 @@ def partial_result(
     rate, floor = recording.frame_rate, receiver.floor
     first, captured = unfinished_capture(poses, rate, floor=floor, settings=settings)
     n_frames = captured.motion.n_frames
-    remark = f"Stopped early: {n_frames} of {recording.n_frames} frames tracked."
+    remark = (
+        f"Stopped early: {n_frames} of {recording.n_frames} frames tracked."
+        if n_frames < recording.n_frames
+        else "Stopped after the last frame: feet were not planted."
+    )
     return build_tracked(first, captured.motion, captured, floor, (remark,))
 
 

@@ -199,7 +199,7 @@ def _table(found: Sequence[FoundClip], names_library: bool) -> str:
         begin, end = (frame / entry.frame_rate for frame in (first, last))
         rows.append((
             match.clip, *([escaped(each.library.name)] * names_library), f"{match.score:.2f}",
-            f"{first}-{last}", f"{begin:.1f}-{end:.1f}", ", ".join(entry.tags),
+            f"{first + 1}-{last + 1}", f"{begin:.1f}-{end:.1f}", ", ".join(entry.tags),
         ))  # fmt: skip
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return "\n".join(

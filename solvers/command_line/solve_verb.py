@@ -75,8 +75,8 @@ def _summary(result: MarkerMotion) -> str:
         f"The mean marker error is {1000 * np.nanmean(error):.1f} mm.",
     ]
     lines += [
-        f"Labels of {' and '.join(swap.names)} were wrong in frames {swap.frames.start} to"
-        f" {swap.frames.stop - 1}."
+        f"Labels of {' and '.join(swap.names)} were wrong in frames {swap.frames.start + 1} to"
+        f" {swap.frames.stop}."
         for swap in result.swaps[:MAX_LISTED_SWAPS]
     ]
     if len(result.swaps) > MAX_LISTED_SWAPS:

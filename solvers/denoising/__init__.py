@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         QualitySettings,
         compare_quality,
         find_worst_issues,
+        measure_at_contacts,
         measure_quality,
     )
     from .window_priors import (
@@ -61,6 +62,7 @@ __all__ = [
     "learn_joint_limits",
     "limit_excess",
     "load_filter_bases",
+    "measure_at_contacts",
     "measure_quality",
     "plant_feet",
 ]

@@ -29,5 +29,5 @@ def shift_remarks(result: Reconstruction) -> list[str]:
     distance_cm = 100.0 * float(np.linalg.norm(result.shift, axis=-1).mean())
     return [
         f"Joints moved by {distance_cm:.1f} cm on average, the constant offset of this kind of"
-        " sensor; switch off Sensor Offset to keep them."
+        " sensor; Reconstruct without Sensor Offset keeps them."
     ]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Flags
-from ..denoising import PlantSettings
+from ..denoising import PlantSettings, measure_at_contacts
 from ..depth_scene import DepthRecording
 from ..depth_tracking.tracking import PoseCallback, ignore_pose
 from ..errors import InvalidMotionError
@@ -70,7 +70,8 @@ class FixedTake:
     chain : ChainResult
         The fixed recording, and the result of each step.
     before, after : TakeFigures
-        Of the take as it came and of the result, at the same contacts of the feet.
+        Of the take as it came and of the result: the slide of the feet at the same contacts,
+        and the issues that Check lists of either.
     missing : tuple of str
         Sentences on markers and frames without any data, and what was done about them.
     size_question : str
@@ -180,16 +181,16 @@ def fix_take(
     if settings.physics:
         chain = _simulate(chain, within(progress, FIXED / n_steps, FIXED))
     start = take_before(recording, chain, within(progress, FIXED, COMPARED))
-    if chain.planted is not None:
-        contacts = chain.planted.contacts
-    elif contacts is not None:
-        contacts = contacts[:, : len(SIDES)]
+    given = None if contacts is None else contacts[:, : len(SIDES)]
+    compared = given if chain.planted is None else chain.planted.contacts
     step = within(progress, COMPARED, MEASURED)
-    after = measure_take(chain.recording, contacts=contacts, limits=limits, progress=step)
-    if contacts is None and after.quality.feet:
-        contacts = np.stack([foot.contact for foot in after.quality.feet], axis=1)
+    after = measure_take(chain.recording, contacts=compared, limits=limits, progress=step)
+    if compared is None and after.quality.feet:
+        compared = np.stack([foot.contact for foot in after.quality.feet], axis=1)
     step = within(progress, MEASURED, 1.0)
-    before = measure_take(start, contacts=contacts, limits=limits, progress=step)
+    before = measure_take(start, contacts=given, limits=limits, progress=step)
+    if compared is not None:
+        before = replace(before, quality=measure_at_contacts(before.quality, start, compared))
     missing = (describe_missing_points(never_observed), describe_empty_frames(recording))
     return FixedTake(
         find_origin(recording), chain, before, after, tuple(filter(None, missing)), _size(start)

@@ -22,8 +22,8 @@ import numpy as np
 import pytest
 
 pytest_plugins = (
-    "armature_fixtures", "common_fixtures", "panel_fixtures", "rig_fixtures", "rigify_fixtures",
-    "solve_fixtures",
+    "armature_fixtures", "common_fixtures", "panel_fixtures", "renewing_fixtures",
+    "rig_fixtures", "rigify_fixtures", "solve_fixtures",
     "tracked_fixtures", "window_fixtures",
 )  # fmt: skip
 

@@ -72,6 +72,7 @@ RECORDINGS = {
         "gait.c3d": "formats/c3d/PiG_Motion-FlatFoot-Hole.c3d",
     },
     "track": {"walk.npz": "depth/truth/walk_front.npz"},
+    "undo": {},
     "vary": {
         f"kicks/{name}": f"mocap/hdm05/{name}"
         for name in (
@@ -111,7 +112,7 @@ def passes(name: str, zip_path: Path) -> bool:
     except FileNotFoundError as error:
         print(f"{name}: skipped, since {error.filename} is missing.")
         return True
-    driver, picture = FOLDER / f"drive_{name}.py", out / f"{name}.png"
+    driver, picture = next(FOLDER.rglob(f"drive_{name}.py")), out / f"{name}.png"
     if TOOL.exists():
         options = {
             "BG_DEBS": PACKAGES,

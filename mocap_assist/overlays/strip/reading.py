@@ -125,6 +125,12 @@ def strip_of(context: bpy.types.Context) -> Strip | None:
     return _strips[key]
 
 
+def is_checked(context: bpy.types.Context) -> bool:
+    """Return whether Check has listed the issues of what the active armature plays."""
+    source = reliability_source(context.view_layer.objects.active)
+    return source is not None and context.scene.mocap_assist.checked_action == source[0]
+
+
 def contacts_of(armature: bpy.types.Object) -> tuple[Array, ...] | None:
     """Return the contact keys of an armature's action, as in `ActionKeys`, if it has any.
 

@@ -11,7 +11,7 @@ from ...runtime.selection import selected_armature
 from ..color_icons import draw_marks
 from ..marked_ranges import MARKS, StripRow
 from .drawing import EDITORS, draw_strip
-from .reading import strip_of
+from .reading import is_checked, strip_of
 
 SWITCH = "mocap_assist_strip"
 SPACES = (SpaceDopeSheetEditor, SpaceGraphEditor)
@@ -32,7 +32,8 @@ def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) ->
         return
     strip = strip_of(context)
     if strip is None:
-        draw_sentence(layout, context, NOTHING, icon="INFO")
+        if not is_checked(context):  # otherwise the list says that there are no issues
+            draw_sentence(layout, context, NOTHING, icon="INFO")
         return
     column = layout.column(align=True)
     if StripRow.CONFIDENCE in strip.rows:

@@ -6,9 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Flags
+from ...errors import InvalidMotionError
 from ...feet import find_foot_joints, find_foot_points, find_legs, sole_points
 from ...motion import Motion, Tracks, WorldPoses
-from ...motion.humanoid import SIDES, HumanoidMap
+from ...motion.humanoid import SIDES, HumanoidMap, contacts_of_points, detect_contacts
 from ...signals import find_runs
 
 
@@ -112,6 +113,37 @@ def sole_paths(
             points = [points[0], *(point.position(poses) for point in sole)]
         paths.append(FootPoints(side, motion.skeleton.names[each[0]], np.stack(points, axis=1)))
     return tuple(paths)
+
+
+def measure_foot_slides(
+    recording: Motion | Tracks,
+    feet: tuple[FootPoints, ...],
+    contacts: Flags | None,
+    humanoid_map: HumanoidMap | None,
+    cuts: tuple[int, ...],
+) -> tuple[FootSlide, ...]:
+    """Measure all feet of a recording, in contacts that are detected if not given.
+
+    Raises InvalidMotionError if the contacts do not fit the recording.
+    """
+    if contacts is not None and np.shape(contacts) != (recording.n_frames, len(SIDES)):
+        raise InvalidMotionError(
+            f"Contacts need shape ({recording.n_frames}, 2), not {np.shape(contacts)}."
+        )
+    if not feet:
+        return ()
+    if contacts is None:
+        contacts = (
+            detect_contacts(recording, humanoid_map)
+            if isinstance(recording, Motion)
+            else contacts_of_points(
+                np.stack([foot.points for foot in feet], axis=1), recording.frame_rate
+            )
+        )
+    return tuple(
+        measure_foot_slide(foot, contacts[:, index], recording.frame_rate, cuts)
+        for index, foot in enumerate(feet)
+    )
 
 
 def measure_foot_slide(

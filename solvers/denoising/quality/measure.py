@@ -1,16 +1,15 @@
 """Measure the quality of a take: jitter, spikes, gaps, foot slide, bone-length drift."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ...arrays import Array, Flags
-from ...errors import InvalidMotionError
 from ...motion import JointLimits, Motion, Tracks, forward_kinematics
-from ...motion.humanoid import SIDES, HumanoidMap, contacts_of_points, detect_contacts
+from ...motion.humanoid import HumanoidMap
 from ...motion.skeletons import (
     PathJump,
     find_path_jumps,
@@ -25,7 +24,7 @@ from ..limits import limit_excess
 from .bone_drift import BoneDrift, bones_are_searched, measure_bone_drifts
 from .confirm_spikes import confirm_spikes
 from .figures import quality_figures
-from .foot_slide import FootPoints, FootSlide, foot_paths, measure_foot_slide, sole_paths
+from .foot_slide import FootSlide, foot_paths, measure_foot_slides, sole_paths
 from .jitter import measure_jitter
 from .joint_jumps import JointJump, find_joint_jumps
 from .joint_signals import Signal, SpikeRule, extract_signals
@@ -250,7 +249,7 @@ def measure_quality(
         frame_rate=recording.frame_rate,
         jitter=measure_jitter(positions, recording.frame_rate, cuts),
         signals=signals,
-        feet=_foot_slides(recording, feet, contacts, humanoid_map, cuts),
+        feet=measure_foot_slides(recording, feet, contacts, humanoid_map, cuts),
         bones=bones,
         limit_excess=_excess(recording, limits, humanoid_map),
         cuts=cuts,
@@ -263,31 +262,32 @@ def measure_quality(
     return quality
 
 
-def _foot_slides(
-    recording: Motion | Tracks,
-    feet: tuple[FootPoints, ...],
-    contacts: Flags | None,
-    humanoid_map: HumanoidMap | None,
-    cuts: tuple[int, ...],
-) -> tuple[FootSlide, ...]:
-    if contacts is not None and np.shape(contacts) != (recording.n_frames, len(SIDES)):
-        raise InvalidMotionError(
-            f"Contacts need shape ({recording.n_frames}, 2), not {np.shape(contacts)}."
-        )
-    if not feet:
-        return ()
-    if contacts is None:
-        contacts = (
-            detect_contacts(recording, humanoid_map)
-            if isinstance(recording, Motion)
-            else contacts_of_points(
-                np.stack([foot.points for foot in feet], axis=1), recording.frame_rate
-            )
-        )
-    return tuple(
-        measure_foot_slide(foot, contacts[:, index], recording.frame_rate, cuts)
-        for index, foot in enumerate(feet)
-    )
+def measure_at_contacts(
+    quality: Quality, recording: Motion | Tracks, contacts: Flags
+) -> Quality:
+    """Return the quality of a recording with the slide of its feet in other contacts.
+
+    Parameters
+    ----------
+    quality : Quality
+        Result of `measure_quality` for this recording.
+    recording : Motion or Tracks
+    contacts : bool, shape (n_frames, 2), left and right
+
+    Raises
+    ------
+    InvalidMotionError
+        The contacts do not fit the recording.
+    """
+    if isinstance(recording, Motion):
+        if quality.path_jumps:
+            offsets = path_offsets(quality.path_jumps, recording.n_frames)
+            recording = move_root(recording, -offsets)
+        feet = sole_paths(recording, forward_kinematics(recording))
+    else:
+        feet = foot_paths(recording)
+    slides = measure_foot_slides(recording, feet, contacts, None, quality.cuts)
+    return replace(quality, feet=slides)
 
 
 def _excess(

@@ -221,5 +221,5 @@ def _remarks(
     empty = int((frames.images == NO_IMAGE).sum())
     if empty:
         gap = int(np.argmax(frames.images == NO_IMAGE))
-        remarks.append(f"{empty} frames have no image, frame {gap} first; they are empty.")
+        remarks.append(f"{empty} frames have no image, frame {gap + 1} first; they are empty.")
     return remarks

@@ -208,6 +208,6 @@ def _remarks(
         remarks.append(f"{(~is_good).sum()} images are damaged; their frames are empty.")
     n_empty = int((image_indices == NO_IMAGE).sum())
     if n_empty and is_good.all():
-        first = int(np.argmax(image_indices == NO_IMAGE))
+        first = int(np.argmax(image_indices == NO_IMAGE)) + 1
         remarks.append(f"{n_empty} frames have no image, frame {first} first; they are empty.")
     return remarks

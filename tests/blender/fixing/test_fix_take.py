@@ -212,10 +212,12 @@ def test_markers_become_a_skeleton(blank, load, fix, tmp_path, recordings, draw)
     path = str(tmp_path / "dance.c3d")
     assert blank.ops.mocap_assist.import_recording(filepath=path) == {"FINISHED"}
 
-    _, card = fix()
+    action, card = fix()
 
     armature = blank.context.object
     assert armature.type == "ARMATURE" and "leftLowerLeg" in armature.pose.bones
+    keys = load("mocap_assist.actions.contact_keys").contact_keys(action, action.slots[0])
+    assert all(map(len, keys[:2]))  # so that Check and Plant Feet have the same contacts
     assert card["origin"] == "optical markers"
     assert any("Filled 30 samples" in step for step in card["steps"])
     shown = " ".join(draw("MOCAP_PT_fix"))

@@ -14,7 +14,7 @@ def test_clips_of_the_same_kind_rank_first(find, newcomer, kind):
     assert {row.name for row in rows[:2]} == {f"{kind}_0", f"{kind}_1"}
     scores = [row.score for row in rows]
     assert scores == sorted(scores, reverse=True) and scores[2] < scores[1]
-    assert all(0 <= row.start < row.stop < 75 for row in rows)
+    assert all(1 <= row.start < row.stop <= 75 for row in rows)
 
 
 def test_identical_motion_has_the_highest_score(find, bring, clip_files, tmp_path):

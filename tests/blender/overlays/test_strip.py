@@ -251,3 +251,13 @@ def test_drawing_ends_with_the_extension(extension, load):
         "SpaceDopeSheetEditor",
         "SpaceGraphEditor",
     ]
+
+
+def test_a_take_without_issues_was_checked(actor, blank, draw):
+    """The panel asked for a Check below the result of one."""
+    assert "Nothing to show yet" in " ".join(draw("MOCAP_PT_check"))
+
+    blank.ops.mocap_assist.measure_quality()
+
+    shown = " ".join(draw("MOCAP_PT_check"))
+    assert "No issues found" in shown and "Nothing to show yet" not in shown

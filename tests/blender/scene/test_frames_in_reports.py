@@ -45,3 +45,18 @@ def test_a_result_on_a_moved_and_scaled_strip_is_reported_where_it_plays(blank, 
     assert "cut before frame 13\n" in blank.context.scene.mocap_assist.report
     cut = next(each for each in blank.context.scene.mocap_assist.issues if each.kind == "cut")
     assert (cut.start, cut.stop) == (101.0, 102.0)  # of the action
+
+
+def test_a_result_on_two_strips_is_reported_where_each_plays(blank, after_a_pose):
+    """All frames were those of the first strip, also frames that only the second plays."""
+    blank.ops.mocap_assist.denoise(plant_feet=False, result_as="NLA_TRACK")
+    track = after_a_pose.animation_data.nla_tracks[-1]
+    (strip,) = track.strips
+    strip.action_frame_start = 150.0
+    second = track.strips.new("start", 301, strip.action)
+    second.action_slot = strip.action_slot
+    second.action_frame_end = 149.0
+
+    blank.ops.mocap_assist.measure_quality()
+
+    assert "cut before frame 302\n" in blank.context.scene.mocap_assist.report

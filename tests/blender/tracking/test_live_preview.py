@@ -30,7 +30,7 @@ def press(load, press_button, points):
 
 
 def drawn(button):
-    return button._view.drawn
+    return button._view and button._view.drawn  # there is no view while the job starts
 
 
 def test_preview_body_is_at_the_points_and_the_frame_advances(press, window, blank, truth):
@@ -97,6 +97,7 @@ def test_esc_keeps_tracked_frames_on_request(press, window, blank, truth, load):
 
 def test_esc_before_the_first_pose_keeps_nothing_and_reports_it(press, window, blank):
     button = press(keep_on_esc=True)
+    wait(button, window, until=lambda: hasattr(button, "_job"))
 
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 

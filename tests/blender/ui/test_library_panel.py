@@ -58,7 +58,7 @@ def test_panel_shows_matches_with_previews_and_buttons(draw, matched, blank):
     assert {"folder/walk", "folder/run", "90%", "mocap_assist_ghost"} <= set(shown)
     for button in ("load_match", "link_match", "learn_from_matches", "mark_asset"):
         assert f"mocap_assist.{button}" in shown
-    assert "frames 0–9 of 20" in " ".join(shown) and "calm" in " ".join(shown)
+    assert "frames 1–10 of 20" in " ".join(shown) and "calm" in " ".join(shown)
 
 
 def test_browsed_clips_are_no_best_matches(draw, matched, load, blank):
@@ -78,7 +78,7 @@ def test_click_in_the_grid_selects_a_clip(draw, matched, blank):
     blank.ops.mocap_assist.choose_match(index=1)
 
     assert blank.context.window_manager.mocap_assist_matches.active == 1
-    assert "folder/run: frames 0" in " ".join(draw("MOCAP_PT_library"))
+    assert "folder/run: frames 1" in " ".join(draw("MOCAP_PT_library"))
 
 
 def test_weak_matches_are_not_in_the_grid(draw, matched, blank):

@@ -243,6 +243,11 @@ def test_frame_ranges_are_formatted_as_text(load):
     assert frames_text(12.0, 15.5) == "12 – 15.5"
 
 
+@pytest.mark.parametrize(("frame", "text"), [(-100.3, "-100"), (-0.3, "0"), (12345.6, "12346")])
+def test_frames_of_a_narrow_sidebar_have_no_decimals(load, frame, text):
+    assert load("mocap_assist.panel_parts.figure_rows").frame_text(frame) == text
+
+
 def test_long_sentence_is_wrapped_to_the_sidebar(load):
     lines = load("mocap_assist.panel_parts.panel_layout").column_lines
     sentence = "Select an animated armature."

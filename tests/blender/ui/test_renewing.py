@@ -3,36 +3,7 @@
 from contextlib import nullcontext
 from types import SimpleNamespace
 
-import pytest
 from modal_events import event, nothing_is_left
-
-
-@pytest.fixture
-def renewing(load, monkeypatch):
-    """Renewing, as in a Blender with a window; its timers are listed in `renewing.timers`."""
-    module = load("mocap_assist.check.renewing")
-    timers = []
-    app = SimpleNamespace(background=False, timers=Timers(timers))
-    monkeypatch.setattr(module, "bpy", SimpleNamespace(app=app))
-    monkeypatch.setattr(module, "timers", timers, raising=False)
-    yield module
-    module._awaited.clear()
-
-
-@pytest.fixture
-def check(load, make_button):
-    """Make a button Check, which is quiet or requested."""
-    settings = load("solvers.denoising")
-    kind = load("mocap_assist.check.button_settings").CheckBundle
-
-    def made(is_quiet):
-        button = make_button(
-            "measure_quality", kind(settings.QualitySettings(), settings.IssueSettings())
-        )
-        button.is_quiet = is_quiet
-        return button
-
-    return made
 
 
 def test_results_are_checked_again_where_check_was_pressed_before(blank, actor, renewing):
@@ -60,7 +31,7 @@ def test_results_are_checked_again_in_a_window_of_their_scene(blank, load, monke
     check = SimpleNamespace(poll=lambda: False)
     ops = SimpleNamespace(mocap_assist=SimpleNamespace(measure_quality=check))
     monkeypatch.setattr(renewing, "bpy", SimpleNamespace(context=context, ops=ops))
-    monkeypatch.setattr(renewing, "_awaited", ["Ours"])
+    monkeypatch.setattr(renewing, "_awaited", {"Ours": False})
 
     renewing.renew()
 
@@ -83,7 +54,7 @@ def test_a_list_of_what_is_played_is_not_renewed(blank, actor, load, monkeypatch
     for press in (blank.ops.mocap_assist.measure_quality, blank.ops.mocap_assist.denoise):
         press()
         with monkeypatch.context() as patch:
-            patch.setattr(renewing, "_awaited", [scene.name])
+            patch.setattr(renewing, "_awaited", {scene.name: False})
             patch.setattr(renewing, "bpy", SimpleNamespace(context=context, ops=ops))
             renewing.renew()
 
@@ -127,17 +98,6 @@ def test_quiet_check_makes_way_for_a_press(actor, blank, check, window):
     assert window.job.running and len(window.timers) == 1
     assert pressed.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
     assert nothing_is_left(window)
-
-
-class Timers:
-    def __init__(self, registered):
-        self.registered = registered
-
-    def is_registered(self, function):
-        return function in self.registered
-
-    def register(self, function, first_interval):
-        self.registered.append(function)
 
 
 def test_quiet_check_leaves_the_status_bar(blank, actor, capsys):
@@ -199,24 +159,3 @@ def test_a_list_whose_action_was_deleted_is_renewed(actor, blank, renewing):
     blank.ops.mocap_assist.denoise(plant_feet=False)
 
     assert renewing.timers == [renewing.renew]
-
-
-def test_undo_after_a_quiet_check_points_to_no_freed_action(blank, actor):
-    """The scene is the same before and after Clean in the steps, and is reused by undo."""
-    shown, buttons = blank.context.scene.mocap_assist, blank.ops.mocap_assist
-    played = actor.animation_data.action.name
-    blank.ops.ed.undo_push(message="start")
-    buttons.measure_quality("EXEC_DEFAULT", True)
-    blank.ops.ed.undo_push(message="another step")
-    buttons.denoise("EXEC_DEFAULT", True)
-    buttons.measure_quality("EXEC_DEFAULT", True, is_quiet=True)
-    assert shown.checked_action.name != played
-
-    blank.ops.ed.undo()
-
-    shown = blank.context.scene.mocap_assist
-    assert [action.name for action in blank.data.actions] == [played]
-    assert shown.checked_action in {None, blank.data.actions[played]}
-
-    blank.ops.ed.redo()
-    assert len(blank.data.actions) == 2

@@ -68,7 +68,7 @@ def test_find_prints_a_table_best_first(call, walks, library):
     assert status == 0
     assert header.split() == ["clip", "score", "frames", "seconds", "tags"]
     name, score, frames, _, tags = rows[0].split()
-    assert (name, frames, tags) == ("walk_140", "0-89", "walk")
+    assert (name, frames, tags) == ("walk_140", "1-90", "walk")
     assert float(score) > 0.95
     assert len(rows) == 3
 

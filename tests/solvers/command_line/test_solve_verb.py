@@ -5,7 +5,7 @@ import json
 import pytest
 from marked_bodies import markers_on
 
-from solvers.motion import find_humanoid_map
+from solvers.motion import Tracks, find_humanoid_map
 from solvers.recordings import read_bvh, write_bvh, write_c3d, write_trc
 from solvers.samples import GaitSettings, walking_gait
 
@@ -31,6 +31,19 @@ def test_solve_writes_a_skeleton_and_reports_the_fit(call, marker_file, tmp_path
     motion = read_bvh(tmp_path / "walk.bvh")
     assert motion.n_frames == figures["n_frames"] == 30
     assert find_humanoid_map(motion.skeleton).score == 1.0
+
+
+def test_solve_names_frames_of_swapped_labels_from_one(call, walk, tmp_path):
+    markers = markers_on(walk)
+    positions = markers.positions.copy()
+    knees = [markers.names.index(name) for name in ("LKNE", "RKNE")]
+    positions[10:20, knees] = positions[10:20, knees[::-1]]
+    swapped = Tracks(markers.names, positions, markers.frame_rate)
+    write_c3d(swapped, tmp_path / "swapped.c3d")
+
+    _, out, _ = call("solve", tmp_path / "swapped.c3d", tmp_path / "walk.bvh")
+
+    assert "Labels of LKNE and RKNE were wrong in frames 11 to 20." in out
 
 
 def test_solve_writes_bvh_for_many_files(call, marker_file, walk, tmp_path):

@@ -13,7 +13,13 @@ from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Skeleton, Tracks, motion_from_points
 from solvers.motion.humanoid import posture_joints
 from solvers.rotations.representations import angle_between
-from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+from solvers.samples import (
+    CorruptionSettings,
+    GaitSettings,
+    corrupt,
+    noisy_walk,
+    walking_gait,
+)
 from solvers.workflows import (
     FixSettings,
     MotionFromJoints,
@@ -240,3 +246,16 @@ def test_figures_become_texts_with_units():
         ("Spikes, Gaps", "61", "0"),
         ("Issues", "77", "–"),
     )
+
+
+def test_issues_before_are_those_that_check_lists_of_the_take():
+    """The slides are compared at the contacts of the result, where other feet slide."""
+    walk = noisy_walk()
+    result = fix_take(walk)
+
+    issues = find_worst_issues(walk, measure_quality(walk))
+    assert [each.sentence for each in result.before.issues] == [
+        each.sentence for each in issues
+    ]
+    contacts = np.stack([foot.contact for foot in result.before.quality.feet], axis=1)
+    assert (contacts == result.chain.planted.contacts).all()

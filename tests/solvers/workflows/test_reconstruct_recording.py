@@ -260,7 +260,7 @@ def test_offset_of_a_known_sensor_is_corrected_by_default_and_reported(recording
 
     hips = recording.names.index("SpineBase")
     assert moved_cm(default)[hips] > 4.0 > 1.0 > moved_cm(kept)[hips]
-    assert any("switch off Sensor Offset to keep them" in one for one in default.remarks)
+    assert any("Reconstruct without Sensor Offset keeps them" in one for one in default.remarks)
     assert not any("Sensor Offset" in one for one in kept.remarks)
     assert abs(default.rebuilt.mean() - kept.rebuilt.mean()) < 0.05  # hand tips alone
 

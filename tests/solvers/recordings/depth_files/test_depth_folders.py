@@ -74,7 +74,7 @@ def test_gaps_in_times_become_empty_frames_with_a_remark(tmp_path, depth):
         expected = 0 if picture is None else depth[picture] / 5000.0
         assert_allclose(recording.frame(frame), expected * np.ones((6, 8)), rtol=1e-6)
     assert recording.color(6).max() == 0
-    assert "3 frames have no image, frame 5 first; they are empty." in text
+    assert "3 frames have no image, frame 6 first; they are empty." in text
     assert any(each.startswith("Resampled to 30 Hz from its time stamps") for each in text)
 
 
@@ -202,7 +202,7 @@ def test_a_number_that_was_left_out_is_an_empty_frame(tmp_path, depth):
     expected = depth * 0.001
     expected[3] = 0.0
     assert_allclose(all_frames(recording), expected, rtol=1e-6)
-    assert "1 frames have no image, frame 3 first; they are empty." in text
+    assert "1 frames have no image, frame 4 first; they are empty." in text
 
 
 def test_every_third_picture_is_no_gap(tmp_path, depth):

@@ -128,7 +128,7 @@ def test_dropped_frames_are_empty(write):
         1,
         1,
     ]
-    assert "3 frames have no image, frame 3 first; they are empty." in text
+    assert "3 frames have no image, frame 4 first; they are empty." in text
 
 
 @pytest.mark.parametrize("lace", [(xiph, 2), (equal, 4), (ebml_laced, 6)])
