@@ -9,7 +9,8 @@ from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.capture import Capture, CaptureSettings, capture
-from solvers.depth_tracking.capturing.passes import RecoverySettings, TrackingContext
+from solvers.depth_tracking.capturing.passes import TrackingContext
+from solvers.depth_tracking.capturing.restart_policies import RecoverySettings
 from solvers.depth_tracking.detection.detect_pose import detect_pose
 from solvers.depth_tracking.forest.pixel_forest import load_pixel_forest
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER
