@@ -40,7 +40,7 @@ that is held and released in every second frame."""
 
 PATCH_RADIUS_M = 0.02
 """Meters, for a leg of 0.9 m: radius of the patch of floor that one point of the sole stands
-for. By definition that of a heel; a foot on such a patch alone holds half of its heading."""
+for, as a heel. It guards a foot that pivots on its ball."""
 
 
 class PlantedPose(NamedTuple):

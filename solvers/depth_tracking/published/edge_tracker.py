@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ...arrays import Array, Integers
 from ...depth_scene import DepthRecording
 from ...progress import Progress, unwatched
@@ -26,11 +24,9 @@ from ..terms import (
 from ..tracking import Likelihood, TrackedMotion, track_pose
 from .depth_edges import edge_pixels
 from .edges import edge_term
-from .registration_tracker import NO_ANKLES
+from .registration_tracker import NO_ANKLES, PER_DEGREE
 from .surface import ColoredFrame, PreviousFrame, read_intensities, surface_term
 
-PER_DEGREE = (180.0 / np.pi) ** 2
-"""Squared degrees in a squared radian. By definition."""
 SURFACE_WEIGHT, EDGE_WEIGHT = 4.0, 40.0
 """Weights of the terms, per square meter. Those of [LOU12], times 4: a pixel covers a quarter
 of the reference area."""
