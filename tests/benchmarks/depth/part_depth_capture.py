@@ -15,7 +15,6 @@ from solvers.depth_tracking.capturing.restart_policies import RecoverySettings
 from solvers.depth_tracking.detection.detect_pose import detect_pose
 from solvers.depth_tracking.forest.pixel_forest import load_pixel_forest
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER
-from solvers.depth_tracking.tracking.failure_test import FailureTest
 from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidMotionError
 
@@ -27,9 +26,6 @@ FPS = "frames/s"
 FORWARD = CaptureSettings(backward=False, smoothing=0.0)
 PUBLISHED = {
     "wei, body known": CaptureSettings(method=CaptureMethod.REGISTRATION),
-    "wei, published failure test, body known": CaptureSettings(
-        method=CaptureMethod.REGISTRATION, failure_test=FailureTest.PUBLISHED
-    ),
     "lou, body known": CaptureSettings(method=CaptureMethod.EDGES),
 }
 """The published systems, without color."""
