@@ -5,10 +5,17 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.depth_scene import ForegroundMethod
+from ...solvers.depth_tracking.capturing import CaptureSettings
 from ..blender.mixins import PanelMixin
 from ..overlays.color_icons import draw_marks
 from ..overlays.marked_ranges import MARKS, StripRow
-from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, split_column
+from ..panel_parts.panel_layout import (
+    draw_job,
+    draw_sentence,
+    exists,
+    folded,
+    split_column,
+)
 from ..panel_parts.visibility import shows_all
 from .retracking import why_not_retrack
 from .tracked_armature.body import is_tracked
@@ -53,6 +60,8 @@ def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
             column.prop(track, name)
     for name in SHOWN:
         column.prop(track, name)
+    if "method" in folded(CaptureSettings, (), track):
+        column.prop(track, "method")
     layout.operator(TRACK, icon="OUTLINER_OB_ARMATURE")
     if reason := why_not_track(context):
         draw_sentence(layout, context, reason, icon="INFO")

@@ -123,7 +123,7 @@ def _report(finished: FinishedTask, one_of_many: bool, screen: Screen) -> bool:
         if len(task.sources) > 1:
             names = {"inputs": [str(source) for source in task.sources]}
         if getattr(arguments, "body", None):
-            names["body"] = arguments.body
+            names["body"] = str(arguments.body)
         if task.target is not None:
             names["output"] = str(task.target)
         line = attempt(task.subject, json.dumps, {**names, **figures}, allow_nan=False)

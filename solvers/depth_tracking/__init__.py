@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .capturing import (
         CalibrationSettings,
         Capture,
+        CaptureMethod,
         CaptureSettings,
         RefineBodySettings,
         Retracked,
@@ -54,6 +55,7 @@ __all__ = [
     "BodyModel",
     "CalibrationSettings",
     "Capture",
+    "CaptureMethod",
     "CaptureSettings",
     "DetectedPose",
     "DetectorSettings",

@@ -16,6 +16,7 @@ from ..motion.humanoid import (
     leg_length,
 )
 from ..motion_fitting.goals import BonePoint
+from ..rotations import inverse, multiply, quaternion_from_rotation_vector
 from .legs import LegJoints, find_legs
 from .live_contacts import LiveContacts, RunningLine
 from .sole import SPEED_FALLOFF, instant_loads, measure_standing_heights, sole_points
@@ -37,6 +38,11 @@ RESUME_FRACTION = 0.5
 that is held and released in every second frame."""
 
 
+PATCH_RADIUS_M = 0.02
+"""Meters, for a leg of 0.9 m: radius of the patch of floor that one point of the sole stands
+for, as a heel. It guards a foot that pivots on its ball."""
+
+
 class PlantedPose(NamedTuple):
     """One frame."""
 
@@ -48,10 +54,10 @@ class PlantedPose(NamedTuple):
 class LivePlanting:
     """Holds each foot in contact where it is, one frame after another.
 
-    In contact a foot is shifted against the displacement of the loaded part of its sole, which
-    so stays where it came down: the sole may roll from heel to ball. Then the shift returns to
-    zero like a critically damped spring, from the speed that it had, so that neither position
-    nor speed jumps. Only the legs rotate: hips and feet keep their rotation, and the root its
+    In contact a foot is moved and rotated about the vertical so that the loaded part of its
+    sole stays where it came down: the sole may roll from heel to ball, and pivot on either.
+    Then both changes return to zero like a critically damped spring, from the speed that they
+    had, so that neither position nor speed jumps. Only legs and feet rotate: the root keeps its
     path. Nothing that later frames show is used. After a gap feet begin where they are.
 
     Parameters
@@ -100,10 +106,11 @@ class LivePlanting:
             self.restart()
         contacts = self._contacts.update(points, elapsed_s) > 0.5
         for foot, is_in_contact in zip(self._feet, contacts, strict=True):
-            shift = foot.update(poses, bool(is_in_contact), elapsed_s)
-            if shift.any():
+            shift, heading = foot.update(poses, bool(is_in_contact), elapsed_s)
+            if shift.any() or heading:
                 target = poses.positions[:, foot.leg.ankle] + shift
                 pose = reach(pose, foot.leg.chain, target, world=poses)
+                pose = _with_heading(pose, poses, foot.leg.ankle, heading)
         return PlantedPose(pose, np.array([foot.is_held for foot in self._feet]))
 
     def restart(self) -> None:
@@ -114,8 +121,20 @@ class LivePlanting:
             foot.restart()
 
 
+def _with_heading(pose: Motion, poses: WorldPoses, ankle: int, heading: float) -> Motion:
+    """Return the pose with a foot rotated about the vertical, radians.
+
+    `poses` has the foot's rotation before.
+    """
+    turn = quaternion_from_rotation_vector(np.array([[0.0, 0.0, heading]]))
+    foot, rotations = poses.rotations[:, ankle], pose.rotations.copy()
+    turned = multiply(inverse(foot), multiply(turn, foot))
+    rotations[:, ankle] = multiply(rotations[:, ankle], turned)
+    return pose.with_poses(rotations)
+
+
 class _LiveFoot:
-    """One foot, and how far it is shifted from its captured path."""
+    """One foot, and how far it is moved and rotated from its captured path."""
 
     def __init__(
         self, motion: Motion, poses: WorldPoses, leg: LegJoints, contact: Flags, noise: float
@@ -129,18 +148,24 @@ class _LiveFoot:
         for positions in path:
             self._load = self._loads(positions, motion.dt)
         self._last: Array | None = path[-1]
-        self._shift, self._speed = np.zeros(3), np.zeros(3)
+        self._change, self._speed = np.zeros(4), np.zeros(4)
         self._is_slipping = self.is_held = False
 
-    def update(self, poses: WorldPoses, is_in_contact: bool, elapsed_s: float) -> Array:
-        """Return the shift of the foot in meters, shape (3,)."""
+    def update(
+        self, poses: WorldPoses, is_in_contact: bool, elapsed_s: float
+    ) -> tuple[Array, float]:
+        """Return the shift of the ankle in meters, (3,), and the foot's rotation in radians.
+
+        The rotation is about the vertical through the ankle.
+        """
         positions = np.concatenate([point.position(poses) for point in self._points])
-        last, load_before = positions if self._last is None else self._last, self._load
-        self._last, self._load = positions, self._loads(positions, elapsed_s)
-        step = 0.5 * (self._load + load_before) @ (positions - last)
-        held = self._shift - step
+        last, load_before = self._last, self._load
+        last = positions if last is None else last
+        self._load = self._loads(positions, elapsed_s)
+        held = self._hold(positions, last, 0.5 * (self._load + load_before))
+        moved = np.linalg.norm(_changed(positions, held) - positions, axis=-1)
         excess = max(
-            float(np.linalg.norm(held)) / (MAX_HOLD_M * self._size),
+            float(moved.max()) / (MAX_HOLD_M * self._size),
             float(np.linalg.norm(self._velocity)) / (MAX_SLIDE_SPEED * self._size),
         )
         if excess > 1.0:
@@ -149,21 +174,39 @@ class _LiveFoot:
             self._is_slipping = False
         self.is_held = is_in_contact and not self._is_slipping
         if self.is_held:
-            self._shift, self._speed = held, -step / elapsed_s
+            self._speed = (held - self._change) / elapsed_s
+            self._change = held
         else:
             self._ease_out(elapsed_s)
-        return self._shift
+        self._last = _changed(positions, self._change)
+        return self._change[:3], float(self._change[3])
 
     def restart(self) -> None:
         """Forget the frames so far."""
         self._line.restart()
-        self._last, self._shift, self._speed = None, np.zeros(3), np.zeros(3)
+        self._last, self._change, self._speed = None, np.zeros(4), np.zeros(4)
+
+    def _hold(self, positions: Array, last: Array, load: Array) -> Array:
+        """Return the change, (4,), after which the loaded points are where they last were.
+
+        Least squares over the points, weighted by their load. A load on one point leaves the
+        heading as captured: the wider it is spread, the more of the heading is held.
+        """
+        before = self._change[3]
+        turned = _changed(positions, np.array([0.0, 0.0, 0.0, before]))
+        center, target = load @ turned, load @ last
+        (x, y), (to_x, to_y) = (turned - center)[:, :2].T, (last - target)[:, :2].T
+        patch = (PATCH_RADIUS_M * self._size) ** 2
+        sine, cosine = load @ (x * to_y - y * to_x), load @ (x * to_x + y * to_y)
+        heading = before + np.arctan2(sine, cosine + patch)
+        rotated = _changed(positions, np.array([0.0, 0.0, 0.0, heading]))
+        return np.append(target - load @ rotated, heading)
 
     def _ease_out(self, elapsed_s: float) -> None:
-        """Let the shift return to zero, as the exact solution of the spring for a time."""
+        """Let the change return to zero, as the exact solution of the spring for a time."""
         decay = np.exp(-RELEASE_RATE * elapsed_s)
-        start = self._speed + RELEASE_RATE * self._shift
-        self._shift = (self._shift + start * elapsed_s) * decay
+        start = self._speed + RELEASE_RATE * self._change
+        self._change = (self._change + start * elapsed_s) * decay
         self._speed = (self._speed - RELEASE_RATE * start * elapsed_s) * decay
 
     def _loads(self, positions: Array, elapsed_s: float) -> Array:
@@ -173,3 +216,12 @@ class _LiveFoot:
         load = instant_loads(heights, np.linalg.norm(velocities, axis=-1), self._size)
         self._velocity = load @ velocities
         return load
+
+
+def _changed(positions: Array, change: Array) -> Array:
+    """Return points of a foot, ankle last, after a shift and a rotation about the vertical."""
+    ankle = positions[-1]
+    sine, cosine = np.sin(change[3]), np.cos(change[3])
+    turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    moved: Array = (positions - ankle) @ turn.T + ankle + change[:3]
+    return moved

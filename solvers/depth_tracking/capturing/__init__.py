@@ -2,6 +2,7 @@
 
 from .calibrate_body import CalibrationSettings, calibrate_body
 from .capture import Capture, CaptureSettings, capture
+from .capture_method import CaptureMethod
 from .refine_body import RefineBodySettings, refine_body
 from .retrack import Retracked, retrack
 from .retracked_path import RetrackSettings
@@ -10,6 +11,7 @@ from .unfinished_capture import unfinished_capture
 __all__ = [
     "CalibrationSettings",
     "Capture",
+    "CaptureMethod",
     "CaptureSettings",
     "RefineBodySettings",
     "RetrackSettings",

@@ -23,9 +23,11 @@ from ..body import (
 from ..forest import PixelForest, load_pixel_forest
 from ..terms import DEFAULT_TRACKER, TrackerSettings
 from ..tracking import PoseCallback, TrackedMotion, assemble_motion, ignore_pose
+from .capture_method import CaptureMethod, published_system
 from .choose_poses import choose_poses, nearest_tracked
 from .find_body import find_body
-from .passes import Pass, RecoverySettings, TrackingContext, track_with_restarts
+from .passes import Pass, TrackingContext, track_with_restarts
+from .restart_policies import RecoverySettings
 from .smooth_pass import smooth_poses
 
 
@@ -33,6 +35,10 @@ from .smooth_pass import smooth_poses
 class CaptureSettings(RecoverySettings):
     """Settings of the capture of a take."""
 
+    method: CaptureMethod = setting(
+        CaptureMethod.DEFAULT, "Tracking method; the default performed best in tests",
+        research=True,
+    )  # fmt: skip
     backward: bool = setting(
         True,
         "Also track from the end to the start and keep the better fit; takes longer",
@@ -115,7 +121,8 @@ def capture(
     the tracker after failures [WZC12]_, section 5. A second pass tracks the take backward from
     its end. Each frame keeps the pose with the best fit and the smoothest continuation.
     Finally the take is smoothed, weighted by the information of each image about each joint.
-    Occluded limbs are interpolated between their observations before and after.
+    Occluded limbs are interpolated between their observations before and after. The published
+    methods only track forward; their confidence and fit are measured like those of the default.
 
     Parameters
     ----------
@@ -162,9 +169,8 @@ def capture(
     passes = _passes(actor, settings, within(progress, body_fraction, 0.9))
     frames, pass_indices = best_of_passes(body, passes)
     poses = np.stack([one.poses for one in passes])[pass_indices, frames]
-    poses, qualities = smooth_poses(
-        actor, poses, settings.smoothing, within(progress, 0.9, 1.0)
-    )
+    smoothing = settings.smoothing if settings.method is CaptureMethod.DEFAULT else 0.0
+    poses, qualities = smooth_poses(actor, poses, smoothing, within(progress, 0.9, 1.0))
     tracked = assemble_motion(body, poses, qualities, depth.frame_rate)
     return assemble_capture(body, tracked, passes[0].restarts, floor, settings)
 
@@ -172,15 +178,21 @@ def capture(
 def _passes(
     actor: TrackingContext, settings: CaptureSettings, progress: Progress
 ) -> list[Pass]:
-    n_frames = actor.depth.n_frames
-    split = 0.5 if settings.backward else 1.0
-    forward = track_with_restarts(actor, range(n_frames), None, within(progress, 0.0, split))
+    n_frames, policy = actor.depth.n_frames, None
+    backward_too = settings.backward
+    if settings.method is not CaptureMethod.DEFAULT:
+        actor, policy = published_system(actor, settings.method)
+        backward_too = False
+    split = 0.5 if backward_too else 1.0
+    forward = track_with_restarts(
+        actor, range(n_frames), None, within(progress, 0.0, split), policy
+    )
     if not np.isfinite(forward.scores).any():
         raise InvalidMotionError(
             "No person was detected in any frame. Check the background settings, and that the"
             " depth is in meters."
         )
-    if not settings.backward:
+    if not backward_too:
         return [forward]
     start = forward.poses[np.flatnonzero(np.isfinite(forward.scores))[-1]]
     backward = track_with_restarts(

@@ -11,8 +11,9 @@ from ..detection import detect_pose, score_body
 from ..forest import PixelForest
 from ..terms import DEFAULT_TRACKER, TrackerSettings
 from ..tracking import PoseCallback, ignore_pose, offset_frames
-from .passes import RecoverySettings, TrackingContext, track_with_restarts
+from .passes import TrackingContext, track_with_restarts
 from .refine_body import refine_body
+from .restart_policies import RecoverySettings
 
 STATURES_M = (1.45, 1.6, 1.75, 1.9)
 """Statures in meters that are tried. Chosen by hand; `make sensitivity` varies it."""

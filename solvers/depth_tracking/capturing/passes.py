@@ -1,6 +1,5 @@
 """Track a take in one direction, and restart with the detector after failures."""
 
-from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -10,60 +9,28 @@ from ...arrays import Array
 from ...depth_scene import DepthRecording
 from ...errors import InvalidMotionError
 from ...progress import Progress
-from ...settings import Settings, setting
 from ..body import COORDINATES, N_COORDINATES, BodyModel, MotionPrior
 from ..detection import DetectorSettings, detect_pose
 from ..forest import PixelForest
-from ..terms import TrackerSettings, observe
+from ..terms import Observation, TrackerSettings, observe
 from ..tracking import (
-    FailureTest,
     FitQuality,
+    FrameLikelihood,
     NextPose,
     PoseCallback,
     PosePreview,
-    has_failed,
+    all_terms,
     ignore_pose,
     next_pose_prior,
     quality_without_actor,
     track_frame,
 )
+from .restart_policies import RecoverySettings, RegularChecks, RestartPolicy
 
 _YAW = COORDINATES.index("yaw")
 _DETECTION_WEIGHT = 1.0
 """Weak weight that keeps the refinement near the detected pose. Chosen by hand;
 `make sensitivity` varies it."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class RecoverySettings(Settings):
-    """Settings of the failure test and of the restarts."""
-
-    failure_test: FailureTest = setting(
-        FailureTest.LEARNED, "Choose how the tracker detects a wrong pose",
-    )  # fmt: skip
-    failing_chance: float = setting(
-        0.5, "Learned probability that a pose is wrong; lower runs the detector more often",
-        minimum=0.0, maximum=1.0, label="Failure Chance",
-    )  # fmt: skip
-    failing_drop: float = setting(
-        0.9,
-        "Fraction of the typical fit below which a pose is wrong",
-        minimum=0.0,
-        maximum=1.0,
-        label="Failure Drop",
-    )
-    gain: float = setting(
-        0.03, "Improvement in fit required of a detected pose; higher prefers the tracker",
-        minimum=0.0, maximum=1.0,
-    )  # fmt: skip
-    patience: int = setting(
-        5, "Frames between detector runs while the tracker fails; higher is faster",
-        minimum=1, maximum=1000,
-    )  # fmt: skip
-    check_every: int = setting(
-        15, "Frames between routine detector runs; higher is faster",
-        minimum=1, maximum=100_000,
-    )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +65,8 @@ class TrackingContext:
     motion_prior : MotionPrior or None
     on_pose : PoseCallback
         Called with each tracked pose.
+    likelihood : FrameLikelihood
+        The image terms; those of `tracker` by default.
     """
 
     depth: DepthRecording
@@ -107,6 +76,15 @@ class TrackingContext:
     recovery: RecoverySettings
     motion_prior: MotionPrior | None = None
     on_pose: PoseCallback = ignore_pose
+    likelihood: FrameLikelihood = all_terms
+
+    def tracked(
+        self, frame: int, observation: Observation, trajectory: list[Array]
+    ) -> tuple[Array, FitQuality]:
+        """Return the tracked pose of a frame, after the poses of the frames before."""
+        prior = next_pose_prior(trajectory[-2:], self.tracker, self.motion_prior)
+        terms = self.likelihood(frame, observation, self.body, trajectory[-1:])
+        return track_frame(self.body, prior, observation, self.tracker, terms)
 
     def detected(self, frame: int) -> tuple[Array, FitQuality] | None:
         """Return the detected pose, refined by the tracker, or None."""
@@ -121,7 +99,8 @@ class TrackingContext:
         weights[:6] = 0.0
         prior = NextPose(detection.pose, weights, detection.pose)
         observation = observe(self.depth, frame, self.tracker.image_width)
-        return track_frame(self.body, prior, observation, self.tracker)
+        terms = self.likelihood(frame, observation, self.body, ())
+        return track_frame(self.body, prior, observation, self.tracker, terms)
 
 
 def track_with_restarts(
@@ -129,13 +108,11 @@ def track_with_restarts(
     order: Iterable[int],
     start: Array | None,
     progress: Progress,
+    policy: RestartPolicy | None = None,
 ) -> Pass:
     """Track the frames of a take in the given order.
 
-    The tracker has failed if the learned test reports it, or if the score drops relative to
-    the previous frames. Alternatively the thresholds of [WZC12]_ section 5 apply, which depend
-    on the sensor and the body (`FailureTest`). After a failure, and at regular intervals, the
-    detector runs. Its pose replaces the tracked one if the score is clearly better.
+    The policy decides when the detector runs, and whether its pose replaces the tracked one.
 
     Parameters
     ----------
@@ -145,25 +122,26 @@ def track_with_restarts(
     start : shape (36,), optional
         Near the pose in the first of them. Default: the detector starts.
     progress : Progress
+    policy : RestartPolicy, optional
+        Default: `RegularChecks` of `actor.recovery`.
     """
     frames = list(order)
     poses = np.full((actor.depth.n_frames, N_COORDINATES), np.nan)
     scores = np.full(actor.depth.n_frames, np.nan)
-    policy = _RestartPolicy(actor.recovery, actor.depth.frame_rate)
+    policy = policy or RegularChecks(actor.recovery, actor.depth.frame_rate)
     trajectory: list[Array] = [] if start is None else [start]
     restarts = []
     for done, frame in enumerate(frames):
         observation = observe(actor.depth, frame, actor.tracker.image_width)
         score, quality = np.nan, quality_without_actor()
         if trajectory and not observation.empty:
-            prior = next_pose_prior(trajectory[-2:], actor.tracker, actor.motion_prior)
-            pose, quality = track_frame(actor.body, prior, observation, actor.tracker)
+            pose, quality = actor.tracked(frame, observation, trajectory)
             score = quality.score
         elif trajectory:
             pose = trajectory[-1]
-        if not observation.empty and policy.should_detect(quality):
+        if not observation.empty and policy.should_detect(quality if trajectory else None):
             detected = actor.detected(frame)
-            if detected is not None and not detected[1].score <= score + actor.recovery.gain:
+            if detected is not None and policy.accepts(detected[1].score, score):
                 unwrapped = _unwrap_rotation(
                     detected[0], trajectory[-1] if trajectory else detected[0]
                 )
@@ -179,38 +157,6 @@ def track_with_restarts(
         policy.add_score(score)
         progress((done + 1) / len(frames), "Tracking")
     return Pass(poses, scores, tuple(restarts))
-
-
-class _RestartPolicy:
-    """Decides when the detector runs, from the scores of the last second."""
-
-    def __init__(self, settings: RecoverySettings, frame_rate: float) -> None:
-        self._settings = settings
-        self._previous_scores: deque[float] = deque(maxlen=max(round(frame_rate), 1))
-        self._frames_since_detection = settings.check_every
-
-    def should_detect(self, quality: FitQuality) -> bool:
-        """Return whether to run the detector now."""
-        self._frames_since_detection += 1
-        settings = self._settings
-        failing = has_failed(quality, settings.failure_test, settings.failing_chance)
-        if settings.failure_test is FailureTest.LEARNED and self._previous_scores:
-            typical = float(np.median(self._previous_scores))
-            failing = failing or quality.score < settings.failing_drop * typical
-        interval = settings.patience if failing else settings.check_every
-        if self._frames_since_detection < interval:
-            return False
-        self._frames_since_detection = 0
-        return True
-
-    def reset(self) -> None:
-        """Discard the previous scores."""
-        self._previous_scores.clear()
-
-    def add_score(self, score: float) -> None:
-        """Store the score of a frame."""
-        if np.isfinite(score):
-            self._previous_scores.append(score)
 
 
 def _unwrap_rotation(pose: Array, before: Array) -> Array:

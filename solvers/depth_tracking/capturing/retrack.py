@@ -16,7 +16,8 @@ from ..body import JOINTS, N_SEGMENTS, BodyModel, body_motion, motion_frames, po
 from ..forest import load_pixel_forest
 from ..terms import DEFAULT_TRACKER, TrackerSettings
 from ..tracking import FitQuality, PoseCallback, PosePreview, assemble_motion, ignore_pose
-from .passes import RecoverySettings, TrackingContext
+from .passes import TrackingContext
+from .restart_policies import RecoverySettings
 from .retracked_path import RetrackSettings, track_from_correction
 from .smooth_pass import measure_fit, smooth_window
 

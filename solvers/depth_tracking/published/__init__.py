@@ -1,10 +1,10 @@
-"""The trackers of [WZC12] and [LOU12] as published: baselines of `make bench-depth`.
+"""The trackers of [WZC12] and [LOU12] as published: choices of *Track*.
 
-No button offers them. The default tracker shares the code of both and differs where a
-benchmark shows a gain, so what stands here stays as the papers print it.
+The default tracker shares the code of both and differs where a benchmark shows a gain, so what
+stands here stays as the papers print it.
 """
 
-from .edge_tracker import track_pose_by_edges
+from .edge_tracker import EDGE_TRACKER, EdgeLikelihood, track_pose_by_edges
 from .registration_tracker import REGISTRATION_TRACKER
 
-__all__ = ["REGISTRATION_TRACKER", "track_pose_by_edges"]
+__all__ = ["EDGE_TRACKER", "REGISTRATION_TRACKER", "EdgeLikelihood", "track_pose_by_edges"]

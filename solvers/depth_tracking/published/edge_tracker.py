@@ -1,8 +1,7 @@
 """Track a body as published in [LOU12]."""
 
-from dataclasses import dataclass
-
-import numpy as np
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from ...arrays import Array, Integers
 from ...depth_scene import DepthRecording
@@ -22,20 +21,12 @@ from ..terms import (
     observe,
     pixel_area,
 )
-from ..tracking import (
-    TrackedMotion,
-    assemble_motion,
-    checked_pose,
-    next_pose_prior,
-    track_frame,
-)
+from ..tracking import Likelihood, TrackedMotion, track_pose
 from .depth_edges import edge_pixels
 from .edges import edge_term
-from .registration_tracker import NO_ANKLES
+from .registration_tracker import NO_ANKLES, PER_DEGREE
 from .surface import ColoredFrame, PreviousFrame, read_intensities, surface_term
 
-PER_DEGREE = (180.0 / np.pi) ** 2
-"""Squared degrees in a squared radian. By definition."""
 SURFACE_WEIGHT, EDGE_WEIGHT = 4.0, 40.0
 """Weights of the terms, per square meter. Those of [LOU12], times 4: a pixel covers a quarter
 of the reference area."""
@@ -82,31 +73,60 @@ def track_pose_by_edges(
     .. [LOU12] Lou (2012). Acquiring 3D full-body motion from noisy and ambiguous input. PhD
        dissertation, Texas A&M University.
     """
-    poses, qualities, previous = [checked_pose(initial_pose)], [], None
-    for frame in range(depth.n_frames):
-        observation = observe(depth, frame, EDGE_TRACKER.image_width)
-        prior = next_pose_prior(poses[1:] or poses, EDGE_TRACKER, motion_prior)
-        intensities = read_intensities(depth, frame, EDGE_TRACKER.image_width)
-        colored = ColoredFrame(observation, intensities)
+    return track_pose(
+        depth, body, initial_pose, motion_prior, settings=EDGE_TRACKER,
+        likelihood=EdgeLikelihood(depth), progress=progress,
+    )  # fmt: skip
+
+
+class EdgeLikelihood:
+    """The image terms of [LOU12] for each frame of a recording.
+
+    Parameters
+    ----------
+    depth : DepthRecording
+    has_color, has_edges : bool
+        Whether colors are compared, and whether edges are matched.
+    """
+
+    def __init__(
+        self, depth: DepthRecording, *, has_color: bool = True, has_edges: bool = True
+    ) -> None:
+        self._depth = depth if has_color else replace(depth, read_color=None)
+        self._edge_weight = EDGE_WEIGHT if has_edges else 0.0
+        self._read: dict[int, ColoredFrame] = {}
+
+    def __call__(
+        self, frame: int, observation: Observation, body: BodyModel, poses: Sequence[Array]
+    ) -> Likelihood:
+        """Return the image terms of a frame; `poses` ends with that of the frame before."""
+        colored, previous = self._colored(frame, observation), None
+        if poses and frame:
+            before = self._colored(frame - 1)
+            if not before.observation.empty:
+                previous = PreviousFrame(segment_frames(body, poses[-1]), before)
         edges = edge_pixels(observation.depth, observation.nearest_pixel)
-        likelihood = _Likelihood(colored, edges, previous)
-        pose, quality = track_frame(body, prior, observation, EDGE_TRACKER, likelihood)
-        previous = (
-            None if observation.empty else PreviousFrame(segment_frames(body, pose), colored)
-        )
-        poses.append(pose)
-        qualities.append(quality)
-        progress((frame + 1) / depth.n_frames, "Tracking")
-    return assemble_motion(body, np.array(poses[1:]), qualities, depth.frame_rate)
+        return _FrameTerms(colored, edges, previous, self._edge_weight)
+
+    def _colored(self, frame: int, observation: Observation | None = None) -> ColoredFrame:
+        """Return a frame with its colors; the last two that were read are kept."""
+        if frame not in self._read:
+            width = EDGE_TRACKER.image_width
+            observation = observation or observe(self._depth, frame, width)
+            intensities = read_intensities(self._depth, frame, width)
+            last = list(self._read.items())[-1:]
+            self._read = dict([*last, (frame, ColoredFrame(observation, intensities))])
+        return self._read[frame]
 
 
 @dataclass(frozen=True, eq=False)
-class _Likelihood:
+class _FrameTerms:
     """The image terms of one frame."""
 
     colored: ColoredFrame
     edges: Integers
     previous: PreviousFrame | None
+    edge_weight: float
 
     def __call__(
         self, hypothesis: Hypothesis, observation: Observation, settings: TrackerSettings
@@ -115,5 +135,5 @@ class _Likelihood:
         area = pixel_area(observation) / REFERENCE_AREA_M2
         return concatenate_rows([
             surface_term(hypothesis, self.colored, self.previous, area * SURFACE_WEIGHT),
-            edge_term(hypothesis, observation, self.edges, area * EDGE_WEIGHT),
+            edge_term(hypothesis, observation, self.edges, area * self.edge_weight),
         ])

@@ -3,10 +3,12 @@
 from .failure_test import FailureTest, has_failed
 from .fit_quality import MAX_DEPTH_ERROR_M, FitQuality, fit_quality, quality_without_actor
 from .pose_preview import PoseCallback, PosePreview, ignore_pose, offset_frames
-from .register_pose import Registered, register_pose
+from .register_pose import Likelihood, Registered, register_pose
 from .track_pose import (
+    FrameLikelihood,
     NextPose,
     TrackedMotion,
+    all_terms,
     assemble_motion,
     checked_pose,
     next_pose_prior,
@@ -18,11 +20,14 @@ __all__ = [
     "MAX_DEPTH_ERROR_M",
     "FailureTest",
     "FitQuality",
+    "FrameLikelihood",
+    "Likelihood",
     "NextPose",
     "PoseCallback",
     "PosePreview",
     "Registered",
     "TrackedMotion",
+    "all_terms",
     "assemble_motion",
     "checked_pose",
     "fit_quality",

@@ -1,5 +1,6 @@
 """Track a body through a depth recording, frame by frame, from an initial pose."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,16 @@ from ..body import (
 from ..terms import DEFAULT_TRACKER, Observation, TrackerSettings, likelihood_rows, observe
 from .fit_quality import FitQuality, fit_quality, quality_without_actor
 from .register_pose import Likelihood, register_pose
+
+FrameLikelihood = Callable[[int, Observation, BodyModel, Sequence[Array]], Likelihood]
+"""Maps a frame, its observation, the body and the poses before it to the image terms."""
+
+
+def all_terms(
+    frame: int, observation: Observation, body: BodyModel, poses: Sequence[Array]
+) -> Likelihood:
+    """Return the terms of the settings: the same for all frames."""
+    return likelihood_rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +69,7 @@ def track_pose(
     motion_prior: MotionPrior | None = None,
     *,
     settings: TrackerSettings = DEFAULT_TRACKER,
+    likelihood: FrameLikelihood = all_terms,
     progress: Progress = unwatched,
 ) -> TrackedMotion:
     """Track a body from its pose in the first frame.
@@ -75,6 +87,8 @@ def track_pose(
     motion_prior : MotionPrior, optional
         Recorded motions; each pose is pulled toward the successors of similar poses.
     settings : TrackerSettings
+    likelihood : FrameLikelihood
+        The image terms. Default: those of `settings`.
     progress : Progress
 
     Returns
@@ -92,8 +106,10 @@ def track_pose(
     poses, qualities = [checked_pose(initial_pose)], []
     for frame in range(depth.n_frames):
         observation = observe(depth, frame, settings.image_width)
-        prior = next_pose_prior(poses[1:] or poses, settings, motion_prior)
-        pose, quality = track_frame(body, prior, observation, settings)
+        previous = poses[1:] or poses
+        prior = next_pose_prior(previous, settings, motion_prior)
+        terms = likelihood(frame, observation, body, previous)
+        pose, quality = track_frame(body, prior, observation, settings, terms)
         poses.append(pose)
         qualities.append(quality)
         progress((frame + 1) / depth.n_frames, "Tracking")

@@ -47,6 +47,8 @@ from .part_detector import detector
 from .part_failures import failures
 from .part_retracking import retracking
 from .plot_bars import draw_bars
+from .published.part_edges import components, real_takes
+from .published.part_registration import ablation, calibration, robustness
 
 Track = Callable[[Sequence, BodyModel], np.ndarray]
 UNIT = "each sequence counts as one clip"
@@ -96,7 +98,9 @@ def main() -> None:
         "kinect": partial(kinect, chosen.subjects), "renderers": renderers,
         "memory": partial(memory, chosen.frames), "detector": detector,
         "failures": failures, "recorded": recorded, "retracking": retracking,
-        "tuning": tuning,
+        "tuning": tuning, "robustness": robustness, "calibration": calibration,
+        "ablation": lambda: ablation(_hard_sequences()),
+        "components": components, "real-edges": real_takes,
     }  # fmt: skip
     for name, part in parts.items():
         if chosen.only and name not in chosen.only.split(","):
@@ -176,11 +180,14 @@ DAMPED_REGISTRATION = replace(
 
 def terms() -> list[str]:
     """Leave each term or safeguard out, from the true first pose."""
-    sequences = [sequence(name) for name in HARD] + [more_sequence(name) for name in HARDER]
-    scores = _without(sequences, "Without each part")
+    scores = _without(_hard_sequences(), "Without each part")
     picture = BENCHMARK_PICTURES / "depth" / "terms.png"
     draw_bars(scores, {"cm": 0.0, "% < 10 cm": MIN_BAR_PERCENT}, picture)
     return [scores.markdown(), f"{show(picture, 'What each part is worth')}\n"]
+
+
+def _hard_sequences() -> list[Sequence]:
+    return [sequence(name) for name in HARD] + [more_sequence(name) for name in HARDER]
 
 
 def tuning() -> list[str]:

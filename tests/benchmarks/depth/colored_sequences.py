@@ -15,9 +15,15 @@ from .depth_tuning import clip
 from .forest_sources import DATA
 from .painted_bodies import colored_picture, vertex_materials
 
-WALKS = ("06_01", "10_04", "26_01", "27_01", "29_01", "32_01", "32_02")
+WALKS = tuple(
+    f"cmu_walk/{walk}.bvh"
+    for walk in ("06_01", "10_04", "26_01", "27_01", "29_01", "32_01", "32_02")
+)
 """By six actors, none of them one of depth/truth."""
-HOPS = "HDM_bd_hopBothLegs1hops_*.amc"
+HOPS = tuple(
+    f"hdm05/{path.name}"
+    for path in sorted((DATA / "mocap" / "hdm05").glob("HDM_bd_hopBothLegs1hops_*.amc"))
+)
 """By an actor of HDM05."""
 
 
@@ -40,11 +46,14 @@ def colored(name: str) -> Sequence:
     return replace(one, depth=depth)
 
 
-@cache
 def others_motions() -> MotionPrior:
     """Return the prior of walks and hops by other actors than those of depth/truth."""
-    names = [f"cmu_walk/{walk}.bvh" for walk in WALKS]
-    names += sorted(f"hdm05/{path.name}" for path in (DATA / "mocap" / "hdm05").glob(HOPS))
+    return motions_of((*WALKS, *HOPS))
+
+
+@cache
+def motions_of(names: tuple[str, ...]) -> MotionPrior:
+    """Return the prior of some clips."""
     motions = [clip(name) for name in names]
     return motion_prior_from_poses([
         poses_from_motion(motion.slice(1, motion.n_frames)) for motion in motions

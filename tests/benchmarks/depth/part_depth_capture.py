@@ -9,7 +9,9 @@ from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.capture import Capture, CaptureSettings, capture
-from solvers.depth_tracking.capturing.passes import RecoverySettings, TrackingContext
+from solvers.depth_tracking.capturing.capture_method import CaptureMethod
+from solvers.depth_tracking.capturing.passes import TrackingContext
+from solvers.depth_tracking.capturing.restart_policies import RecoverySettings
 from solvers.depth_tracking.detection.detect_pose import detect_pose
 from solvers.depth_tracking.forest.pixel_forest import load_pixel_forest
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER
@@ -22,6 +24,11 @@ from .depth_sequences import MAX_FOUND_ERROR_M, SCORED, Sequence, errors, length
 
 FPS = "frames/s"
 FORWARD = CaptureSettings(backward=False, smoothing=0.0)
+PUBLISHED = {
+    "wei, body known": CaptureSettings(method=CaptureMethod.REGISTRATION),
+    "lou, body known": CaptureSettings(method=CaptureMethod.EDGES),
+}
+"""The published systems, without color."""
 DETECTOR_STEP_FRAMES = 5
 """Frames from one that the detector gets to the next, where it works alone."""
 BY_JOINT = {
@@ -44,6 +51,7 @@ def captures() -> list[str]:
         for label, given, settings in (
             ("nothing given", None, CaptureSettings()),
             ("forward only, not smoothed, body known", one.body, FORWARD),
+            *((label, one.body, each) for label, each in PUBLISHED.items()),
         ):
             rows = _captured(one, given, settings)
             for column, figure in rows.items():

@@ -14,6 +14,7 @@ from time import perf_counter
 from ..shared.report import DOCS, Report
 from . import (
     part_blender,
+    part_figures,
     part_kinect,
     part_losses,
     part_real,
@@ -36,6 +37,8 @@ PARTS: dict[str, Part] = {
     "confidence": part_terms.confidence,
     "twist": part_twist.twist,
     "real": part_real.recordings,
+    "search-figures": part_figures.search_figures,
+    "motion-figures": part_figures.motion_figures,
 }
 RELIABILITY = "reliability"
 """Its tables are in docs/technical/reliability.md; `make bench-reliability` makes only them."""

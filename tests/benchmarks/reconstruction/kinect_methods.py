@@ -1,6 +1,6 @@
 """All that rebuilds what a Kinect saw: ours, the published methods, and peers."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache, partial
 
 import numpy as np
@@ -76,10 +76,14 @@ def filtered(
 
 def regressed(learn: Callable[[Array, Array], Predict], pair: Pair, subject: str) -> Array:
     """Add the offsets that a regression predicts in the frame of the heading."""
+    return with_predicted_offsets(_regression(learn, subject), pair)
+
+
+def with_predicted_offsets(predict: Predict, pair: Pair) -> Array:
+    """Return joints with the offsets that a learned regression predicts."""
     smoothed = smooth_postures(pair.kinect, SMOOTHING_S)
     columns = _tracked(smoothed.features)
     offsets = np.zeros_like(smoothed.features)
-    predict = _regression(learn, subject)
     predicted = predict(smoothed.features[:, columns[1:]].reshape(len(offsets), -1))
     offsets[:, columns] = predicted.reshape(len(offsets), -1, 3)
     return _smoothed(smoothed.positions + smoothed.rotate_to_world(offsets), pair)
@@ -100,8 +104,15 @@ def from_examples(learn: Callable[[Array], Predict], pair: Pair, subject: str) -
 
 @cache
 def _regression(learn: Callable[[Array, Array], Predict], subject: str) -> Predict:
+    return learn_offsets(learn, others(subject))
+
+
+def learn_offsets(
+    learn: Callable[[Array, Array], Predict], teachers: Sequence[Pair]
+) -> Predict:
+    """Learn from postures to the offsets of their true joints."""
     features, offsets = [], []
-    for pair in others(subject):
+    for pair in teachers:
         smoothed = smooth_postures(pair.kinect, SMOOTHING_S)
         columns = _tracked(smoothed.features)
         off = rotate_about_vertical(

@@ -223,6 +223,9 @@ GUARDS: dict[str, Guard] = {
         inf,
         "feet/test_live_planting.py::test_after_a_gap_and_with_another_actor_feet_begin_again",
     ),
+    "feet/live_planting.PATCH_RADIUS_M": Guard(
+        1e-6, "feet/test_live_heading.py::test_a_foot_on_its_ball_pivots"
+    ),
     "feet/live_planting.MAX_HOLD_M": Guard(
         inf, "feet/test_live_planting.py::test_a_foot_that_is_held_too_far_away_slides_on"
     ),

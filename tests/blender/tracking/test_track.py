@@ -91,3 +91,31 @@ def test_track_reports_that_no_actor_was_detected(blank, tmp_path, truth):
     with pytest.raises(RuntimeError, match="No person is visible"):
         blank.ops.mocap_assist.track_depth(**FAST_SETTINGS)
     assert len(blank.data.armatures) == 0
+
+
+@pytest.mark.parametrize("method", ["REGISTRATION", "EDGES"])
+def test_published_methods_track_and_are_recorded(points, truth, blank, method):
+    """The armature stands in the points, as that of the default."""
+    matrix = np.array(points.matrix_world)
+    settings = FAST_SETTINGS | {"method": method}
+
+    assert blank.ops.mocap_assist.track_depth(**settings) == {"FINISHED"}
+
+    armature = blank.context.object
+    report = json.loads(armature.animation_data.action["mocap_assist_captured"])
+    assert report["settings"]["method"] in {"wei", "lou"}
+    names = [str(name) for name in truth["joint_names"]]
+    blank.context.scene.frame_set(6)
+    observed = truth["joints"][5][[names.index(name) for name in JOINTS.values()]]
+    world = observed @ matrix[:3, :3].T + matrix[:3, 3]
+    assert np.linalg.norm(heads(armature, JOINTS) - world, axis=-1).mean() < 0.1
+
+
+def test_method_is_a_research_setting_of_the_panel(points, blank, draw, request):
+    track = blank.context.scene.mocap_assist.track
+    assert "method" not in draw("MOCAP_PT_track")
+    track.method = "EDGES"
+    assert "method" in draw("MOCAP_PT_track")  # since it has an effect
+    track.property_unset("method")
+    request.getfixturevalue("show_research")
+    assert draw("MOCAP_PT_track").count("method") == 1

@@ -59,6 +59,21 @@ def test_a_standing_body_is_written_as_a_skeleton_with_its_figures(call, take, t
     assert load_body_model(body_file).lengths.shape == default_body().lengths.shape
 
 
+@pytest.mark.parametrize("method", ["wei", "lou"])
+def test_published_methods_can_be_chosen(call, take, tmp_path, method):
+    body = tmp_path / "body.npz"
+    default_body().save(body)
+    given = ("--body", body, "--json", *FAST_OPTIONS)
+
+    runs = [
+        call("capture", take, tmp_path / f"{name}.bvh", "--method", name, *given)
+        for name in ("default", method)
+    ]
+
+    default, published = (json.loads(out)["residual_m"] for _, out, _ in runs)
+    assert published != default and published < 0.03
+
+
 def test_capture_reports_missing_depth_and_missing_actor_in_one_sentence(call, take, tmp_path):
     (tmp_path / "no.bvh").write_text("HIERARCHY\n")
     for source, words in (

@@ -16,7 +16,8 @@ from solvers.depth_tracking.body.pose_from_joints import pose_from_frames
 from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing import retracked_path
-from solvers.depth_tracking.capturing.passes import RecoverySettings, TrackingContext
+from solvers.depth_tracking.capturing.passes import TrackingContext
+from solvers.depth_tracking.capturing.restart_policies import RecoverySettings
 from solvers.depth_tracking.capturing.retrack import RetrackSettings, retrack
 from solvers.depth_tracking.terms import TrackerSettings
 from solvers.depth_tracking.tracking.fit_quality import FitQuality

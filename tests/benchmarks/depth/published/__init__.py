@@ -1,0 +1,1 @@
+"""Figures of [WZC12] and [LOU12], measured with their methods as published."""
