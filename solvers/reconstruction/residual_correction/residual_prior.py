@@ -130,9 +130,14 @@ class ResidualPrior:
             roots.append((cholesky_root(points, near), cholesky_root(self.pose_points, far)))
         return roots
 
+    @cached_property
+    def _kernels(self) -> list[Kernel]:
+        """Computed once: a live take needs them in every frame."""
+        return [Kernel.from_logs(logs) for logs in np.log(self.kernels)]
+
     def kernel(self, index: int) -> Kernel:
         """Return the hyper-parameters of one of the joints."""
-        return Kernel.from_logs(np.log(self.kernels[index]))
+        return self._kernels[index]
 
     def predict(self, smoothed: SmoothedPostures, *, causal: bool = False) -> Prediction:
         """Predict true minus observed position of every joint.
