@@ -58,8 +58,7 @@ def rotate(rotations: Array, vectors: ArrayLike) -> Array:
 def normalize(rotations: Array) -> Array:
     """Return quaternions or vectors (last axis) of length 1; those of length 0 become NaN."""
     norms = np.linalg.norm(rotations, axis=-1, keepdims=True)
-    norms[~(norms > 0.0)] = np.nan
-    return np.asarray(rotations / norms)
+    return np.asarray(rotations / np.where(norms > 0.0, norms, np.nan))
 
 
 def quaternion_from_rotation_vector(vectors: ArrayLike) -> Array:
@@ -265,18 +264,16 @@ def rotation_between(start: ArrayLike, stop: ArrayLike) -> Array:
     Opposite directions use any perpendicular axis; zero vectors give the identity.
     """
     start, stop = np.asarray(start, float), np.asarray(stop, float)
-    if start.shape != stop.shape:
-        start, stop = np.broadcast_arrays(start, stop)
     lengths = np.linalg.norm(start, axis=-1) * np.linalg.norm(stop, axis=-1)
     result = np.empty((*lengths.shape, 4))
     result[..., 0] = lengths + np.einsum("...i,...i->...", start, stop)
     result[..., 1:] = cross(start, stop)
     opposite = result[..., 0] <= 1e-12 * lengths
     if opposite.any():
-        axis = cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
-        half_turn = np.concatenate([np.zeros_like(lengths)[..., None], axis], axis=-1)
+        half_turn = np.zeros_like(result)
+        half_turn[..., 1:] = cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
+        half_turn[lengths == 0.0] = IDENTITY
         result = np.where(opposite[..., None], half_turn, result)
-        result = np.where((lengths == 0.0)[..., None], IDENTITY, result)
     return normalize(result)
 
 

@@ -132,7 +132,6 @@ class ResidualPrior:
 
     @cached_property
     def _kernels(self) -> list[Kernel]:
-        """Computed once: a live take needs them in every frame."""
         return [Kernel.from_logs(logs) for logs in np.log(self.kernels)]
 
     def kernel(self, index: int) -> Kernel:
@@ -228,8 +227,7 @@ class ResidualPrior:
         of an actor and a take.
         """
         result = np.full(N_JOINTS, np.inf)
-        for index, name in enumerate(self.joints):
-            kernel = self.kernel(index)
+        for kernel, name in zip(self._kernels, self.joints, strict=True):
             joint = POSTURE_JOINTS.index(str(name))
             mirrored_joints = [joint, MIRROR_JOINTS[joint]] if self.mirrored else [joint]
             result[mirrored_joints] = (
