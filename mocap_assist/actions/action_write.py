@@ -7,20 +7,28 @@ import numpy as np
 
 from ...solvers.arrays import Array
 from ..blender import compat
+from ..blender.block_references import (
+    BlockReference,
+    SourceReference,
+    changed_during_solve,
+    removed_on_failure,
+)
 from ..blender.compat import Source
+from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene.controls import BoneKeys
 from .bone_channels import bone_path
 from .curves import CONSTANT, deselect, write_first
 from .rotation_modes import channels_from_quaternions, rotation_property
 
 
+@Sliced
 def write_action(
     armature: bpy.types.Object,
     name: str,
     frames: Array,
     keys: Mapping[str, BoneKeys],
     switches: Mapping[tuple[str, str], float],
-) -> Source:
+) -> Steps[Source]:
     """Make an action that keys these bones at every frame, and nothing else.
 
     Parameters
@@ -38,25 +46,42 @@ def write_action(
     -------
     action, slot
     """
-    action, slot = compat.new_action(name, armature)
-    bag = compat.ensure_channelbag(action, slot)
-    for bone_name, channels in keys.items():
-        bone = armature.pose.bones[bone_name]
-        if channels.rotations is not None:
-            known = np.isfinite(channels.rotations).all(axis=1)
-            prop, width = rotation_property(bone.rotation_mode)
-            near = np.zeros((1, width))
-            near[:, 0] = float(width == len("WXYZ") and bone.rotation_mode == "QUATERNION")
-            rotations = channels.rotations[known]
-            if len(rotations):
-                values = channels_from_quaternions(rotations, bone.rotation_mode, near)
-                _write(bag, bone_name, prop, frames[known], values)
-        if channels.locations is not None:
-            known = np.isfinite(channels.locations).all(axis=1)
-            if known.any():
-                _write(bag, bone_name, "location", frames[known], channels.locations[known])
-    _write_switches(armature, bag, frames, switches)
-    return action, slot
+    here, made = BlockReference.of(armature), compat.new_action(name, armature)
+    lasting = SourceReference.of(made)
+    with removed_on_failure(made[0]):
+        bag = compat.ensure_channelbag(*made)
+        for number, (bone, channels) in enumerate(keys.items()):
+            _write_bone(armature, bag, bone, frames, channels)
+            if should_yield():
+                yield number / len(keys)
+                armature, bag = here.find(), compat.ensure_channelbag(*lasting.find())
+        _write_switches(armature, bag, frames, switches)
+    return lasting.find()
+
+
+def _write_bone(
+    armature: bpy.types.Object,
+    bag: bpy.types.ActionChannelbag,
+    name: str,
+    frames: Array,
+    channels: BoneKeys,
+) -> None:
+    bone = armature.pose.bones.get(name)
+    if bone is None:
+        raise changed_during_solve(armature.name)
+    if channels.rotations is not None:
+        known = np.isfinite(channels.rotations).all(axis=1)
+        prop, width = rotation_property(bone.rotation_mode)
+        near = np.zeros((1, width))
+        near[:, 0] = float(width == len("WXYZ") and bone.rotation_mode == "QUATERNION")
+        rotations = channels.rotations[known]
+        if len(rotations):
+            values = channels_from_quaternions(rotations, bone.rotation_mode, near)
+            _write(bag, name, prop, frames[known], values)
+    if channels.locations is not None:
+        known = np.isfinite(channels.locations).all(axis=1)
+        if known.any():
+            _write(bag, name, "location", frames[known], channels.locations[known])
 
 
 def _write(

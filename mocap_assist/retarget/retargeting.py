@@ -1,6 +1,7 @@
 """Retarget: read the scene and write the result."""
 
 from collections.abc import Iterable, Mapping
+from contextlib import ExitStack
 from functools import partial
 from typing import NamedTuple
 
@@ -16,7 +17,7 @@ from ..actions.armature_write import check_writable
 from ..actions.bone_channels import animated_paths, bone_path
 from ..actions.take import ArmatureTake
 from ..blender import compat
-from ..blender.block_references import SourceReference
+from ..blender.block_references import BlockReference, SourceReference, removed_on_failure
 from ..blender.compat import Source
 from ..blender.name_lists import split_names
 from ..blender.time_slices import Sliced, Steps
@@ -83,25 +84,31 @@ def write_retargeted(
     """
     here = Subject.of(scene, source)
     found = yield from _read(here, settings)
-    scene, source = here.find()
-    yield from check_unchanged.steps(source, solved_digest, found.problem)
+    yield from check_unchanged.steps(here.find()[1], solved_digest, found.problem)
     scene, source = here.find()
     found = found.found_again(scene, source, settings.choices)
     low = _low_confidence(source, found)
-    for made_from, take, keys in zip(found.sources, found.takes, results.clips, strict=True):
-        name = f"{made_from[0].name}.{found.target.name}"
-        action, slot = write_action(found.target, name, take.frames, keys, found.switches)
-        entry = _entry(source, found, settings)
-        entry |= {"low_confidence": low, "remarks": list(results.remarks)}
-        history.record(action, made_from, entry, of_another_rig=True)
-    linked = found.target.library is not None
+    entry = _entry(source, found, settings)
+    entry |= {"low_confidence": low, "remarks": list(results.remarks)}
+    lasting = BlockReference.of(found.target)
+    sources = [SourceReference.of(each) for each in found.sources]
+    with ExitStack() as incomplete:
+        for made_from, take, keys in zip(sources, found.takes, results.clips, strict=True):
+            name = f"{made_from.action.name}.{lasting.name}"
+            action, slot = yield from write_action.steps(
+                lasting.find(), name, take.frames, keys, found.switches
+            )
+            incomplete.enter_context(removed_on_failure(action))
+            history.record(action, made_from.find(), entry, of_another_rig=True)
+    target = lasting.find()
+    linked = target.library is not None
     if not linked:
-        compat.assign(found.target, action, slot)
+        compat.assign(target, action, slot)
     n_bones, n_frames = len(results.clips[-1]), sum(len(take.frames) for take in found.takes)
     made = action.name if len(results.clips) == 1 else f"{len(results.clips)} actions"
     score = min(found.maps.source.score, found.maps.target.score)
     return (
-        f"{made}: retargeted {n_frames} frames to {n_bones} bones of {found.target.name}"
+        f"{made}: retargeted {n_frames} frames to {n_bones} bones of {target.name}"
         f" (bones matched {score:.0%})."
         + (" It is linked: assign the action to its library override." if linked else "")
         + "".join(f" {each}" for each in low.values() if each)

@@ -1,17 +1,19 @@
 """Quaternion products of separate component arrays, the inner loops of `rotations`.
 
 A quaternion is four arrays w, x, y, z; a vector is three. All shapes broadcast. numpy is
-several times faster on one array per component than on interleaved components.
+several times faster on one array per component than on interleaved components, and plain
+numbers take a tenth of the time of arrays of one number.
 """
 
-from collections.abc import Iterable, Sequence
-from typing import TypeAlias
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from ..arrays import Array
 
 Components: TypeAlias = Iterable[Array]
+Product: TypeAlias = Callable[[Any, Any], tuple[Any, ...]]
 
 
 def components_of(array: Array) -> tuple[Array, ...]:
@@ -28,6 +30,14 @@ def joined(components: Sequence[Array]) -> Array:
     for index, component in enumerate(components):
         result[..., index] = component
     return result
+
+
+def product_of(product: Product, a: Array, b: Array) -> Array:
+    """Return the product of quaternions or vectors, shape (..., component)."""
+    if a.size == a.shape[-1] and b.size == b.shape[-1]:
+        single = np.array(product(a.ravel().tolist(), b.ravel().tolist()))
+        return single.reshape((1,) * (max(a.ndim, b.ndim) - 1) + (-1,))
+    return joined(product(components_of(a), components_of(b)))
 
 
 def multiply_components(a: Components, b: Components) -> tuple[Array, Array, Array, Array]:
@@ -60,4 +70,4 @@ def rotate_components(rotation: Components, vector: Components) -> tuple[Array, 
 
 def cross(a: Array, b: Array) -> Array:
     """Return the cross product, shape (..., 3), at a third of the cost of `np.cross`."""
-    return joined(cross_components(components_of(a), components_of(b)))
+    return product_of(cross_components, a, b)

@@ -10,14 +10,14 @@ from ..arrays import Array
 from .matrix_quaternions import quaternions_of_matrices
 from .quaternion_algebra import (
     Components,
-    components_of,
     cross,
-    joined,
     multiply_components,
+    product_of,
     rotate_components,
 )
 
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
+_CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 SMALL_ANGLE_RAD = 1e-6  # below it, series replace quotients: what they leave out is rounding
 FULL_TURN_RAD = 2.0 * np.pi
 GIMBAL_LOCK_COSINE = 1e-7
@@ -35,7 +35,7 @@ def multiply(a: Array, b: Array) -> Array:
     a, b = np.asarray(a), np.asarray(b)
     product = np.broadcast(a, b)
     if product.size <= 4 * QUATERNIONS_PER_BLOCK:
-        return joined(multiply_components(components_of(a), components_of(b)))
+        return product_of(multiply_components, a, b)
     result = np.empty(product.shape)
     flat_a, flat_b, flat = (x.reshape(-1, 4) for x in (*np.broadcast_arrays(a, b), result))
     for start in range(0, len(flat), QUATERNIONS_PER_BLOCK):
@@ -46,13 +46,13 @@ def multiply(a: Array, b: Array) -> Array:
 
 def inverse(rotations: Array) -> Array:
     """Return the inverses of unit quaternions, shape (..., 4)."""
-    return np.asarray(rotations) * (1.0, -1.0, -1.0, -1.0)
+    return np.asarray(np.asarray(rotations) * _CONJUGATE)
 
 
 def rotate(rotations: Array, vectors: ArrayLike) -> Array:
     """Rotate vectors, shape (..., 3), by rotations, shape (..., 4)."""
     rotations, vectors = np.asarray(rotations), np.asarray(vectors, dtype=np.float64)
-    return joined(rotate_components(components_of(rotations), components_of(vectors)))
+    return product_of(rotate_components, rotations, vectors)
 
 
 def normalize(rotations: Array) -> Array:
@@ -263,16 +263,17 @@ def rotation_between(start: ArrayLike, stop: ArrayLike) -> Array:
 
     Opposite directions use any perpendicular axis; zero vectors give the identity.
     """
-    start, stop = np.broadcast_arrays(np.asarray(start, float), np.asarray(stop, float))
+    start, stop = np.asarray(start, float), np.asarray(stop, float)
     lengths = np.linalg.norm(start, axis=-1) * np.linalg.norm(stop, axis=-1)
-    agreement = (lengths + np.einsum("...i,...i->...", start, stop))[..., None]
-    result = np.concatenate([agreement, cross(start, stop)], axis=-1)
-    opposite = (result[..., 0] <= 1e-12 * lengths) & (lengths > 0.0)
+    result = np.empty((*lengths.shape, 4))
+    result[..., 0] = lengths + np.einsum("...i,...i->...", start, stop)
+    result[..., 1:] = cross(start, stop)
+    opposite = result[..., 0] <= 1e-12 * lengths
     if opposite.any():
-        axis = cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
-        half_turn = np.concatenate([np.zeros_like(lengths)[..., None], axis], axis=-1)
+        half_turn = np.zeros_like(result)
+        half_turn[..., 1:] = cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
+        half_turn[lengths == 0.0] = IDENTITY
         result = np.where(opposite[..., None], half_turn, result)
-    result = np.where((lengths == 0.0)[..., None], IDENTITY, result)
     return normalize(result)
 
 

@@ -33,10 +33,11 @@ class _Basis(NamedTuple):
 class _GroupFilters(NamedTuple):
     """The filters of one group, one for each component."""
 
-    total: Array
-    """Variance of movement and noise along each eigenvector, like `_Basis.variances`."""
     gains: Array
-    """Fraction of it that is movement."""
+    """Fraction of the variance along each eigenvector that is movement, like
+    `_Basis.variances`."""
+    factors: Array
+    """Inverse of this variance, and the square of the gain, on the last axis."""
     log_density: Array
     """At zero, without constants, with the component's weight, shape (n_components,)."""
     leverage: Array
@@ -191,7 +192,8 @@ class GroupSmoother:
         total = basis.variances + variance[:, None, None]
         gains = basis.variances / total
         leverage = (gains[:, :, None] @ basis.squares)[:, :, 0].transpose(1, 0, 2)
-        return _GroupFilters(total, gains, self._density_at_zero(total), leverage, variance)
+        factors = np.stack([1.0 / total, gains**2], axis=-1)
+        return _GroupFilters(gains, factors, self._density_at_zero(total), leverage, variance)
 
     def _density_at_zero(self, total: Array) -> Array:
         """Return the log-density of each component at zero: `_GroupFilters.log_density`."""
@@ -226,17 +228,18 @@ class GroupSmoother:
         """
         vectors, n_windows = self._basis.vectors, len(coefficients)
         projected = coefficients.transpose(1, 0, 2) @ vectors
-        n_components, n_coefficients = filters.total.shape[1:]
+        n_components, n_coefficients = filters.gains.shape[1:]
         each = projected.reshape(len(projected), n_windows, n_components, n_coefficients)
-        log_density = _log_density(each**2, filters.total, filters.log_density)
+        squares = np.square(each).transpose(0, 2, 1, 3) @ filters.factors
+        log_density = filters.log_density - 0.5 * squares[..., 0].sum(axis=0).T
         density = np.exp(log_density - log_density.max(axis=1, keepdims=True))
         responsibility = density / density.sum(axis=1, keepdims=True)
-        # In place: a view of `projected`.
-        each *= filters.gains[:, None]
-        squares = np.einsum("awkn,awkn,wk->wa", each, each, responsibility)
-        each *= responsibility[..., None]
-        means = (projected @ vectors.transpose(0, 2, 1)).transpose(1, 0, 2)
-        spread = (squares - np.square(means).sum(axis=-1)) / filters.noise
+        each *= responsibility[..., None]  # in place: a view of `projected`
+        # There are fewer coefficients than windows.
+        filtered = vectors * filters.gains.reshape(len(vectors), 1, -1)
+        means = (projected @ filtered.transpose(0, 2, 1)).transpose(1, 0, 2)
+        power = np.einsum("akw,wk->wa", squares[..., 1], responsibility)
+        spread = (power - np.square(means).sum(axis=-1)) / filters.noise
         return means, responsibility, spread
 
 

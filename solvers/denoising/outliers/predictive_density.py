@@ -35,9 +35,11 @@ more good samples of takes with bursts, x3 keeps a burst of two frames in a walk
 class PredictiveDensity:
     """The density of samples of a joint's channels, given the channels' other samples.
 
-    With B the cosines at the observed samples of a window and s^2 the noise, the log-density of
-    a component of covariance C follows by the matrix inversion lemma: only C^-1 + B' B / s^2
-    has to be factored.
+    With the cosines B of all samples of a window and their noise N, the precision matrix of a
+    component of covariance C is N^-1 - W W', where W = N^-1 B L'^-1 and L is the lower
+    triangular root of C^-1 + B' N^-1 B (matrix inversion lemma). It is the same for all windows
+    of a joint. Samples that are not observed have an unknown error, which is integrated out:
+    only a matrix of their number has to be factored for each window.
 
     Parameters
     ----------
@@ -60,7 +62,7 @@ class PredictiveDensity:
     ) -> None:
         self._samples, self._noise, self._windows = samples, noise, windows
         self._mixture, self._basis = mixture, windows.dct_basis(mixture.window)
-        self._axes, self._inverses = axes, dict[tuple[int, ...], tuple[Array, Array]]()
+        self._axes, self._roots = axes, dict[tuple[int, ...], tuple[Array, Array]]()
 
     def of_run(
         self, run: slice, tested: NDArray[np.bool_], valid: NDArray[np.bool_]
@@ -103,50 +105,61 @@ class PredictiveDensity:
         """Return each component's log-density of the observed samples of a window's channels.
 
         The second one is that with an unknown constant added to each channel in the frames of
-        `offset`. The constants follow the coefficients, so that one factorization yields both.
-        If their deviation is infinite, it is the density of the frames outside `offset`.
+        `offset`. The constants follow the missing samples, so that one factorization yields
+        both. If their deviation is infinite, it is the density of the frames outside `offset`.
         """
-        inverses, log_weights = self._inverse_covariances(channels)
-        columns, variance = list(channels), self._noise[list(channels)] ** 2
-        n, size = self._basis.shape[1], inverses.shape[1]
-        end = size if offset is None else size + len(columns)
-        precision, values = observed[:, columns].T / variance[:, None], self._samples[frames]
-        values = values[:, columns].T
-        weighted = precision[:, None] * self._basis.T
-        square = float((precision * values**2).sum())
-        # Besides the precision matrix: the projected values, and more than their square can be.
-        added = np.zeros((end + 1, end + 1))
-        added[end, :size] = (weighted @ values[:, :, None]).ravel()
-        added[end, end] = square + 1.0
-        for index, block in enumerate(weighted @ self._basis):
-            added[index * n : (index + 1) * n, index * n : (index + 1) * n] = block
+        roots, log_densities = self._precision_roots(channels)
+        columns, length = list(channels), len(self._basis)
+        precision = np.repeat(self._noise[columns] ** -2.0, length)
+        missing = np.flatnonzero(~observed[:, columns].T)
+        shifts = np.zeros((0 if offset is None else len(columns), len(columns), length))
         if offset is not None:
-            is_off = offset[:, columns].T.astype(float)
-            for index, row in enumerate((weighted @ is_off[:, :, None])[..., 0]):
-                added[size + index, index * n : (index + 1) * n] = row
-            own = np.arange(size, end)
-            added[own, own] = deviation**-2 + (is_off * precision).sum(axis=1)
-            added[end, own] = (is_off * precision * values).sum(axis=1)
-        factored = np.empty((len(inverses), end + 1, end + 1))
-        factored[:] = added
-        factored[:, :size, :size] += inverses
-        factors = np.linalg.cholesky(factored)  # of the lower triangles
-        exponents = 0.5 * factors[:, end, :end] ** 2
-        exponents -= np.log(np.einsum("kss->ks", factors)[:, :end])
-        log_scale = float(observed[:, columns].sum(axis=0) @ np.log(2.0 * np.pi * variance))
-        without = log_weights + exponents[:, :size].sum(axis=1) - 0.5 * (log_scale + square)
+            own = np.arange(len(columns))
+            shifts[own, own] = (offset & observed)[:, columns].T
+        # One row for each unknown; the samples come last.
+        n_missing, n_unknown = len(missing), len(missing) + len(shifts)
+        rows = np.zeros((n_unknown + 1, len(precision)))
+        rows[np.arange(n_missing), missing] = 1.0
+        rows[n_missing:n_unknown] = shifts.reshape(len(shifts), len(precision))
+        rows[n_unknown] = self._samples[frames][:, columns].T.ravel()
+        projected = np.concatenate([roots[missing], np.tensordot(rows[n_missing:], roots, 1)])
+        projected = projected.transpose(1, 0, 2)
+        factored = (rows * precision) @ rows.T - projected @ projected.transpose(0, 2, 1)
+        own = np.arange(n_missing, n_unknown)
+        factored[:, own, own] += deviation**-2
+        square = factored[:, n_unknown, n_unknown].copy()
+        factored[:, n_unknown, n_unknown] += 1.0  # not below 0 by rounding
+        factors = np.linalg.cholesky(factored)
+        exponents = 0.5 * factors[:, n_unknown, :n_unknown] ** 2
+        exponents -= np.log(np.einsum("kss->ks", factors)[:, :n_unknown])
+        exponents[:, :n_missing] += 0.5 * np.log(2.0 * np.pi)
+        without = log_densities - 0.5 * square + exponents[:, :n_missing].sum(axis=1)
         # An infinite deviation is a density of 1 everywhere, without the factors of a Gaussian.
         scale = np.log(deviation) if np.isfinite(deviation) else -0.5 * np.log(2.0 * np.pi)
-        of_offsets = exponents[:, size:] - scale
+        of_offsets = exponents[:, n_missing:] - scale
         return without, without + of_offsets.sum(axis=1)
 
-    def _inverse_covariances(self, channels: tuple[int, ...]) -> tuple[Array, Array]:
-        """Return each component's inverse covariance, and the log of its weight and scale."""
-        if channels not in self._inverses:
-            self._inverses[channels] = self._invert_covariances(channels)
-        return self._inverses[channels]
+    def _precision_roots(self, channels: tuple[int, ...]) -> tuple[Array, Array]:
+        """Return W, shape (n_samples, n_components, n_coefficients), and the log-density at 0.
+
+        Of all samples of a window, channel by channel.
+        """
+        if channels not in self._roots:
+            inverses, log_weights = self._invert_covariances(channels)
+            precision = np.diag(self._noise[list(channels)] ** -2.0)
+            factors = np.linalg.cholesky(
+                inverses + np.kron(precision, self._basis.T @ self._basis)
+            )
+            roots = np.linalg.solve(factors, np.kron(precision, self._basis).T[None])
+            log_scale = np.log(np.einsum("kss->ks", factors)).sum(axis=1)
+            log_scale += 0.5 * len(self._basis) * np.log(2.0 * np.pi / np.diag(precision)).sum()
+            self._roots[channels] = (
+                np.ascontiguousarray(roots.transpose(2, 0, 1)), log_weights - log_scale,
+            )  # fmt: skip
+        return self._roots[channels]
 
     def _invert_covariances(self, channels: tuple[int, ...]) -> tuple[Array, Array]:
+        """Return each component's inverse covariance, and the log of its weight and scale."""
         axes, weights = self._axes[list(channels)], self._mixture.weights
         if len(channels) == N_CHANNELS:
             inverses, log_scale = _invert_axes(self._mixture)

@@ -218,7 +218,7 @@ def _side_and_words(name: str, spelling: _Spelling) -> tuple[str, list[str]]:
     side has the same joint, or most joints have their letter there: "L5" is a vertebra and
     "lowerback" is not a left "owerback".
     """
-    words = _words(re.split(r"[:|]", name)[-1])
+    words = [*_words(re.split(r"[:|]", name)[-1])]
     for index, word in enumerate(words):
         if word in SIDE_OF_WORD and (
             len(word) > 1
@@ -237,7 +237,7 @@ def _side_and_words(name: str, spelling: _Spelling) -> tuple[str, list[str]]:
     return "", words
 
 
-def _mirrored(words: list[str], index: int) -> str:
+def _mirrored(words: Sequence[str], index: int) -> str:
     return "".join([*words[:index], OPPOSITE[words[index]], *words[index + 1 :]])
 
 
@@ -245,11 +245,12 @@ def _swap_side(word: str, side: str, remainder: str) -> str:
     return OPPOSITE[side] + remainder if word.startswith(side) else remainder + OPPOSITE[side]
 
 
-def _words(name: str) -> list[str]:
+@lru_cache(maxsize=4096)  # those of all tables, and of several rigs
+def _words(name: str) -> tuple[str, ...]:
     """Split at separators, digits and capitals: "J_Bip_L_UpperArm" is j, bip, l, upper, arm."""
     plain = unicodedata.normalize("NFKC", name).translate(JAPANESE_SIDES)
     words = (word.lower() for word in WORD.findall(plain))
-    return [SIDE_WORDS.get(word, word) for word in words]
+    return tuple(SIDE_WORDS.get(word, word) for word in words)
 
 
 def _fingers(names: Sequence[str], roles: Mapping[str, str]) -> dict[str, str]:

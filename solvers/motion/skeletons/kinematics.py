@@ -43,6 +43,8 @@ def world_poses(
     WorldPoses
         Arrays of shape (..., n_joints, 4) and (..., n_joints, 3).
     """
+    if rotations[..., 0, 0].size == 1:
+        return _world_pose(skeleton, rotations, root_positions)
     # Components come first and frames last here, so that each step runs over complete arrays.
     local = np.ascontiguousarray(
         np.moveaxis(rotations.reshape(-1, *rotations.shape[-2:]), 0, -1)
@@ -58,6 +60,26 @@ def world_poses(
     return WorldPoses(
         np.moveaxis(world, -1, 0).reshape(rotations.shape),
         np.moveaxis(positions, -1, 0).reshape(*rotations.shape[:-1], 3),
+    )
+
+
+def _world_pose(
+    skeleton: Skeleton,
+    rotations: NDArray[np.float64],
+    root_position: NDArray[np.float64],
+) -> WorldPoses:
+    """Compute one pose with plain numbers, in a tenth of the time of arrays of one number."""
+    local = rotations.reshape(-1, 4).tolist()
+    world, positions = local[:1], [root_position.ravel().tolist()]
+    offsets = skeleton.offsets.tolist()
+    for joint, parent in enumerate(skeleton.parents[1:], start=1):
+        world.append(multiply_components(world[parent], local[joint]))
+        x, y, z = rotate_components(world[parent], offsets[joint])
+        above = positions[parent]
+        positions.append([x + above[0], y + above[1], z + above[2]])
+    return WorldPoses(
+        np.array(world).reshape(rotations.shape),
+        np.array(positions).reshape(*rotations.shape[:-1], 3),
     )
 
 

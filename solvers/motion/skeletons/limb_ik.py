@@ -7,6 +7,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...rotations import (
+    cross,
     inverse,
     multiply,
     quaternion_from_rotation_vector,
@@ -106,7 +107,7 @@ def bending_axis(
     world = forward_kinematics(motion) if world is None else world
     first = world.positions[:, lower] - world.positions[:, upper]
     second = world.positions[:, end] - world.positions[:, lower]
-    flexion = np.cross(first, second)
+    flexion = cross(first, second)
     flexion = rotate(inverse(world.rotations[:, upper]), flexion)
     flexion = flexion[np.isfinite(flexion).all(axis=-1)].sum(axis=0)
     bones = np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
@@ -115,7 +116,7 @@ def bending_axis(
     rest = motion.skeleton.rest_positions
     bone = rest[lower] - rest[upper]
     points_down = -bone[2] > np.abs(bone[:2]).max()
-    fallback = np.cross(bone, (0.0, 1.0 if points_down else -1.0, 0.0))
+    fallback = cross(bone, np.array([0.0, 1.0 if points_down else -1.0, 0.0]))
     length = np.linalg.norm(fallback)
     return np.asarray(fallback / length) if length > 0.0 else np.array([1.0, 0.0, 0.0])
 
@@ -138,7 +139,7 @@ def _hinge_rotation(
     )  # a target that is too near folds the limb fully
 
     along = first / np.maximum(a, 1e-12)[:, None]
-    normal = np.cross(along, second / np.maximum(b, 1e-12)[:, None])
+    normal = cross(along, second / np.maximum(b, 1e-12)[:, None])
     sine = np.linalg.norm(normal, axis=-1)
     before = np.arctan2(sine, np.einsum("fi,fi->f", first, second) / np.maximum(a * b, 1e-12))
     level = axis - np.einsum("fi,fi->f", axis, along)[:, None] * along
@@ -148,7 +149,7 @@ def _hinge_rotation(
     # The plane of flexion is rotated by `aside` from the mean one. A nearly straight limb that
     # must flex much more rotates into the mean plane.
     roll_angle = np.arctan2(
-        np.einsum("fi,fi->f", np.cross(level, normal), along),
+        np.einsum("fi,fi->f", cross(level, normal), along),
         np.einsum("fi,fi->f", level, normal),
     )
     reliability = smoothstep(before, MIN_PLANE_FLEXION_RAD, RELIABLE_PLANE_FLEXION_RAD)

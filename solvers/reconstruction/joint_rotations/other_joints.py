@@ -100,20 +100,20 @@ def positions_from_postures(
         offsets = measure_joint_offsets(names, tracked, reliability, before, after)
     posture_joints = _posture_joints(names)
     result = np.empty_like(tracked)
-    bones_before, bones_after = _bones(before), _bones(after)
-    trunk = _trunk_rotations(after)
-    for joint, anchor in enumerate(find_anchors(names)):
-        if joint in posture_joints:
-            result[:, joint] = after[:, posture_joints[joint]]
-            continue
-        bones = bones_before[:, anchor], bones_after[:, anchor]
-        axes_after = _bone_axes(trunk, bones[1], offsets.bones[joint])
-        rotated_offset = rotate(_swings(*bones), tracked[:, joint] - before[:, anchor])
-        is_known = np.isfinite(rotated_offset).all(axis=-1)
-        weight = np.where(is_known, reliability[:, joint], 0.0)
-        offset = weight[:, None] * np.where(is_known[:, None], rotated_offset, 0.0)
-        offset += (1.0 - weight)[:, None] * rotate(axes_after, offsets.offsets[joint])
-        result[:, joint] = after[:, anchor] + offset
+    result[:, list(posture_joints)] = after[:, list(posture_joints.values())]
+    others = [joint for joint in range(len(names)) if joint not in posture_joints]
+    anchors = find_anchors(names)[others]
+    bones_before, bones_after = (_bones(each)[:, anchors] for each in (before, after))
+    trunk = _trunk_rotations(after)[:, None]
+    axes_after = _bone_axes(trunk, bones_after, offsets.bones[others])
+    rotated_offset = rotate(
+        _swings(bones_before, bones_after), tracked[:, others] - before[:, anchors]
+    )
+    is_known = np.isfinite(rotated_offset).all(axis=-1)
+    weight = np.where(is_known, reliability[:, others], 0.0)[..., None]
+    offset = weight * np.where(is_known[..., None], rotated_offset, 0.0)
+    offset += (1.0 - weight) * rotate(axes_after, offsets.offsets[others])
+    result[:, others] = after[:, anchors] + offset
     return result
 
 

@@ -154,7 +154,7 @@ class RotationSolver:
         shape = (len(self.observed), len(rest), 3)
         directions = np.stack(tracked, axis=1) if tracked else np.zeros(shape)
         known = np.isfinite(directions).all(axis=-1)
-        lengths = np.linalg.norm(np.nan_to_num(directions), axis=-1, keepdims=True)
+        lengths = np.linalg.norm(directions, axis=-1, keepdims=True)
         directions = np.where(lengths > MIN_BONE_M, directions, np.nan)
         return _ChildDirections(
             np.array(rest).reshape(-1, 3), directions, np.array(is_exclusive, bool), known
@@ -200,12 +200,8 @@ class RotationSolver:
             directions.tracked[:, aims[0]],
             rotate(rotations, directions.rest[aims[0]]),
         )
-        is_known = (np.isfinite(direction) & np.isfinite(rest)).all(axis=-1)[:, None]
-        swing = rotation_between(
-            np.where(is_known, rest, 1.0), np.where(is_known, direction, 1.0)
-        )
         return _fill_undefined(
-            np.where(is_known, multiply(swing, rotations), np.nan),
+            multiply(rotation_between(rest, direction), rotations),
             rotations,
             directions.observed[:, aims],
         )

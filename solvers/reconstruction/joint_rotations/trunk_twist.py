@@ -30,7 +30,7 @@ class TwistedLimb(NamedTuple):
     @property
     def hinge(self) -> Array:
         """Axis of elbow or knee in a T-pose that faces -Y."""
-        return np.asarray(np.cross(self.along, self.flexion_direction), dtype=np.float64)
+        return cross(np.array(self.along), np.array(self.flexion_direction))
 
 
 def _limb(side: str, sign: float, upper: str, lower: str, end: str) -> TwistedLimb:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Integers, Single, row_blocks
+from ...motion.humanoid import N_JOINTS
 from ...progress import Progress, unwatched
 from ..joint_rotations import BodyPostures
 from ..residual_correction import squared_distances
@@ -155,6 +156,10 @@ def _relative_distances(
     points: Single, weights: Single, known: Single, squares: Single
 ) -> Single:
     """Weighted squared distances up to a constant per query, (n_frames, n_known)."""
+    if not weights[:, N_JOINTS:].any():  # velocities are unknown: half of the memory to read
+        points, weights, known, squares = (
+            each[:, :N_JOINTS] for each in (points, weights, known, squares)
+        )
     weighted = (points * weights[..., None]).reshape(len(points), -1)
     return np.asarray(weights @ squares.T - 2.0 * (weighted @ known.reshape(len(known), -1).T))
 

@@ -92,4 +92,6 @@ def fill_missing(features: Array, default: Array) -> Array:
 def neighborhood_features(features: Array, joint: int) -> Array:
     """Return features of a joint's neighborhood, shape (n_frames, 15), padded with 0."""
     selected = features[:, list(NEIGHBORHOODS[joint])].reshape(len(features), -1)
-    return np.pad(selected, ((0, 0), (0, N_NEIGHBORHOOD_FEATURES - selected.shape[1])))
+    padded = np.zeros((len(features), N_NEIGHBORHOOD_FEATURES))
+    padded[:, : selected.shape[1]] = selected
+    return padded

@@ -130,9 +130,13 @@ class ResidualPrior:
             roots.append((cholesky_root(points, near), cholesky_root(self.pose_points, far)))
         return roots
 
+    @cached_property
+    def _kernels(self) -> list[Kernel]:
+        return [Kernel.from_logs(logs) for logs in np.log(self.kernels)]
+
     def kernel(self, index: int) -> Kernel:
         """Return the hyper-parameters of one of the joints."""
-        return Kernel.from_logs(np.log(self.kernels[index]))
+        return self._kernels[index]
 
     def predict(self, smoothed: SmoothedPostures, *, causal: bool = False) -> Prediction:
         """Predict true minus observed position of every joint.
@@ -223,8 +227,7 @@ class ResidualPrior:
         of an actor and a take.
         """
         result = np.full(N_JOINTS, np.inf)
-        for index, name in enumerate(self.joints):
-            kernel = self.kernel(index)
+        for kernel, name in zip(self._kernels, self.joints, strict=True):
             joint = POSTURE_JOINTS.index(str(name))
             mirrored_joints = [joint, MIRROR_JOINTS[joint]] if self.mirrored else [joint]
             result[mirrored_joints] = (

@@ -53,9 +53,9 @@ def basis_values(squared: Array, length: float, root: Array) -> Array:
     `squared` are the squared distances from the points; `root` is their `cholesky_root`.
     """
     values = np.exp(-0.5 * squared / length**2)
-    return np.asarray(
-        scipy.linalg.solve_triangular(root, values.T, lower=True, check_finite=False).T
-    )
+    # The transposed root is in the order of LAPACK, which would copy the root itself.
+    solution, _ = scipy.linalg.lapack.dtrtrs(root.T, values.T, lower=0, trans=1)
+    return np.asarray(solution.T)
 
 
 def posterior(

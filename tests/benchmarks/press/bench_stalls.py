@@ -41,6 +41,7 @@ def main() -> None:
     load_checkout()
     sys.modules["mocap_ext"].register()
     import_long_walk(arguments.frames, arguments.bones)
+    add_target()
     rows = {}
     for name, idname in BUTTONS.items():
         let_solver_wait()
@@ -64,7 +65,10 @@ def main() -> None:
 
 
 LONG_S = 0.05
-BUTTONS = {"Clean": "denoise", "Check": "measure_quality", "Plant Feet": "plant_feet"}
+BUTTONS = {
+    "Clean": "denoise", "Check": "measure_quality", "Plant Feet": "plant_feet",
+    "Retarget": "retarget",
+}  # fmt: skip
 
 
 def timed_steps(steps: Iterator[tuple[float, str]]) -> Iterator[tuple[float, str]]:
@@ -135,6 +139,16 @@ def import_long_walk(n_frames: int, n_bones: int) -> None:
         path = Path(folder) / "walk.bvh"
         write_bvh(motion, path)
         assert bpy.ops.mocap_assist.import_recording(filepath=str(path)) == {"FINISHED"}
+
+
+def add_target() -> None:
+    """Add another armature with the same bones, for Retarget."""
+    source = bpy.context.view_layer.objects.active
+    target = source.copy()
+    target.data = source.data.copy()
+    target.animation_data_clear()
+    bpy.context.scene.collection.objects.link(target)
+    bpy.context.scene.mocap_assist.retarget.target = target.name
 
 
 if __name__ == "__main__":
