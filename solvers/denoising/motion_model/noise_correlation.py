@@ -4,17 +4,22 @@ import numpy as np
 
 from ...arrays import Array, Flags
 from .joint_noise import JointNoise
-from .motion_mixture import MotionMixture
+from .motion_mixture import N_CHANNELS, MotionMixture
 from .noise_levels import MIN_MOVEMENT_DEG, MIN_OBSERVED, N_OVERLAPS
+from .noise_spectrum import deviation_ratio
 from .smooth_groups import GroupSmoother
 
-CORRELATION_TIMES_S = (0.01, 0.02, 0.04, 0.08)
+CORRELATION_TIMES_S = (0.01, 0.02, 0.04)
 """Correlation times that are compared with white noise, seconds. By definition: a step is the
 factor 2, from a fraction of a frame at 30 Hz up to where noise looks like movement."""
 MIN_EVIDENCE = 1.0
 """Mean logarithm, over joints and windows, of the likelihood relative to that of white noise,
 from which noise is correlated. Chosen by hand on the development takes of the first press:
 clean and white ones have 0.7 at most (a fast run), those with 1/f noise 1.4 at least."""
+MIN_NOISE_DEG = 0.5
+"""Standard deviation of correlated noise, degrees. Chosen by hand: below it, noise costs
+little, and what the mixture does not know of clean movement may look like it.
+"""
 MAX_JOINTS = 12
 """Joints that are compared. It bounds the run time."""
 
@@ -52,7 +57,12 @@ def noise_correlation(
     if not is_known.any():
         return 0.0
     chosen = samples[:, joints] - samples[:, joints].mean(axis=0)
-    times = 0.0, *CORRELATION_TIMES_S
+    deviation = float(np.median(np.sqrt(np.einsum("jcc->j", covariances) / N_CHANNELS)))
+    times = [0.0] + [
+        each
+        for each in CORRELATION_TIMES_S
+        if deviation * deviation_ratio(frame_rate, each) > MIN_NOISE_DEG
+    ]
     evidence = []
     for correlation_s in times:
         smoother = GroupSmoother(covariances, frame_rate, mixture, correlation_s)

@@ -33,14 +33,30 @@ def noise_spectrum(
     ----------
     .. [1] Brockwell, Davis (1991). Time Series: Theory and Methods, example 4.4.2.
     """
-    if correlation_s <= 0.0:
-        return np.ones(n_coefficients)
-    correlation = np.exp(-1.0 / (frame_rate * correlation_s))
+    correlation = frame_correlation(frame_rate, correlation_s)
     frequencies = np.pi * np.arange(n_coefficients) / length
     power = (1.0 - correlation**2) / (
         1.0 - 2.0 * correlation * np.cos(frequencies) + correlation**2
     )
+    return np.asarray(power * deviation_ratio(frame_rate, correlation_s) ** 2)
+
+
+def deviation_ratio(frame_rate: float, correlation_s: float) -> float:
+    """Return the deviation of noise, relative to white noise with the same third differences.
+
+    Parameters
+    ----------
+    frame_rate : float, Hz
+    correlation_s : float, seconds
+        As for `noise_spectrum`.
+    """
     taps = np.poly1d([1.0, -1.0]) ** DIFFERENCE_ORDER
-    lags = np.abs(np.subtract.outer(range(len(taps) + 1), range(len(taps) + 1)))
-    differences = taps.coeffs @ correlation**lags @ taps.coeffs
-    return np.asarray(power * np.square(taps.coeffs).sum() / differences)
+    lags = np.abs(np.subtract.outer(range(DIFFERENCE_ORDER + 1), range(DIFFERENCE_ORDER + 1)))
+    correlations = frame_correlation(frame_rate, correlation_s) ** lags
+    differences = taps.coeffs @ correlations @ taps.coeffs
+    return float(np.sqrt(np.square(taps.coeffs).sum() / differences))
+
+
+def frame_correlation(frame_rate: float, correlation_s: float) -> float:
+    """Return the correlation of the noise of two successive frames, 0 to 1."""
+    return float(np.exp(-1.0 / (frame_rate * correlation_s))) if correlation_s > 0.0 else 0.0
