@@ -16,21 +16,25 @@ MIN_EVIDENCE = 1.0
 """Mean logarithm, over joints and windows, of the likelihood relative to that of white noise,
 from which noise is correlated. Chosen by hand on the development takes of the first press:
 clean and white ones have 0.7 at most (a fast run), those with 1/f noise 1.4 at least."""
-MIN_NOISE_DEG = 0.5
+MIN_NOISE_DEG = 1.0
 """Standard deviation of correlated noise, degrees. Chosen by hand: below it, noise costs
-little, and what the mixture does not know of clean movement may look like it.
-"""
+little, and clean movement that the mixture does not know may look like it."""
 MAX_JOINTS = 12
 """Joints that are compared. It bounds the run time."""
 
 
 def noise_correlation(
-    samples: Array, noise: JointNoise, observed: Flags, frame_rate: float, mixture: MotionMixture
+    samples: Array,
+    noise: JointNoise,
+    observed: Flags,
+    frame_rate: float,
+    mixture: MotionMixture,
 ) -> float:
     """Return the likeliest correlation time of a take's noise, seconds; 0 for white noise.
 
     All joints have the same: it depends on how they were tracked. It is judged by joints that
-    turn about all of their axes.
+    turn about all of their axes. Below the frame rate of the mixture, fast movement and noise
+    look alike, so noise is white.
 
     Parameters
     ----------
@@ -49,7 +53,7 @@ def noise_correlation(
     joints = free[np.linspace(0, len(free) - 1, n_chosen).round().astype(int)]
     covariances = noise.covariances[joints]
     white = GroupSmoother(covariances, frame_rate, mixture)
-    if not len(joints) or white.length > len(samples):
+    if not len(joints) or not mixture.window <= white.length <= len(samples):
         return 0.0
     windows = white.windows(len(samples), N_OVERLAPS)
     known = windows.extract(observed[:, joints].astype(float), windows.starts)

@@ -124,9 +124,9 @@ class GroupSmoother:
         """
         axes, basis = principal_axes(samples, self.noise), self._basis
         spectrum = self._transform.spectrum
-        constant = np.log(self.mixture.weights) - 0.5 * axes.variance.shape[1] * np.log(
-            spectrum
-        ).sum()
+        constant = (
+            np.log(self.mixture.weights) - 0.5 * axes.variance.shape[1] * np.log(spectrum).sum()
+        )
         along_axes = np.einsum("tjc,jac->tja", samples, axes.from_channels)
         along_axes = along_axes.reshape(len(samples), -1)
         found = np.empty((len(windows.starts), len(self.noise), len(factors)))
