@@ -4,20 +4,25 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..arrays import Array, Flags
 from ..progress import Progress, within
 from .averaging import (
     MIN_NOISE,
     average_estimates,
+    blend,
     noise_factors,
     smooth_by_spline,
 )
-from .channels import Channels, Estimate
+from .channels import Channels, Estimate, Smoothed
 from .limb_gaps import load_body_relation, predict_limbs
 from .motion_model import (
+    N_CHANNELS,
     SHIPPED_PAIRS,
+    JointNoise,
     MixtureSmoother,
     estimate_joint_noise,
     load_motion_mixture,
+    noise_correlation,
 )
 from .outliers import confirm_outliers, find_bursts
 from .window_estimates import estimate_in_groups
@@ -62,42 +67,64 @@ def apply_default_method(
     is_good = known & ~outliers
     estimate = replace(estimate, inliers=np.where(known, ~outliers, estimate.inliers))
     complete = np.where(is_good, noisy, estimate.values)
-    covariances, noise = estimate_joint_noise(np.where(outliers, np.nan, noisy), MIN_NOISE)
-    spline = smooth_by_spline(complete)
-    factors = noise_factors(noise, complete, [estimate, spline], is_good)
-    noise = np.maximum(noise * factors, MIN_NOISE)
-    smooth_by_mixtures = MixtureSmoother(
-        covariances * np.square(factors[::3])[:, None, None],
-        frame_rate,
-        (mixture, load_motion_mixture(SHIPPED_PAIRS, 2)),
-        channels.parents,
-    )
-    smoothed = [spline, smooth_by_mixtures(complete)]
-    averaged, weights = average_estimates(
-        noisy, estimate, [each for each in smoothed if each is not None], is_good, noise
-    )
-    n_predicted = 0
+    noise = estimate_joint_noise(np.where(outliers, np.nan, noisy), MIN_NOISE)
+    averaged, smoothing = _smooth(channels, complete, estimate, noise, is_good, frame_rate)
+    filling = ""
     if bases is None:
         averaged, n_predicted = predict_limbs(
             channels, averaged, frame_rate, load_body_relation(), within(progress, 0.95, 1.0)
         )
-    sentence = _describe(int(np.count_nonzero(weights[:, 0] < 0.5)), n_predicted)
-    return averaged, f"{prior_used} {sentence}".strip()
+        if n_predicted:
+            filling = f"Filled long gaps of {_joints(n_predicted)} from the rest of the body."
+    return averaged, " ".join(filter(None, (prior_used, smoothing, filling)))
 
 
-def _describe(n_smoothed: int, n_predicted: int) -> str:
-    sentences = []
-    if n_smoothed:
-        joints = _joints(n_smoothed)
-        sentences.append(
-            f"For {joints}, general smoothing fits better than learned patterns, so it counts"
-            " more there."
+def _smooth(
+    channels: Channels,
+    complete: Array,
+    estimate: Estimate,
+    noise: JointNoise,
+    is_good: Flags,
+    frame_rate: float,
+) -> tuple[Estimate, str]:
+    """Return the mean of the estimate and of two smoothers, and a sentence on the smoothing.
+
+    Where the noise is correlated over time, only the mixtures count: to the others it is
+    movement.
+    """
+    mixtures = load_motion_mixture(), load_motion_mixture(SHIPPED_PAIRS, 2)
+    correlation_s = 0.0
+    if channels.n_rotations:
+        joints = complete.reshape(len(complete), -1, N_CHANNELS)[:, :-1]
+        observed = is_good.reshape(len(complete), -1, N_CHANNELS)[:, :-1].all(axis=2)
+        correlation_s = noise_correlation(joints, noise, observed, frame_rate, mixtures[0])
+    smoothed: list[Smoothed] = []
+    covariances, deviations = noise.covariances, noise.deviation
+    if not correlation_s:
+        smoothed = [smooth_by_spline(complete)]
+        factors = noise_factors(deviations, complete, [estimate, *smoothed], is_good)
+        deviations = np.maximum(deviations * factors, MIN_NOISE)
+        covariances = covariances * np.square(factors[::3])[:, None, None]
+    smooth_by_mixtures = MixtureSmoother(
+        covariances, frame_rate, mixtures, channels.parents, correlation_s
+    )
+    if (by_mixtures := smooth_by_mixtures(complete)) is not None:
+        smoothed.append(by_mixtures)
+    if correlation_s and by_mixtures is not None:
+        weights = np.tile([0.0, 1.0], (len(covariances), 1))
+        sentence = (
+            f"The noise is correlated over {correlation_s:.2f} s, so slower changes are"
+            " smoothed, too."
         )
-    if n_predicted:
-        sentences.append(
-            f"Filled long gaps of {_joints(n_predicted)} from the rest of the body."
-        )
-    return " ".join(sentences)
+        return blend(estimate, smoothed, weights, is_good), sentence
+    averaged, weights = average_estimates(complete, estimate, smoothed, is_good, deviations)
+    n_smoothed = int(np.count_nonzero(weights[:, 0] < 0.5))
+    if not n_smoothed:
+        return averaged, ""
+    return averaged, (
+        f"For {_joints(n_smoothed)}, general smoothing fits better than learned patterns, so"
+        " it counts more there."
+    )
 
 
 def _joints(n_joints: int) -> str:

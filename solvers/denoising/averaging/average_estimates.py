@@ -86,7 +86,7 @@ def average_estimates(
         products = products + POOLED_JOINTS * products.mean(axis=0)
         freedom = freedom + POOLED_JOINTS * freedom.mean(axis=0)
         weights[compared] = _least_error_weights(products, freedom)
-    return _blend(estimate, smoothers, np.repeat(weights, 3, axis=0).T, is_good), weights
+    return blend(estimate, smoothers, weights, is_good), weights
 
 
 def _least_error_weights(products: Array, freedom: Array) -> Array:
@@ -119,14 +119,15 @@ def _least_error_weights(products: Array, freedom: Array) -> Array:
     return best
 
 
-def _blend(
+def blend(
     estimate: Estimate,
     smoothers: Sequence[Smoothed],
     weights: Array,
     is_good: NDArray[np.bool_],
 ) -> Estimate:
-    """Return the weighted mean, with weights of shape (1 + n_smoothers, n_channels)."""
-    own, others = weights[0], list(zip(weights[1:], smoothers, strict=True))
+    """Return the weighted mean, with weights of shape (n_joints, 1 + n_smoothers)."""
+    of_channels = np.repeat(weights, 3, axis=0).T
+    own, others = of_channels[0], list(zip(of_channels[1:], smoothers, strict=True))
     variance = own * estimate.deviation**2 + sum(w * each.variance for w, each in others)
     return replace(
         estimate,

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...signals import DIFFERENCE_EFFICIENCY, DIFFERENCE_ORDER, estimate_noise, shrink_noise
 
 MAX_CONSTANT_RANGE = 1e-7
@@ -27,6 +27,8 @@ class JointNoise(NamedTuple):
     deviation: Array
     """Standard deviation of each channel, shape (3 n_joints,): that of fixed axes is their
     own."""
+    is_free: Flags
+    """Whether a joint can turn about all of its axes, shape (n_joints,)."""
 
 
 def estimate_joint_noise(samples: Array, minimum: float) -> JointNoise:
@@ -63,7 +65,7 @@ def estimate_joint_noise(samples: Array, minimum: float) -> JointNoise:
     is_fixed = ~is_free & (n_free > 0)[:, None]
     own = _covariances(axes, np.where(is_fixed, noise, equal))
     deviation = np.sqrt(np.einsum("jcc->jc", own)).ravel()
-    return JointNoise(_covariances(axes, equal), deviation)
+    return JointNoise(_covariances(axes, equal), deviation, is_free.all(axis=1))
 
 
 def _covariances(axes: Array, deviations: Array) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from ...arrays import Array
 from ..window_priors import Windows
 from .motion_mixture import MotionMixture
+from .noise_spectrum import noise_spectrum
 from .principal_axes import principal_axes
 
 N_OVERLAPS = 4
@@ -30,6 +31,17 @@ class _Basis(NamedTuple):
     """Of their frames, shape (n_axes, n_components, n_coefficients, length)."""
 
 
+class _Transform(NamedTuple):
+    """From the frames of a window to coefficients whose noise is white, and back."""
+
+    to_coefficients: Array
+    """Shape (length, n_coefficients)."""
+    to_frames: Array
+    """Shape (n_coefficients, length)."""
+    spectrum: Array
+    """Variance of the noise of each coefficient, relative to white noise."""
+
+
 class _GroupFilters(NamedTuple):
     """The filters of one group, one for each component."""
 
@@ -41,7 +53,8 @@ class _GroupFilters(NamedTuple):
     log_density: Array
     """At zero, without constants, with the component's weight, shape (n_components,)."""
     leverage: Array
-    """Weight of each sample in its own estimate, shape (n_components, n_axes, length)."""
+    """Variance of the error relative to the noise: with white noise the weight of each sample
+    in its own estimate. Shape (n_components, n_axes, length)."""
     noise: Array
     """Variance of the coefficients' noise, shape (n_axes,)."""
 
@@ -61,6 +74,8 @@ class GroupSmoother:
         Covariances, square degrees or centimeters.
     frame_rate : float, Hz
     mixture : MotionMixture
+    correlation_s : float, seconds
+        Of the noise; 0 for white noise.
 
     References
     ----------
@@ -71,6 +86,7 @@ class GroupSmoother:
     noise: Array
     frame_rate: float
     mixture: MotionMixture
+    correlation_s: float = 0.0
 
     def __call__(self, samples: Array) -> tuple[Array, Array]:
         """Return the smoothed samples, and the variance of their error.
@@ -108,13 +124,14 @@ class GroupSmoother:
             Logarithms, without constants.
         """
         axes, basis = principal_axes(samples, self.noise), self._basis
+        of_spectrum = 0.5 * axes.variance.shape[1] * np.log(self._transform.spectrum).sum()
         along_axes = np.einsum("tjc,jac->tja", samples, axes.from_channels)
         along_axes = along_axes.reshape(len(samples), -1)
         found = np.empty((len(windows.starts), len(self.noise), len(factors)))
         for first in range(0, len(found), MAX_BLOCK_WINDOWS):
             block = slice(first, first + MAX_BLOCK_WINDOWS)
             frames = windows.extract(along_axes, windows.starts[block]).transpose(0, 2, 1)
-            coefficients = frames @ self._cosines / self._density
+            coefficients = frames @ self._transform.to_coefficients
             coefficients = coefficients.reshape(len(frames), *axes.variance.shape, -1)
             for group, variance in enumerate(axes.variance / self._density):
                 projected = coefficients[:, group].transpose(1, 0, 2) @ basis.vectors
@@ -124,7 +141,7 @@ class GroupSmoother:
                     total = basis.variances + factor**2 * variance[:, None, None]
                     log_density = _log_density(squares, total, self._density_at_zero(total))
                     found[block, group, index] = np.logaddexp.reduce(log_density, axis=1)
-        return found
+        return found - of_spectrum
 
     def windows(self, n_frames: int, n_overlaps: int = N_OVERLAPS) -> Windows:
         """Return the windows of a take."""
@@ -148,7 +165,7 @@ class GroupSmoother:
         for first in range(0, len(windows.starts), MAX_BLOCK_WINDOWS):
             starts = windows.starts[first : first + MAX_BLOCK_WINDOWS]
             frames = windows.extract(samples, starts).transpose(0, 2, 1)
-            coefficients = frames @ self._cosines / self._density
+            coefficients = frames @ self._transform.to_coefficients
             leverages = np.empty_like(frames)
             for group, own in enumerate(filters):
                 channels = slice(n_axes * group, n_axes * (group + 1))
@@ -157,7 +174,7 @@ class GroupSmoother:
                 )
                 leverages[:, channels] = np.tensordot(responsibility, own.leverage, 1)
                 leverages[:, channels] += spread[..., None] / self.length
-            smoothed = coefficients @ self._cosines.T
+            smoothed = coefficients @ self._transform.to_frames
             windows.add(total, smoothed.transpose(0, 2, 1), starts)
             windows.add(leverage, leverages.transpose(0, 2, 1), starts)
         return total / weight, leverage / weight
@@ -173,15 +190,25 @@ class GroupSmoother:
         return round(self.mixture.window * self._density)
 
     @cached_property
-    def _cosines(self) -> Array:
+    def _transform(self) -> _Transform:
         windows = Windows(self.length, self.length, self._density)
-        return windows.dct_basis(self.mixture.truncated(self.length).window)
+        cosines = windows.dct_basis(self.mixture.truncated(self.length).window)
+        spectrum = noise_spectrum(
+            cosines.shape[1], self.length, self.frame_rate, self.correlation_s
+        )
+        deviations = np.sqrt(spectrum)
+        return _Transform(
+            cosines / deviations / self._density, (cosines * deviations).T, spectrum
+        )
 
     @cached_property
     def _basis(self) -> _Basis:
+        transform = self._transform
+        deviations = np.sqrt(transform.spectrum)
         covariances = self.mixture.truncated(self.length).covariances
+        covariances = covariances / np.outer(deviations, deviations)
         variances, vectors = np.linalg.eigh(covariances.transpose(1, 0, 2, 3))
-        frames = self._cosines / np.sqrt(self._density) @ vectors
+        frames = transform.to_frames.T / np.sqrt(self._density) @ vectors
         by_coefficient = vectors.transpose(0, 2, 1, 3)
         by_coefficient = by_coefficient.reshape(*by_coefficient.shape[:2], -1)
         return _Basis(by_coefficient, variances, np.square(frames).transpose(0, 1, 3, 2))
@@ -240,6 +267,7 @@ class GroupSmoother:
         means = (projected @ filtered.transpose(0, 2, 1)).transpose(1, 0, 2)
         power = np.einsum("akw,wk->wa", squares[..., 1], responsibility)
         spread = (power - np.square(means).sum(axis=-1)) / filters.noise
+        spread *= self._transform.spectrum.mean()
         return means, responsibility, spread
 
 

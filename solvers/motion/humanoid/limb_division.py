@@ -1,5 +1,6 @@
 """Divide limbs at the joints that make them most like human limbs."""
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -39,6 +40,12 @@ by hand on the rigs of `tests/solvers/motion`."""
 ALONG_ONE_AXIS = -np.cos(np.radians(20.0))
 """Cosine between trunk and legs, of 160 degrees, below which both point one way from
 the hips: a rest pose of bones along one axis. Chosen by hand on the rigs of
+`tests/solvers/motion`."""
+
+TWIST_WORD = re.compile("twist|roll|bend|stretch|helper|correct|half|sub|捩", re.IGNORECASE)
+NO_LETTERS = re.compile(r"[\W\d_]+")
+MIN_BONE_FRACTION = 0.05
+"""Of a limb, below which a joint between two others is a helper. Chosen by hand on the rigs of
 `tests/solvers/motion`."""
 
 
@@ -127,7 +134,7 @@ def divide_arm(
     """Return shoulder, elbow and wrist of an arm, and the misfit of `_divide`.
 
     Of several upper joints, the one nearest to the human distance from the midline is
-    preferred.
+    preferred; of several joints at the wrist, the last one, since the hand turns with it.
     """
     arm = _without_fingers(skeleton, arms.limbs[side], height)
     joints = without_end_sites(skeleton, arm)
@@ -140,7 +147,16 @@ def divide_arm(
     else:
         preferences = np.abs(np.log(np.maximum(across, 1e-9) / SHOULDER_FRACTION))
     excess = _log_excess(skeleton, arms.limbs[side], len(joints), MAX_HAND_FRACTION * height)
-    return _divide(skeleton, joints, ARM_FRACTIONS, height, preferences, excess)
+    division, misfit = _divide(skeleton, joints, ARM_FRACTIONS, height, preferences, excess)
+    for joint in without_end_sites(skeleton, arms.limbs[side]):
+        if division and _is_at(skeleton, division[-1], joint):
+            division[-1] = joint
+    return division, misfit
+
+
+def _is_at(skeleton: Skeleton, upper: int, lower: int) -> bool:
+    """Whether a joint is the child of another and lies at the same place."""
+    return skeleton.parents[lower] == upper and not skeleton.offsets[lower].any()
 
 
 def _log_excess(skeleton: Skeleton, limb: Sequence[int], n_joints: int, length: float) -> Array:
@@ -190,3 +206,38 @@ def _without_fingers(skeleton: Skeleton, arm: list[int], height: float) -> list[
         return arm
     is_hand = path_length(skeleton, arm[branches[-1] :]) <= MAX_HAND_FRACTION * height
     return arm[: branches[-1] + 1] if is_hand else arm
+
+
+def joint_between(skeleton: Skeleton, taken: set[int], upper: int, lower: int) -> int | None:
+    """Return a joint without a role between two of a limb, no helper and no twist bone."""
+    above = skeleton.ancestors(lower)
+    if upper not in above:
+        return None
+    ends = skeleton.rest_positions[[upper, lower]]
+    length = np.linalg.norm(ends[1] - ends[0])
+    for joint in above[: above.index(upper)]:
+        between = np.linalg.norm(ends - skeleton.rest_positions[joint], axis=1).min()
+        if (
+            joint not in taken
+            and between > MIN_BONE_FRACTION * length
+            and not _is_twist(skeleton.names[joint], skeleton.names[upper])
+        ):
+            return joint
+    return None
+
+
+def _is_twist(name: str, upper: str) -> bool:
+    """Whether a joint is called a twist bone, or like the joint above it."""
+    return bool(TWIST_WORD.search(name)) or (
+        NO_LETTERS.sub("", name).lower() == NO_LETTERS.sub("", upper).lower()
+    )
+
+
+def is_forearm(skeleton: Skeleton, shoulder: int, elbow: int, wrist: int, between: int) -> bool:
+    """Whether the forearm up to `wrist` is more human than up to a joint between both."""
+    positions = skeleton.rest_positions
+    upper = float(np.linalg.norm(positions[elbow] - positions[shoulder]))
+    forearms = np.linalg.norm(positions[[wrist, between]] - positions[elbow], axis=1)
+    human = ARM_FRACTIONS[1] / ARM_FRACTIONS[0]
+    misfits = np.abs(np.log(np.maximum(forearms, 1e-9) / max(upper * human, 1e-9)))
+    return bool(misfits[0] < misfits[1])

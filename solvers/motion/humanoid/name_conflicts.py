@@ -7,11 +7,10 @@ import numpy as np
 
 from ...arrays import Array
 from ..skeletons import Skeleton
-from .limb_division import ARM_FRACTIONS, LEG_FRACTIONS
+from .limb_division import ARM_FRACTIONS, LEG_FRACTIONS, is_forearm, joint_between
 from .names import name_matches, split_names
 from .structure import HEIGHT_FACTORS, Structure
 from .tables import ARM_ROLES, CENTRAL_ROLES, COLUMNS, LEG_ROLES, SIDES, TABLES
-from .tree_agreement import joint_between
 
 MIN_HUMANNESS = 0.6
 """Humanness of the proportions, as a fraction, from which the structure may contradict names.
@@ -85,14 +84,16 @@ def _beginning_at_wrists(
     skeleton: Skeleton, names: Sequence[str], row: Sequence[str], match: dict[str, str]
 ) -> dict[str, str]:
     taken = {skeleton.index(name) for name in match.values()}
-    for side, (_, middle, end) in product(SIDES, HINGES.values()):
-        ends = [match.get(side + part) for part in (middle, end)]
-        if None in ends:
+    for side, parts in product(SIDES, HINGES.values()):
+        limb = [match.get(side + part) for part in parts]
+        if None in limb:
             continue
-        upper, lower = (skeleton.index(str(name)) for name in ends)
+        top, upper, lower = (skeleton.index(str(name)) for name in limb)
         above = joint_between(skeleton, taken, upper, lower)
-        spellings = row[COLUMNS.index(end)].lower().split()
-        if above is not None and names[above].endswith(tuple(spellings)):
+        end = parts[-1]
+        if above is None or (end == "Hand" and is_forearm(skeleton, top, upper, lower, above)):
+            continue
+        if names[above].endswith(tuple(row[COLUMNS.index(end)].lower().split())):
             match = {**match, side + end: skeleton.names[above]}
     return match
 

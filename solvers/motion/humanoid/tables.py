@@ -38,14 +38,14 @@ TABLES: dict[str, tuple[str, ...]] = {
         "Shoulder", "Arm", "ForeArm", "Hand",
         "UpLeg", "Leg", "Foot", "ToeBase",
     ),
-    "CMU": (
+    "CMU": (  # "Hand" turns about the forearm only, as the wrist of Acclaim, whence it comes
         "Hips", "LowerBack", "Spine", "Spine1", "Neck", "Head",
-        "Shoulder", "Arm", "ForeArm", "Hand",
+        "Shoulder", "Arm", "ForeArm", "FingerBase Hand",
         "UpLeg", "Leg", "Foot", "ToeBase",
     ),
-    "Acclaim": (
+    "Acclaim": (  # its wrist is a twist joint within the forearm
         "root", "lowerback", "upperback", "thorax", "lowerneck", "head",
-        "clavicle", "humerus", "radius", "wrist",
+        "clavicle", "humerus", "radius", "hand wrist",
         "femur", "tibia", "foot", "toes",
     ),
     "Rokoko": (

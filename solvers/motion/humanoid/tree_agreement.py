@@ -1,19 +1,16 @@
 """Whether the tree of a skeleton agrees with the roles that names suggest."""
 
-import re
 from collections.abc import Mapping, Sequence
 from itertools import pairwise, product
 
 import numpy as np
 
 from ..skeletons import Skeleton
-from .limb_division import MIN_SPREAD_FRACTION, is_human_angle
+from .limb_division import MIN_SPREAD_FRACTION, is_forearm, is_human_angle, joint_between
 from .tables import SIDES
 
 LIMBS = (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand"))
 ALL_PARTS = (("Toes", *LIMBS[0]), ("Shoulder", *LIMBS[1]))
-TWIST_WORD = re.compile("twist|roll|bend|stretch|helper|correct|half|sub|捩", re.IGNORECASE)
-NO_LETTERS = re.compile(r"[\W\d_]+")
 
 MAX_BONE_RATIO = 3.0
 """Between upper and lower limb; people have 1.0 (legs) and 1.3 (arms), and 2.2 was seen in a
@@ -21,9 +18,6 @@ captured skeleton whose wrists were set too high. Chosen by hand on the rigs of
 `tests/solvers/motion`."""
 MAX_SIDE_RATIO = 1.6
 """Between both sides' bones. Chosen by hand on the rigs of `tests/solvers/motion`."""
-MIN_BONE_FRACTION = 0.05
-"""Of a limb, below which a joint between two others is a helper. Chosen by hand on the rigs of
-`tests/solvers/motion`."""
 MIN_TRUNK_FRACTION = 0.1
 """Of legs and trunk, below which it is folded. By hand on rigs of `tests/solvers/motion`."""
 
@@ -63,7 +57,7 @@ def tree_agreement(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
     indices = {name: index for index, name in enumerate(skeleton.names)}
     roles = {role: indices[name] for role, name in joints.items()}
     agreement = _descent(skeleton, roles)
-    if _skips_joint(skeleton, roles):
+    if _left_out(skeleton, roles):
         agreement *= SKIPPED_JOINT
     if _skips_spine(skeleton, roles):
         agreement *= NO_SPINE
@@ -144,6 +138,27 @@ def _links(roles: Mapping[str, int]) -> list[tuple[int, int]]:
     return [link for limb in limbs for link in pairwise(limb)]
 
 
+def _left_out(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[tuple[int, int], int]:
+    """Return by link the joint that lies between its ends and should have one of their roles.
+
+    One within a forearm is none if the arm is more human without it, as Acclaim's wrist.
+    """
+    arms = {
+        (roles[side + "LowerArm"], roles[side + "Hand"]): roles[side + "UpperArm"]
+        for side in SIDES
+        if {side + part for part in LIMBS[1]} <= roles.keys()
+    }
+    found = {
+        link: joint_between(skeleton, set(roles.values()), *link) for link in _links(roles)
+    }
+    return {
+        link: joint
+        for link, joint in found.items()
+        if joint is not None
+        and not (link in arms and is_forearm(skeleton, arms[link], *link, joint))
+    }
+
+
 def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]:
     """Return the evidence of tree and lengths against the role of a limb's joint.
 
@@ -160,13 +175,15 @@ def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]
     roles = {role: indices[name] for role, name in joints.items()}
     role_of = {joint: role for role, joint in roles.items()}
     faults: dict[str, str] = {}
+    left_out = _left_out(skeleton, roles)
     for upper, lower in _links(roles):
         name = skeleton.names[upper]
         if upper not in skeleton.ancestors(lower):
             faults[role_of[lower]] = f"it is not a descendant of {name}"
-        elif (left := joint_between(skeleton, set(role_of), upper, lower)) is not None:
+        elif (upper, lower) in left_out:
+            between = skeleton.names[left_out[upper, lower]]
             for joint in (upper, lower):
-                faults[role_of[joint]] = f"{skeleton.names[left]} lies between two parts"
+                faults[role_of[joint]] = f"{between} lies between two parts"
     faults |= _missing_middles(roles) | _trunk_faults(skeleton, roles)
     for limb in LIMBS:
         if _has_odd_lengths(skeleton, roles, (limb,)):
@@ -229,40 +246,6 @@ def _trunk_faults(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, str
 def _goes_on(skeleton: Skeleton, joint: int | None) -> bool:
     return joint is not None and any(
         not skeleton.is_end_site(child) for child in skeleton.children[joint]
-    )
-
-
-def _skips_joint(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
-    """Whether a joint lies between two of a limb that is neither a helper nor a twist bone."""
-    taken = set(roles.values())
-    return any(
-        joint_between(skeleton, taken, upper, lower) is not None
-        for upper, lower in _links(roles)
-    )
-
-
-def joint_between(skeleton: Skeleton, taken: set[int], upper: int, lower: int) -> int | None:
-    """Return a joint without a role between two of a limb, no helper and no twist bone."""
-    above = skeleton.ancestors(lower)
-    if upper not in above:
-        return None
-    ends = skeleton.rest_positions[[upper, lower]]
-    length = np.linalg.norm(ends[1] - ends[0])
-    for joint in above[: above.index(upper)]:
-        between = np.linalg.norm(ends - skeleton.rest_positions[joint], axis=1).min()
-        if (
-            joint not in taken
-            and between > MIN_BONE_FRACTION * length
-            and not _is_twist(skeleton.names[joint], skeleton.names[upper])
-        ):
-            return joint
-    return None
-
-
-def _is_twist(name: str, upper: str) -> bool:
-    """Whether a joint is called a twist bone, or like the joint above it."""
-    return bool(TWIST_WORD.search(name)) or (
-        NO_LETTERS.sub("", name).lower() == NO_LETTERS.sub("", upper).lower()
     )
 
 

@@ -49,7 +49,10 @@ def test_wrists_and_elbows_do_not_penetrate_the_floor(recordings, clip, body):
 
 @pytest.mark.parametrize("body", BODIES)
 def test_hand_height_scales_with_the_legs(recordings, body):
-    """Without correction, the wrist's height above the ground was off by up to 27 cm."""
+    """Without correction, the wrist's height above the ground was off by up to 27 cm.
+
+    Arms that are too short for it reach down as far as they can.
+    """
     motion = read_recording(recordings / "mocap/hdm05/HDM_bd_depositFloorR_001_120.amc")
     motion = every_fourth(motion)
     rig = BODIES[body]
@@ -59,7 +62,19 @@ def test_hand_height_scales_with_the_legs(recordings, body):
     reference = role_position(motion, "rightHand")[:, 2]
     frame = int(reference.argmin())
     expected = growth(motion, rig) * reference[frame]
-    assert role_position(result, "rightHand")[frame, 2] == pytest.approx(expected, abs=0.04)
+    height = role_position(result, "rightHand")[frame, 2]
+    assert height > expected - 0.04
+    assert height < expected + 0.04 or arm_extension(result, frame) > 0.99
+
+
+def arm_extension(motion: Motion, frame: int) -> float:
+    """Distance from shoulder to wrist, relative to the length of the arm: 1 is straight."""
+    shoulder, elbow, wrist = (
+        role_position(motion, f"right{role}")[frame]
+        for role in ("UpperArm", "LowerArm", "Hand")
+    )
+    length = np.linalg.norm(elbow - shoulder) + np.linalg.norm(wrist - elbow)
+    return float(np.linalg.norm(wrist - shoulder) / length)
 
 
 def test_elbows_stay_slow_when_a_straight_arm_reaches_the_ground(recordings):

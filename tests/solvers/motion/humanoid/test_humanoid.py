@@ -18,7 +18,8 @@ from solvers.motion import (
 )
 from solvers.motion.humanoid.roles import ESSENTIAL_ROLES
 from solvers.motion.humanoid.structure import roles_by_structure
-from solvers.recordings import read_bvh
+from solvers.motion.humanoid.tree_agreement import role_faults
+from solvers.recordings import read_acclaim, read_bvh
 
 
 def test_helper_joints_of_a_cmu_skeleton_have_no_role(recordings):
@@ -31,8 +32,21 @@ def test_helper_joints_of_a_cmu_skeleton_have_no_role(recordings):
     assert [found.joint(role) for role in ("spine", "chest", "upperChest", "neck")] == [
         "LowerBack", "Spine", "Spine1", "Neck",
     ]  # fmt: skip
-    for helper in ("LHipJoint", "Neck1", "LThumb", "LeftFingerBase", "LeftHandIndex1"):
+    for helper in ("LHipJoint", "Neck1", "LThumb", "LeftHand", "LeftHandIndex1"):
         assert found.role(helper) is None
+
+
+def test_hand_of_acclaim_is_the_joint_that_bends_not_the_twist_joint_above_it(recordings):
+    """Acclaim's wrist only turns, a third of the forearm above the hand."""
+    skeleton = read_acclaim(recordings / "mocap/05_13.amc").skeleton
+
+    found = find_humanoid_map(skeleton)
+
+    assert found.score == 1.0
+    assert [found.joint(role) for role in ("leftLowerArm", "leftHand", "rightHand")] == [
+        "lradius", "lhand", "rhand",
+    ]  # fmt: skip
+    assert not role_faults(skeleton, found.joints)
 
 
 def test_heel_is_not_classified_as_toe(body):

@@ -277,8 +277,8 @@ def test_hips_are_below_a_wrapper_of_the_same_name(wrapper):
             (f"{side}clavicle", (0, 0, 0.05)),
             (f"{side}humerus", (0.18 * sign, 0, 0.05)),
             (f"{side}radius", (0.28 * sign, 0, 0)),
-            (f"{side}wrist", (0.25 * sign, 0, 0)),
-            (f"{side}hand", (0.05 * sign, 0, 0)),
+            (f"{side}wrist", (0.14 * sign, 0, 0)),
+            (f"{side}hand", (0.07 * sign, 0, 0)),
         )
 
     found = find_humanoid_map(tree.skeleton)

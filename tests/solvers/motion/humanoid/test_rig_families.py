@@ -15,16 +15,16 @@ FAMILIES: dict[str, tuple[str, str, str]] = {
     "CMU": (
         "Left Right",
         "hips=Hips spine=LowerBack chest=Spine upperChest=Spine1 neck=Neck head=Head"
-        " Shoulder={}Shoulder UpperArm={}Arm LowerArm={}ForeArm Hand={}Hand UpperLeg={}UpLeg"
-        " LowerLeg={}Leg Foot={}Foot Toes={}ToeBase",
-        "LHipJoint RHipJoint Neck1 {}FingerBase {}HandIndex1",
+        " Shoulder={}Shoulder UpperArm={}Arm LowerArm={}ForeArm Hand={}FingerBase"
+        " UpperLeg={}UpLeg LowerLeg={}Leg Foot={}Foot Toes={}ToeBase",
+        "LHipJoint RHipJoint Neck1 {}Hand {}HandIndex1",
     ),
     "HDM05": (
         "l r",
         "hips=root spine=lowerback chest=upperback upperChest=thorax neck=lowerneck head=head"
-        " Shoulder={}clavicle UpperArm={}humerus LowerArm={}radius Hand={}wrist"
+        " Shoulder={}clavicle UpperArm={}humerus LowerArm={}radius Hand={}hand"
         " UpperLeg={}femur LowerLeg={}tibia Foot={}foot Toes={}toes",
-        "{}hipjoint upperneck {}hand {}fingers {}thumb",
+        "{}hipjoint upperneck {}wrist {}fingers {}thumb",
     ),
     "Mixamo": (
         "Left Right",

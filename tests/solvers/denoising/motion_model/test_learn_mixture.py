@@ -70,9 +70,9 @@ def test_shipped_mixtures_name_their_training_data():
 def test_clean_smooths_joints_alone_and_with_their_parents(swinging_leg, monkeypatch):
     used = {}
 
-    def smoother(noise, frame_rate, mixtures, parents):
+    def smoother(noise, frame_rate, mixtures, parents, *others):
         used.update(mixtures=mixtures, parents=parents)
-        return MixtureSmoother(noise, frame_rate, mixtures, parents)
+        return MixtureSmoother(noise, frame_rate, mixtures, parents, *others)
 
     monkeypatch.setattr(default_method, "MixtureSmoother", smoother)
     denoise(swinging_leg)
