@@ -273,7 +273,6 @@ def refuse_pictures(path: Path | str, points: Array) -> None:
 
     Parameters
     ----------
-    path : Path or str
     points : shape (n_frames, n_points, 3), NaN where not observed
 
     Raises
