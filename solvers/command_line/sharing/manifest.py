@@ -1,5 +1,6 @@
 """Manifests: lists of the inputs of a batch, and of their outputs."""
 
+import errno
 import json
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
@@ -10,6 +11,9 @@ from ...files import is_missing, reason_of
 from ...json_text import parse_json
 
 KEYS = {"input", "output"}
+MAX_BYTES = 1 << 24
+"""Bytes of a manifest. It bounds memory and time for other files and for devices that never
+end; 16 MiB are the paths of 100,000 takes. Pipes are read, as of `<(find ...)`."""
 
 
 class Listed(NamedTuple):
@@ -35,7 +39,7 @@ def read_manifest(path: Path) -> list[Listed]:
         missing.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = _content(path).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except OSError as error:
         raise InvalidFileError(
             f"The manifest {path} cannot be read: {reason_of(error)}."
@@ -54,6 +58,14 @@ def read_manifest(path: Path) -> list[Listed]:
     if not listed:
         raise InvalidFileError(f"The manifest {path} names no recording.")
     return listed
+
+
+def _content(path: Path) -> bytes:
+    with path.open("rb") as file:
+        content = file.read(MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:
+        raise OSError(errno.EFBIG, "it is too large", str(path))
+    return content
 
 
 def _entries(path: Path, text: str) -> Iterator[tuple[str, Any]]:

@@ -13,7 +13,7 @@ from ...arrays import Array
 HEAD_MARKERS = re.compile(r"(top\.?)?head|nose|[lr][fb]hd|[lr]\.?temple")
 SHOULDER_MARKERS = re.compile(r"c7|cv7|clav|[lr]?\.?acr(omi(on|um))?|[lr]\.?sho(uld(er)?)?")
 FOOT_MARKERS = re.compile(
-    r"[lr]\.?(ank(le)?|mall?|hee(l)?|toe(\.tip)?|bigtoe|cal|foot|met)|[lr]f[lt]1"
+    r"[lr]\.?(ank(le)?|mall?|hee(l)?|toe(\.tip)?|bigtoe|cal|foot?|met)|[lr]f[lt]1"
 )
 """Names of markers on head, upper trunk and feet, without blanks, in lower case."""
 KNEE_MARKERS = re.compile(r"[lr]\.?(m?kne(e)?(\.?(lat|med)(ial|eral)?)?|[lm]fc)")
@@ -74,6 +74,13 @@ def direction_of_named_markers(names: Sequence[str], points: Array) -> Array | N
         return None
     directions = trunk.vectors / np.linalg.norm(trunk.vectors, axis=1, keepdims=True)
     return np.asarray(np.median(directions, axis=0))
+
+
+def position_of_feet(names: Sequence[str], points: Array) -> Array:
+    """Return where the feet are in most frames, shape (3,); NaN if no name shows one."""
+    with catch_warnings():
+        simplefilter("ignore", RuntimeWarning)
+        return np.asarray(np.nanmedian(_mean_of_named(names, points, FOOT_MARKERS), axis=0))
 
 
 def stature_of_markers(names: Sequence[str], points: Array) -> float | None:

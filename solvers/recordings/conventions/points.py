@@ -14,7 +14,7 @@ from ..containers import UniqueNames, printable
 from .axes import MIN_BODY_JOINTS, z_up_from_y_up
 from .file_axes import FORWARD
 from .marker_axes import estimate_up_of_markers
-from .marker_bodies import axis_of_named_markers, stature_of_markers
+from .marker_bodies import axis_of_named_markers, position_of_feet, stature_of_markers
 from .unit_estimate import UNITS_OF_MARKERS, describe_guessed_unit, estimate_unit
 
 METERS = {
@@ -157,7 +157,8 @@ def other_standing_axis(
     So it is where they are half below the floor along the stated axis, and along another one
     are all above it and much farther apart. Labels may show that the actor stands along a
     negative axis, as of cameras with Y down, unless only along the stated one the points rest
-    on a floor at height 0. Empty if the stated axis may be right.
+    on a floor at height 0; or along another positive one, if only along that one the feet are
+    at height 0. Empty if the stated axis may be right.
     """
     if up[-1:] not in {"X", "Y", "Z"} or points.shape[1] < MIN_BODY_JOINTS:
         return ""
@@ -168,6 +169,10 @@ def other_standing_axis(
     if named[:1] == "-":
         highest = np.nanpercentile(points[..., "XYZ".index(named[-1])], 98)
         if min(abs(highest), FLOOR_TOLERANCE_M) < abs(lowest[stated]):
+            return named
+    elif named and named[-1] != up[-1]:
+        height = np.abs(position_of_feet(labels, points))
+        if height["XYZ".index(named[-1])] < FLOOR_TOLERANCE_M < height[stated]:
             return named
     best = int(np.argmax(np.where(lowest > -FLOOR_TOLERANCE_M, extents, 0.0)))
     is_sunk = lowest[stated] <= -FLOOR_TOLERANCE_M

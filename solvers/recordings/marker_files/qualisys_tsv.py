@@ -191,7 +191,7 @@ def _read_header(reader: LineReader, path: Path | str) -> _QualisysHeader:
     while (line := reader.peek()) and reader.n_taken < MAX_HEADER_LINES:
         cells = [decode_text(cell) for cell in split_cells(line[0], TAB)]
         if _is_line_of_titles(cells):
-            titles = cells
+            titles = cells[: 1 + max(at for at, cell in enumerate(cells) if cell)]
         elif KEY.fullmatch(cells[0]):
             fields.setdefault(cells[0], cells[1:] or [""])
         elif any(cells):

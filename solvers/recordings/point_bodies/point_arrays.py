@@ -28,8 +28,9 @@ from ..conventions import (
 )
 from .depth_of_points import has_depth
 from .mediapipe_landmarks import N_POINTS, is_inside_picture, is_normalized
+from .refuse_angles import refuse_angles
 from .relative_positions import refuse_parent_positions, report_still_hips
-from .unnamed_joints import NamedJoints, has_layout, name_joints, refuse_angles
+from .unnamed_joints import NamedJoints, has_layout, name_joints
 
 UP: dict[AxisName, float] = {"Y": 0.2, "Z": 0.2, "-Y": 0.2}
 """Weight, 0 to 1, of each possible axis. Chosen by hand below `FLOOR_WEIGHT`, 0.3."""
@@ -272,7 +273,6 @@ def refuse_pictures(path: Path | str, points: Array) -> None:
 
     Parameters
     ----------
-    path : Path or str
     points : shape (n_frames, n_points, 3), NaN where not observed
 
     Raises

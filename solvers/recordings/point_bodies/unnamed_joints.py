@@ -1,14 +1,12 @@
 """Name the joints of an array without names, by the body that they form."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...errors import InvalidFileError
 from ...motion import Tracks
 from ...motion.humanoid import (
     ADULT_BONE_LENGTHS_M,
@@ -34,16 +32,6 @@ CLEAR_LEAD = 1.5
 hand: it is 1.7 and more on those takes."""
 MAX_BONE_MISFIT = 1.0
 """Misfit of one bone, a ratio, that counts. It guards against single points that are wrong."""
-MAX_BODY_MISFIT = 1.15
-"""Misfit, a ratio, from which the numbers of named joints are no positions. Chosen by hand: of
-501 takes of six sensors the worst has 0.8, and 1.13 with noise of 0.12 m; three of four tables
-of angles, made from 42 BVH files, have more, up to 2.1."""
-WINDOW_FRAMES = 15
-"""Frames whose median is measured for that. Chosen by hand: with 1, a tenth of wrong points and
-noise of 0.08 m are as large as angles."""
-MIN_FRAMES, MIN_BONES = 25, 4
-"""Frames, and bones on both sides, from which that is decided. They guard single poses and
-files of a limb."""
 LIMB_BONES = [
     POSTURE_JOINTS.index(side + part)
     for side in SIDES
@@ -107,41 +95,11 @@ def bone_misfit(names: Sequence[str], positions: Array) -> float:
     that of the shoulders.
     """
     posture = posture_positions(Tracks(tuple(names), positions, 1.0))
-    lengths, is_known = _limb_lengths(posture)
-    return _length_misfit(lengths) if is_known.all() and not _is_crossed(posture) else np.inf
+    lengths, is_known = limb_lengths(posture)
+    return length_misfit(lengths) if is_known.all() and not _is_crossed(posture) else np.inf
 
 
-def refuse_angles(path: Path | str, names: Sequence[str], positions: Array) -> None:
-    """Raise InvalidFileError if the bones between named joints change as no body's do.
-
-    So they do where a table holds the angles of joints. Joints at zero are missing; single
-    frames that are wrong, and noise, do not count.
-    """
-    if len(positions) < MIN_FRAMES:
-        return
-    posture = posture_positions(Tracks(tuple(names), positions, 1.0))
-    lengths, is_known = _limb_lengths(_window_medians(posture))
-    if is_known.sum() < MIN_BONES:
-        return
-    if _length_misfit(lengths[:, np.tile(is_known, 2)], is_known) > MAX_BODY_MISFIT:
-        raise InvalidFileError(
-            f"{path} holds angles or other numbers instead of positions: bones change their"
-            " lengths from frame to frame. Export positions of joints, or BVH, FBX or GLB."
-        )
-
-
-def _window_medians(posture: Array) -> Array:
-    """Return the median positions in evenly spaced windows; NaN where joints stay at zero."""
-    observed = np.where((posture != 0.0).any(axis=2, keepdims=True), posture, np.nan)
-    windows = np.lib.stride_tricks.sliding_window_view(observed, WINDOW_FRAMES, axis=0)
-    chosen = windows[:: max(1, len(windows) // N_SAMPLED_FRAMES)]
-    is_seen = np.isfinite(chosen).any(axis=3)
-    medians = np.full(is_seen.shape, np.nan)
-    medians[is_seen] = np.nanmedian(chosen[is_seen], axis=1)
-    return medians
-
-
-def _limb_lengths(posture: Array) -> tuple[Array, NDArray[np.bool_]]:
+def limb_lengths(posture: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Return the lengths of the bones of one side, then of the other, and which are known.
 
     Shapes (n_frames, 2 n) and (n,). Lengths are NaN where both joints are at one point, as
@@ -153,7 +111,7 @@ def _limb_lengths(posture: Array) -> tuple[Array, NDArray[np.bool_]]:
     return lengths, np.asarray(is_known)
 
 
-def _length_misfit(lengths: Array, is_known: NDArray[np.bool_] | None = None) -> float:
+def length_misfit(lengths: Array, is_known: NDArray[np.bool_] | None = None) -> float:
     """Return how far the lengths of bones are from those of a body (`bone_misfit`).
 
     Parameters

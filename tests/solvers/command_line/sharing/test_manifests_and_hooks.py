@@ -97,6 +97,17 @@ def test_missing_manifest_and_no_input_are_one_sentence(call, folder, tmp_path):
     assert (missing[0], nothing[0], out.exists()) == (2, 2, False)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such device")
+def test_manifest_that_never_ends_is_refused(call, tmp_path):
+    """It filled the memory."""
+    status, _, err = call(
+        "convert", "--manifest", "/dev/zero", "--output-folder", tmp_path / "out"
+    )
+
+    assert status == 2
+    assert err == "The manifest /dev/zero cannot be read: it is too large.\n"
+
+
 def test_two_entries_with_one_output_are_refused(call, folder, tmp_path):
     (folder / "m.txt").write_text('{"input": "day 2/a.bvh", "output": "a.bvh"}\na.bvh\n')
 

@@ -111,6 +111,40 @@ def test_angles_without_a_word_about_them_are_refused(read_any, unit, order):
         read_any(content)
 
 
+def standing_almost_still(motion, rng):
+    """Return the angles of a pose, with little movement: all lengths between them persist."""
+    sides = {
+        name: name.replace("Left", "").replace("Right", "") for name in motion.skeleton.names
+    }
+    pose = {part: rng.normal(scale=30.0, size=3) for part in sorted({*sides.values()})}
+    angles = np.array([pose[sides[name]] for name in motion.skeleton.names])
+    return angles + rng.normal(scale=1.0, size=(motion.n_frames, *angles.shape))
+
+
+def test_angles_of_who_hardly_moves_are_refused(read_any, rng):
+    """One table of four came in as a body: their numbers change as little as bones."""
+    content = of_gait(lambda motion: standing_almost_still(motion, rng))
+
+    with pytest.raises(InvalidFileError, match="holds angles or other numbers instead of"):
+        read_any(content)
+
+
+def test_arms_in_front_of_a_face_are_positions(read_any, rng):
+    """Of the upper body alone the hands may be as near to the head as the shoulders."""
+    motion = walking_gait()
+    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    points = forward_kinematics(motion).positions + np.array([0.0, 3.0, 0.0])
+    for side in ("left", "right"):
+        points[:, roles[f"{side}Hand"]] = points[:, roles["head"]] + 0.1
+        points[:, roles[f"{side}LowerArm"]] = points[:, roles["chest"]] + (0.1, -0.2, 0.0)
+    upper = [role for role in roles if not role.endswith(("Leg", "Foot", "Toes"))]
+    lines = [",".join(f"{role}_{axis}" for role in upper for axis in "xyz")]
+    rows = points[:, [roles[role] for role in upper]].reshape(len(points), -1)
+    content = "\n".join([*lines, *(",".join(f"{x:.4f}" for x in row) for row in rows)])
+
+    assert read_any(content)
+
+
 def without_a_person(positions, rng):
     positions[: len(positions) // 5] = 0.0
 

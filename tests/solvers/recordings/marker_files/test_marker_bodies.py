@@ -76,6 +76,20 @@ def test_actor_who_lies_on_the_floor_is_not_stood_up():
     assert other_standing_axis(lying, "+Z", list(MARKERS)) == ""
 
 
+def test_actor_who_stands_along_another_axis_than_the_stated_one_stands():
+    """ART-Human states Y up of takes with Z up; spread arms are as wide as a body is tall."""
+    away = WALK * (1.0, 2.0, 1.0) + (0.0, 6.0, 0.0)
+
+    assert other_standing_axis(away, "+Y", list(MARKERS)) == "+Z"
+    assert other_standing_axis(away, "+Y", UNNAMED) == ""
+
+
+def test_actor_who_lies_on_a_bed_is_not_stood_up():
+    lying = WALK[:1][..., [0, 2, 1]] + (0.0, 1.0, 0.6)
+
+    assert other_standing_axis(lying, "+Z", list(MARKERS)) == ""
+
+
 @pytest.mark.parametrize(("scale", "size"), [(1000, "1,800"), (0.1, "0.18")])
 def test_size_of_markers_that_is_no_person_s_is_a_question(scale, size):
     tracks = Tracks(tuple(MARKERS), scale * WALK, 100.0)

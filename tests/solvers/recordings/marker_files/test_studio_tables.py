@@ -141,6 +141,16 @@ def test_qualisys_columns_are_found_without_stamps_or_titles(read_any, stamps, t
     assert_allclose(tracks.positions, points / 1000.0, atol=1e-6)
 
 
+def test_tabs_after_the_titles_of_qualisys_are_no_columns(read_any):
+    """QTM 2024 writes one after the last title, and none after the numbers."""
+    text = qualisys_markers(NAMES, POINTS)
+    titles = next(line for line in text.splitlines() if line.startswith("Frame"))
+
+    tracks = read_any(text.replace(titles, titles + "\t"))
+
+    assert tracks.names == ("LFHD", "RFHD", "C 7")
+
+
 def test_frames_without_any_marker_keep_their_index(read_any):
     points = POINTS.copy()
     points[2] = np.nan
