@@ -95,9 +95,9 @@ def _smooth(
     mixtures = load_motion_mixture(), load_motion_mixture(SHIPPED_PAIRS, 2)
     correlation_s = 0.0
     if channels.n_rotations:
-        joints = complete.reshape(len(complete), -1, N_CHANNELS)[:, :-1]
+        rotations = complete.reshape(len(complete), -1, N_CHANNELS)[:, :-1]
         observed = is_good.reshape(len(complete), -1, N_CHANNELS)[:, :-1].all(axis=2)
-        correlation_s = noise_correlation(joints, noise, observed, frame_rate, mixtures[0])
+        correlation_s = noise_correlation(rotations, noise, observed, frame_rate, mixtures[0])
     smoothed: list[Smoothed] = []
     covariances, deviations = noise.covariances, noise.deviation
     if not correlation_s:
@@ -121,8 +121,9 @@ def _smooth(
     n_smoothed = int(np.count_nonzero(weights[:, 0] < 0.5))
     if not n_smoothed:
         return averaged, ""
+    joints = _joints(n_smoothed)
     return averaged, (
-        f"For {_joints(n_smoothed)}, general smoothing fits better than learned patterns, so"
+        f"For {joints}, general smoothing fits better than learned patterns, so"
         " it counts more there."
     )
 

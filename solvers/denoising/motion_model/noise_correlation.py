@@ -34,7 +34,7 @@ def noise_correlation(
 
     All joints have the same: it depends on how they were tracked. It is judged by joints that
     turn about all of their axes. Below the frame rate of the mixture, fast movement and noise
-    look alike, so noise is white.
+    cannot be distinguished, so noise is white.
 
     Parameters
     ----------

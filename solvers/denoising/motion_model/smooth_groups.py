@@ -141,7 +141,7 @@ class GroupSmoother:
                     total = basis.variances + factor**2 * variance[:, None, None]
                     log_density = _log_density(squares, total, self._density_at_zero(total))
                     found[block, group, index] = np.logaddexp.reduce(log_density, axis=1)
-        return found - of_spectrum
+        return np.asarray(found - of_spectrum)
 
     def windows(self, n_frames: int, n_overlaps: int = N_OVERLAPS) -> Windows:
         """Return the windows of a take."""

@@ -38,7 +38,7 @@ TABLES: dict[str, tuple[str, ...]] = {
         "Shoulder", "Arm", "ForeArm", "Hand",
         "UpLeg", "Leg", "Foot", "ToeBase",
     ),
-    "CMU": (  # "Hand" turns about the forearm only, as the wrist of Acclaim, whence it comes
+    "CMU": (  # "Hand" turns about the forearm only, as the wrist of Acclaim
         "Hips", "LowerBack", "Spine", "Spine1", "Neck", "Head",
         "Shoulder", "Arm", "ForeArm", "FingerBase Hand",
         "UpLeg", "Leg", "Foot", "ToeBase",
