@@ -134,7 +134,7 @@ def divide_arm(
     """Return shoulder, elbow and wrist of an arm, and the misfit of `_divide`.
 
     Of several upper joints, the one nearest to the human distance from the midline is
-    preferred; of several joints at the wrist, the last one, since the hand turns with it.
+    preferred.
     """
     arm = _without_fingers(skeleton, arms.limbs[side], height)
     joints = without_end_sites(skeleton, arm)
@@ -147,16 +147,7 @@ def divide_arm(
     else:
         preferences = np.abs(np.log(np.maximum(across, 1e-9) / SHOULDER_FRACTION))
     excess = _log_excess(skeleton, arms.limbs[side], len(joints), MAX_HAND_FRACTION * height)
-    division, misfit = _divide(skeleton, joints, ARM_FRACTIONS, height, preferences, excess)
-    for joint in without_end_sites(skeleton, arms.limbs[side]):
-        if division and _is_at(skeleton, division[-1], joint):
-            division[-1] = joint
-    return division, misfit
-
-
-def _is_at(skeleton: Skeleton, upper: int, lower: int) -> bool:
-    """Whether a joint is the child of another and lies at the same place."""
-    return skeleton.parents[lower] == upper and not skeleton.offsets[lower].any()
+    return _divide(skeleton, joints, ARM_FRACTIONS, height, preferences, excess)
 
 
 def _log_excess(skeleton: Skeleton, limb: Sequence[int], n_joints: int, length: float) -> Array:

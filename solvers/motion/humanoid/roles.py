@@ -51,7 +51,7 @@ MIN_AGREEMENT = 0.9
 others. Chosen by hand on the rigs of `tests/solvers/motion`."""
 
 NO_HAND = re.compile(
-    r"prop|weapon|sword|gun|finger(?!base)|thumb|index|mid|ring|pinky|little", re.IGNORECASE
+    r"prop|weapon|sword|gun|finger|thumb|index|mid|ring|pinky|little", re.IGNORECASE
 )
 """Names of what lies beyond a hand."""
 REMEMBERED_MAPS = 8

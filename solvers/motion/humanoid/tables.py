@@ -38,9 +38,9 @@ TABLES: dict[str, tuple[str, ...]] = {
         "Shoulder", "Arm", "ForeArm", "Hand",
         "UpLeg", "Leg", "Foot", "ToeBase",
     ),
-    "CMU": (  # "Hand" turns about the forearm only, as the wrist of Acclaim
+    "CMU": (
         "Hips", "LowerBack", "Spine", "Spine1", "Neck", "Head",
-        "Shoulder", "Arm", "ForeArm", "FingerBase Hand",
+        "Shoulder", "Arm", "ForeArm", "Hand",
         "UpLeg", "Leg", "Foot", "ToeBase",
     ),
     "Acclaim": (  # its wrist is a twist joint within the forearm

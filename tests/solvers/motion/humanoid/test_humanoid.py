@@ -32,7 +32,7 @@ def test_helper_joints_of_a_cmu_skeleton_have_no_role(recordings):
     assert [found.joint(role) for role in ("spine", "chest", "upperChest", "neck")] == [
         "LowerBack", "Spine", "Spine1", "Neck",
     ]  # fmt: skip
-    for helper in ("LHipJoint", "Neck1", "LThumb", "LeftHand", "LeftHandIndex1"):
+    for helper in ("LHipJoint", "Neck1", "LThumb", "LeftFingerBase", "LeftHandIndex1"):
         assert found.role(helper) is None
 
 

@@ -15,9 +15,9 @@ FAMILIES: dict[str, tuple[str, str, str]] = {
     "CMU": (
         "Left Right",
         "hips=Hips spine=LowerBack chest=Spine upperChest=Spine1 neck=Neck head=Head"
-        " Shoulder={}Shoulder UpperArm={}Arm LowerArm={}ForeArm Hand={}FingerBase"
+        " Shoulder={}Shoulder UpperArm={}Arm LowerArm={}ForeArm Hand={}Hand"
         " UpperLeg={}UpLeg LowerLeg={}Leg Foot={}Foot Toes={}ToeBase",
-        "LHipJoint RHipJoint Neck1 {}Hand {}HandIndex1",
+        "LHipJoint RHipJoint Neck1 {}FingerBase {}HandIndex1",
     ),
     "HDM05": (
         "l r",
