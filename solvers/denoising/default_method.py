@@ -41,7 +41,8 @@ def apply_default_method(
     2. Patterns of the take, and of examples if given, fill gaps and find single outliers. The
        mixture rejects those that people's movement explains, such as a kick.
     3. A smoothing spline and the mixtures of joints and of pairs smooth what remains. Each
-       joint is the mean of the three, weighted to have the least expected error.
+       joint is the mean of the three, weighted to have the least expected error. If the noise
+       is correlated over time, only the mixtures smooth, with the spectrum of that noise.
     4. Without examples, joints that are missing for long are predicted from the others.
 
     Parameters
