@@ -11,7 +11,14 @@ from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched
 from ..containers import UniqueNames, array_from_json, json_members, printable
-from ..conventions import MILLIMETER, Bodies, check_scale, from_azure_space, joint_recording
+from ..conventions import (
+    MILLIMETER,
+    Bodies,
+    JointSamples,
+    check_scale,
+    from_azure_space,
+    joint_recording,
+)
 from .azure_csv import azure_joint
 from .json_bodies import (
     BodiesFrame,
@@ -94,10 +101,7 @@ def open_azure_json(
         positions, _ = stacked(body, frames)
         return joint_recording(
             path,
-            joints,
-            from_azure_space(positions),
-            Sensor.AZURE_KINECT,
-            times=times,
+            JointSamples(joints, from_azure_space(positions), Sensor.AZURE_KINECT, times=times),
             scale=scale,
             default_unit=MILLIMETER,
             progress=progress,

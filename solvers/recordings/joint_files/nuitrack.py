@@ -17,6 +17,7 @@ from ..conventions import (
     DEFAULT_FRAME_RATE,
     MILLIMETER,
     Bodies,
+    JointSamples,
     check_scale,
     joint_recording,
     observed_body,
@@ -225,11 +226,7 @@ def _recording(
         confidence = None if confidence is None else confidence[:, kept]
     return joint_recording(
         path,
-        names,
-        positions,
-        Sensor.NUITRACK,
-        confidence=confidence,
-        times=times,
+        JointSamples(names, positions, Sensor.NUITRACK, confidence=confidence, times=times),
         scale=scale,
         default_unit=unit,
         progress=progress,

@@ -14,6 +14,7 @@ from ...progress import Progress, Remark, unwatched
 from ..containers import array_from_json
 from ..conventions import (
     Bodies,
+    JointSamples,
     check_scale,
     is_mirrored,
     joint_recording,
@@ -114,11 +115,7 @@ def _recording(
         progress(0.0, Remark("The axes of the file are left-handed; the body is mirrored back"))
     return joint_recording(
         path,
-        names,
-        positions,
-        Sensor.ZED,
-        confidence=confidence,
-        times=times,
+        JointSamples(names, positions, Sensor.ZED, confidence=confidence, times=times),
         scale=scale,
         progress=progress,
     )
