@@ -115,6 +115,14 @@ def build_take_prior(
 
     Channels that were never observed may be off by as much as outliers. The covariance between
     channels is learned from the take during the solve, with more weight for longer takes.
+
+    Parameters
+    ----------
+    rough : shape (n_frames, n_channels), without NaN
+    noise, ever_observed : shape (n_channels,)
+    windows : Windows
+    bases_window : int
+        Frames of a window at `frame_rate`, hertz: that of the patterns.
     """
     kernels = build_smooth_kernels(bases_window, frame_rate)
     variance = np.maximum(rough.var(axis=0) - noise**2, 0.05 * noise**2 + 1e-6)
