@@ -26,13 +26,13 @@ from ..conventions import (
 from .json_bodies import (
     BodiesFrame,
     BodyJoints,
+    checked_objects,
     json_frames,
-    listed,
     name_of_body,
     number,
     open_frames,
     point,
-    stacked,
+    stack_body,
 )
 
 CSV_HEAD = re.compile(rb"(?i)[^\r\n]*\bJOINT_WAIST\.x\b")
@@ -154,7 +154,7 @@ def open_nuitrack_json(
         progress(done, "Reading")
 
     def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
-        positions, confidence = stacked(body, frames)
+        positions, confidence = stack_body(body, frames)
         names = list(NUITRACK.values())
         return _recording(
             path, names, positions, confidence, times, scale, MILLIMETER, progress
@@ -165,7 +165,7 @@ def open_nuitrack_json(
 
 def _read_frame(value: Mapping[str, Any], done: float, location: str) -> BodiesFrame:
     bodies: dict[str, BodyJoints] = {}
-    for count, body in enumerate(listed(_first(value, tuple(KEYS)), location)):
+    for count, body in enumerate(checked_objects(_first(value, tuple(KEYS)), location)):
         joints = _first(body, ("joints", "Joints"))
         found = _read_joints(body if joints is None else joints, location)
         bodies.setdefault(name_of_body(body, IDS, count), found)

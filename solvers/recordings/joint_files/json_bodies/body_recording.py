@@ -19,7 +19,7 @@ from ...point_bodies import (
     refuse_pictures,
     stand_body,
 )
-from .bodies import BodiesFrame, roots_of, stacked
+from .bodies import BodiesFrame, roots_of, stack_body
 
 MAX_SPREAD = 20
 """Columns of named joints in all frames for each point in them, a ratio. It bounds the memory
@@ -91,7 +91,7 @@ def recording_of_body(
         The number of points changes, or they form no known body.
     """
     try:
-        points, confidence = stacked(body, frames)
+        points, confidence = stack_body(body, frames)
     except ValueError:
         raise InvalidFileError(
             f"{path}: the number of joints of body {body} changes. Export it again."
