@@ -1,4 +1,4 @@
-"""Solve of the button Plant Feet."""
+"""Solve of the button Plant Feet: at contacts of the animator, or detected ones."""
 
 from dataclasses import dataclass
 

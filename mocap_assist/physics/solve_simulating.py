@@ -1,4 +1,4 @@
-"""Solve of the button Simulate."""
+"""Solve of the button Simulate: a body with mass that follows the motion."""
 
 from dataclasses import replace
 from typing import NamedTuple

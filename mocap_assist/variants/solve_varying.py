@@ -1,4 +1,4 @@
-"""Solve of the button Vary."""
+"""Solve of the button Vary: learn from examples, and draw new motions."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
