@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..mocap_assist.blender.act_operator import ActOperator
-from ..mocap_assist.variants.crowd import stack, why_not_stack
+from ..mocap_assist.variants.crowd import put_on_tracks, why_not_stack
 
 
 class MOCAP_OT_stack_variants(ActOperator, bpy.types.Operator):
@@ -16,4 +16,4 @@ class MOCAP_OT_stack_variants(ActOperator, bpy.types.Operator):
     why_not = why_not_stack
 
     def act(self, context: bpy.types.Context) -> str:
-        return stack(context)
+        return put_on_tracks(context)

@@ -31,11 +31,11 @@ from ...solvers.command_line.batches import (
     note_other_builds,
     picture_file,
     remove_picture,
-    share,
     shared_tasks,
     task_entries,
     until_released,
     verb_name,
+    work_if_unclaimed,
     write_report,
 )
 from ...solvers.command_line.sharing import stamp_options
@@ -212,7 +212,8 @@ def _work_on_tasks(
     stopped = Event()
     with ThreadPoolExecutor(arguments.jobs) as pool:
         waiting = [
-            pool.submit(share, task, partial(_attempt, task, stopped)) for task in remaining
+            pool.submit(work_if_unclaimed, task, partial(_attempt, task, stopped))
+            for task in remaining
         ]
         try:
             for done in as_completed(waiting):

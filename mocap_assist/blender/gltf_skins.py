@@ -20,8 +20,9 @@ HEADER_BYTES = 20
 MAX_SCALE_ERROR = 0.05
 """Deviation of a joint's scale from 1, a ratio; a node of another scale is an object that holds
 joints. It guards against rounding of scales that exporters bake."""
-
-
+MAX_DEPTH = 200
+"""Nodes above one another, as in VRM animations. It guards against circles and against chains
+without end, whose time grows with the cube of their length."""
 NO_PICTURE = (
     "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAC"
     "hwGA60e6kgAAAABJRU5ErkJggg=="
@@ -110,6 +111,8 @@ def _incomplete_bodies(
     }
     bodies: dict[int, list[int]] = {}
     lineages = {node: _lineage(parents, node) for node in named | animated if node < len(nodes)}
+    if any(len(each) > MAX_DEPTH for each in lineages.values()):
+        return []
     for node in sorted(named):
         bodies.setdefault(lineages[node][-1], []).append(node)
     carriers = {above for node in named for above in lineages[node]} - named
@@ -140,9 +143,9 @@ def _incomplete_bodies(
 
 
 def _lineage(parents: Mapping[int, int], node: int) -> list[int]:
-    """Return a node and those above it, up to its root."""
+    """Return a node and those above it, up to its root, or more than MAX_DEPTH of them."""
     chain = [node]
-    while (above := parents.get(chain[-1], -1)) >= 0 and above not in chain:
+    while (above := parents.get(chain[-1], -1)) >= 0 and len(chain) <= MAX_DEPTH:
         chain.append(above)
     return chain
 

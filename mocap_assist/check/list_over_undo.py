@@ -56,18 +56,21 @@ def remember(*_: object) -> None:
 def recall(*_: object) -> None:
     """Show the list of what is played, if it is known, after it; then check again.
 
-    Undo may also have changed keys of an action that is still played.
+    Undo may also have changed keys of an action that is still played. Only the scene of the
+    window is checked.
     """
+    numbers = {each.session_uid: each for each in bpy.data.actions}
     for scene in bpy.data.scenes:
         kept = _lists.get(scene.session_uid)
         if kept is None:
             continue
         shown = scene.mocap_assist
-        numbers = {each.session_uid: each for each in bpy.data.actions}
-        subject = selected_subject(bpy.context) if scene == bpy.context.scene else None
+        is_in_window = scene == bpy.context.scene
+        subject = selected_subject(bpy.context) if is_in_window else None
         if subject is None or is_stale(shown.checked_action, subject):
             _show(shown, kept, numbers.get(kept.action))
-        renew_always(scene)
+        if is_in_window:
+            renew_always(scene)
     _lists.clear()
 
 

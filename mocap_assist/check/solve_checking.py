@@ -1,4 +1,4 @@
-"""Solve of the button Check."""
+"""Solve of the button Check: measure a take and list its worst issues."""
 
 from dataclasses import dataclass
 

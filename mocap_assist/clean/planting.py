@@ -60,7 +60,7 @@ def write_planted(
     write_contacts(armature, action, slot, take.frames, planted.all_contacts, detected=detected)
     entry = {
         "operation": "plant_feet",
-        "settings": history.plain(*settings),
+        "settings": history.json_ready(*settings),
         "slide_before_cm": 100 * planted.slide_before,
         "slide_after_cm": 100 * planted.slide_after,
     }

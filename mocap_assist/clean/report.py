@@ -53,7 +53,7 @@ def entry_of(
     body = cleaned.solution.denoised[0]
     return {
         "operation": operation,
-        "settings": history.plain(*settings),
+        "settings": history.json_ready(*settings),
         "keyed_strengths": list(cleaned.keyed),
         "prior_used": body.report(frames),
         "iterations": body.iterations,

@@ -180,8 +180,8 @@ def clean(
             body = body if limits is None else clamp_to_limits(body, limits)
         planted = _planted(body, finish, within(progress, 0.8, 0.9))
         if planted is not None:
-            eased = toward(body, planted.motion, finish.ease[:, None])
-            moved |= differing(body, eased)
+            eased = blend_motions(body, planted.motion, finish.ease[:, None])
+            moved |= changed_joints(body, eased)
             body = eased
             planted = replace(planted, motion=body)
     contacts = None if planted is None else planted.contacts
@@ -276,11 +276,11 @@ def _mixed(
                 _fill_missing(rotations, clean.rotations),
                 _fill_missing(root_positions, clean.root_positions),
             )
-            return toward(poses, clean, weight)
+            return blend_motions(poses, clean, weight)
     raise TypeError(f"{type(raw)}, {type(present)} and {type(clean)} cannot be blended")
 
 
-def toward(start: Motion, stop: Motion, weight: Array) -> Motion:
+def blend_motions(start: Motion, stop: Motion, weight: Array) -> Motion:
     """Blend two motions by a weight, shape (n_frames, n_joints or 1)."""
     moved = start.root_positions + weight[:, :1] * (stop.root_positions - start.root_positions)
     return start.with_poses(slerp(start.rotations, stop.rotations, weight), moved)
@@ -290,7 +290,7 @@ def _fill_missing(values: Array, otherwise: Array) -> Array:
     return np.where(np.isfinite(values).all(axis=-1, keepdims=True), values, otherwise)
 
 
-def differing(before: Motion, after: Motion) -> frozenset[str]:
+def changed_joints(before: Motion, after: Motion) -> frozenset[str]:
     """Return the names of the joints that rotated, or of the root if it moved."""
     changed = np.abs(angle_between(before.rotations, after.rotations)).max(axis=0) > MIN_CHANGE
     changed[0] |= np.abs(before.root_positions - after.root_positions).max() > MIN_CHANGE

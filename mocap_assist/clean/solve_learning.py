@@ -1,4 +1,4 @@
-"""Solve of the button Learn."""
+"""Solve of the button Learn: filter bases of the files among the examples."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""Solve of the button Plant Feet."""
+"""Solve of the button Plant Feet: at contacts of the animator, or detected ones."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ...solvers.denoising import Planted, PlantSettings, plant_feet
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
-from .solve_cleaning import differing
+from .solve_cleaning import changed_joints
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,4 +28,4 @@ def plant(
 ) -> Replanted:
     """Plant the feet where the animator keyed contacts, or where they are detected."""
     planted = plant_feet(body, contacts, settings=settings, progress=progress)
-    return Replanted(planted, differing(body, planted.motion))
+    return Replanted(planted, changed_joints(body, planted.motion))

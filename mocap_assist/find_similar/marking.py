@@ -43,14 +43,14 @@ def mark_played(context: bpy.types.Context, tags: str, catalog: str) -> str:
     """
     armature = selected_armature(context)
     action, slot = played_source(armature)
-    mark(action, [*clip_tags(action), *tags.split(",")], catalog_number(catalog))
+    mark_as_asset(action, [*clip_tags(action), *tags.split(",")], catalog_number(catalog))
     pictured = _picture(armature, action, slot, context.scene)
     if pictured:
         return f"{action.name} is an asset."
     return f"{action.name} is an asset, without a preview image."
 
 
-def mark(action: bpy.types.Action, tags: Iterable[str], number: str) -> None:
+def mark_as_asset(action: bpy.types.Action, tags: Iterable[str], number: str) -> None:
     """Let an action be an asset, with tags and in the catalog of that number, if any."""
     action.asset_mark()
     for tag in tags:

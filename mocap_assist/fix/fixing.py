@@ -147,7 +147,7 @@ def write_fixed(
         )
         yield from write_reconstructed.steps(scene, subject, rebuilding, written, solved_digest)
     elif isinstance(written, FixedDepth):
-        entry = {"operation": "fix", "settings": history.plain(*settings)}
+        entry = {"operation": "fix", "settings": history.json_ready(*settings)}
         _write_depth(scene, subject, written, entry, solved_digest)
     else:
         yield from write_solved.steps(scene, subject, SOLVE_BUNDLE, written, solved_digest)

@@ -1,4 +1,4 @@
-"""Parts of a job that are done at once."""
+"""Divide the parts of a job into batches of limited size."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar

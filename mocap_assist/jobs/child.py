@@ -129,9 +129,9 @@ def solve_and_exit(folder: Path, extension: str, *, waits: bool) -> None:
         import_ahead(extension)
         if not os.read(parent.STDIN, 1):
             scratch.remove_orphaned(folder)
-            parent.leave(parent.ORPHANED)
+            parent.exit_at_once(parent.ORPHANED)
     parent.end_with_stdin(partial(scratch.remove_orphaned, folder))
-    parent.leave(main(folder, extension))
+    parent.exit_at_once(main(folder, extension))
 
 
 if __name__ == "__main__":

@@ -16,8 +16,6 @@ from ..overlays.view_control import rotate_views, zoom_views
 
 STARTED = "Perform what you search for, then clap."
 
-_performed: list[JointRecording] = []
-
 
 @dataclass(frozen=True)
 class Library:
@@ -42,11 +40,6 @@ LIBRARY = Library(show_library, page, search_with, show_all, choose, news)
 def library_news() -> str:
     """Return the message about what the library has done in the background, if any."""
     return LIBRARY.news()
-
-
-def last_performance() -> JointRecording | None:
-    """Return what was performed last between two claps, until Blender is closed."""
-    return _performed[-1] if _performed else None
 
 
 def obey(context: bpy.types.Context, event: GestureEvent) -> str:
@@ -74,6 +67,5 @@ def obey_all(context: bpy.types.Context, events: Sequence[GestureEvent]) -> str:
 
 
 def search_for(context: bpy.types.Context, query: JointRecording) -> str:
-    """Keep a performance, and search for it; return the sentence to show."""
-    _performed[:] = [query]
+    """Search for a performance; return the sentence to show."""
     return LIBRARY.search(context, query)

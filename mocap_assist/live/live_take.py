@@ -149,7 +149,7 @@ def write_live(
     store_json(action, RECORDED_LIVE, {
         "version": version(),
         "operation": "record_live",
-        "settings": history.plain(*settings),
+        "settings": history.json_ready(*settings),
         "frame_rate": take.frame_rate,
     })  # fmt: skip
     compat.assign(armature, action, slot)

@@ -100,7 +100,7 @@ def _report(result: MarkerMotion) -> str:
 def _entry(settings: SolveBundle, result: MarkerMotion) -> dict[str, object]:
     return {
         "operation": "solve_skeleton",
-        "settings": history.plain(*settings),
+        "settings": history.json_ready(*settings),
         "marker_set": result.solved.marker_set.name,
         "mean_error_mm": float(1000.0 * np.nanmean(result.solved.error)),
         "swaps": [[*swap.names, swap.frames.start, swap.frames.stop] for swap in result.swaps],

@@ -33,7 +33,7 @@ class Solid(NamedTuple):
     triangles: NDArray[np.int32]
 
 
-def solid(
+def place_capsules(
     surface: BodySurface, vertices: Array, normals: Array, matrix: Array, colors: Array
 ) -> Solid:
     """Return the capsules of a body in the scene.

@@ -132,7 +132,7 @@ class Range(NamedTuple):
 Rows = Mapping[StripRow, tuple[Range, ...]]
 
 
-def grouped(rows: Rows) -> Rows:
+def join_related_rows(rows: Rows) -> Rows:
     """Join related rows; a row without another of its group stays as it is."""
     members: dict[StripRow, list[StripRow]] = {}
     for row in rows:

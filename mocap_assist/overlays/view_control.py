@@ -40,11 +40,11 @@ def show_point(manager: bpy.types.WindowManager, point: Vector) -> None:
     """Move the 3D Views that do not show a point of the scene, so that it is in the middle."""
     for window in manager.windows:
         for view in _free_views(window):
-            if not shows(view.perspective_matrix, point):
+            if not is_in_view(view.perspective_matrix, point):
                 view.view_location = point
 
 
-def shows(perspective: Matrix, point: Vector) -> bool:
+def is_in_view(perspective: Matrix, point: Vector) -> bool:
     """Whether a point is well within the borders of a view."""
     x, y, _, w = perspective @ point.to_4d()
     return bool(w > 0.0 and max(abs(x), abs(y)) <= MAX_OFF_CENTER * w)

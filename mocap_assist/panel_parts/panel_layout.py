@@ -39,7 +39,7 @@ def draw_sentence(
 def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = "NONE") -> None:
     """Draw a sentence, wrapped to a width in pixels at scale 1."""
     free = width - BORDER_WIDTH_PX - (ICON_WIDTH_PX if icon != "NONE" else 0)
-    lines = column_lines(translated(text), free, points())
+    lines = column_lines(translated(text), free, letter_size_px())
     column = layout.column(align=True)
     column.scale_y = 0.8
     for index, line in enumerate(lines):
@@ -58,7 +58,7 @@ def column_lines(text: str, width: float, font_size: float) -> tuple[str, ...]:
     return tuple(broken_lines(text, lambda line: blf.dimensions(0, line)[0] <= limit))
 
 
-def points() -> float:
+def letter_size_px() -> float:
     """Return the size of the letters of panels, in pixels at scale 1."""
     return float(bpy.context.preferences.ui_styles[0].widget.points)
 

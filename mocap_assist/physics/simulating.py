@@ -74,7 +74,7 @@ def _entry(settings: SimulateBundle, result: Resimulated) -> dict[str, object]:
     simulated = result.simulated
     return {
         "operation": "simulate",
-        "settings": history.plain(*settings),
+        "settings": history.json_ready(*settings),
         "frames_not_followed": int((~simulated.followed).sum()),
         "ground_m": simulated.ground,
         "at_full_strength": {

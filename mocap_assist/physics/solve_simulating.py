@@ -1,4 +1,4 @@
-"""Solve of the button Simulate."""
+"""Solve of the button Simulate: a body with mass that follows the motion."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -6,7 +6,7 @@ from typing import NamedTuple
 from ...solvers.motion import Motion
 from ...solvers.physics import Simulated, SimulateSettings, apply_strength, simulate
 from ...solvers.progress import Progress, unwatched
-from ..clean.solve_cleaning import differing
+from ..clean.solve_cleaning import changed_joints
 
 
 class SimulatedTake(NamedTuple):
@@ -40,4 +40,4 @@ def simulate_take(
     if simulated is None:
         simulated = simulate(take.body, settings=take.settings, progress=progress)
     body = apply_strength(take.body, simulated, strength)
-    return Resimulated(simulated, body, differing(take.body, body))
+    return Resimulated(simulated, body, changed_joints(take.body, body))

@@ -207,7 +207,7 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
     """Return the entry for the action's history, JSON-ready."""
     return {
         "operation": "reconstruct",
-        "settings": history.plain(*settings),
+        "settings": history.json_ready(*settings),
         "method": rebuilt.solution.method,
         "rebuilt_share": rebuilt.solution.rebuilt_fraction,
         "remarks": list(rebuilt.remarks),

@@ -27,7 +27,7 @@ from ...solvers.workflows import (
     reconstruct_motion,
 )
 from ..clean.example_source import ExampleSource
-from ..clean.solve_cleaning import toward
+from ..clean.solve_cleaning import blend_motions
 from ..library.solve_prior import LibraryPrior
 
 
@@ -156,4 +156,4 @@ def _blend_outside(raw: Motion, motion: Motion, ease: Array) -> Motion:
         np.where(observed, raw.rotations, motion.rotations),
         np.where(placed, raw.root_positions, motion.root_positions),
     )
-    return toward(start, motion, ease[:, None])
+    return blend_motions(start, motion, ease[:, None])

@@ -291,7 +291,7 @@ def _entry(
         "operation": "retarget",
         "source_armature": source.name,
         "target_armature": found.target.name,
-        "settings": history.plain(*settings),
+        "settings": history.json_ready(*settings),
         "bones": {
             "source": dict(found.maps.source.joints),
             "target": dict(found.maps.target.joints),

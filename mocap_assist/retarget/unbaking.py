@@ -50,7 +50,7 @@ def write_unbaked(
     before, after = (count_keys(animated_curves(*each)) for each in (played, (action, slot)))
     entry = {
         "operation": "reduce_keys",
-        "settings": history.plain(*settings),
+        "settings": history.json_ready(*settings),
         "keys_before": before,
         "keys_after": after,
         "error_cm": 100 * result.error,

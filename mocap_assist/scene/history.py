@@ -162,7 +162,7 @@ def playing_strips(animation: bpy.types.AnimData) -> list[bpy.types.NlaStrip]:
     return [strip for track in tracks for strip in track.strips if not strip.mute]
 
 
-def plain(*settings: Settings) -> dict[str, Any]:
+def json_ready(*settings: Settings) -> dict[str, Any]:
     """Return settings as JSON-ready values, by name."""
     values = {name: value for each in settings for name, value in asdict(each).items()}
     return {

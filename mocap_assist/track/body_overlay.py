@@ -9,7 +9,7 @@ from ...solvers.depth_tracking.body import CAPSULE_SEGMENTS, SEGMENTS, capsule_s
 from ...solvers.errors import MocapAssistError
 from ..actions.reliability_curves import reliability_at
 from ..blender.redrawing import redraw_views
-from ..overlays.body_drawing import Solid, draw_solid, solid
+from ..overlays.body_drawing import Solid, draw_solid, place_capsules
 from ..overlays.confidence_colors import color_from_reliability, reliability_source
 from ..overlays.view_drawing import ViewDrawing, visible_active
 from ..scene.played_time import played_time
@@ -49,7 +49,7 @@ def body_at(armature: bpy.types.Object | None, frame: float) -> Solid | None:
     colors[:, 3] = OPACITY
     surface = _surface(body)
     matrix = np.array(armature.matrix_world)
-    return solid(surface, *surface.at_pose(frames), matrix, colors[CAPSULE_SEGMENTS])
+    return place_capsules(surface, *surface.at_pose(frames), matrix, colors[CAPSULE_SEGMENTS])
 
 
 def body_to_draw(context: bpy.types.Context) -> Solid | None:

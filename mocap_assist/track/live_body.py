@@ -11,7 +11,7 @@ from ...solvers.arrays import Array
 from ...solvers.depth_tracking.body import CAPSULE_SEGMENTS, capsule_surface, segment_frames
 from ...solvers.depth_tracking.tracking import PosePreview
 from ..depth.depth_preview import Shown, shown_by
-from ..overlays.body_drawing import Solid, draw_solid, solid
+from ..overlays.body_drawing import Solid, draw_solid, place_capsules
 from ..overlays.confidence_colors import color_from_reliability
 from ..overlays.view_drawing import ViewDrawing
 from .pose_previews import PosePreviewReceiver
@@ -82,7 +82,9 @@ class LiveBody:
         ])
         colors[:, 3] = OPACITY
         placed = self._surface.at_pose(frames)
-        return solid(self._surface, *placed, scene_from_camera, colors[CAPSULE_SEGMENTS])
+        return place_capsules(
+            self._surface, *placed, scene_from_camera, colors[CAPSULE_SEGMENTS]
+        )
 
     def close(self) -> None:
         """Remove the body, and restore the frame."""

@@ -209,7 +209,7 @@ def _report(frames: Sequence[float], result: Retracked) -> str:
 def _entry(settings: RetrackBundle, take: TrackedTake, result: Retracked) -> dict[str, object]:
     return {
         "operation": OPERATION,
-        "settings": history.plain(settings.retracking),
+        "settings": history.json_ready(settings.retracking),
         "picture": take.first + result.frame,
         "first_picture": take.first + result.first,
         "last_picture": take.first + result.last,

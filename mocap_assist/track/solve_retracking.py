@@ -1,4 +1,4 @@
-"""Solve of the button Track from Here."""
+"""Solve of the button Track from Here: follow the images from a corrected frame."""
 
 from dataclasses import replace
 from typing import NamedTuple

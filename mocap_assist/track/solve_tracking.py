@@ -1,4 +1,4 @@
-"""Solve of the button Track."""
+"""Solve of the button Track: find the actor in depth images, and track the body."""
 
 from collections.abc import Iterable
 from typing import Any, NamedTuple

@@ -199,7 +199,7 @@ def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, ob
     return {
         "version": version(),
         "operation": "track_depth",
-        "settings": history.plain(
+        "settings": history.json_ready(
             settings.choices, settings.tracking, settings.actor, settings.planting
         ),
         "recording": shown.path,

@@ -138,7 +138,7 @@ def why_not_stack(context: bpy.types.Context) -> str:
     return ""
 
 
-def stack(context: bpy.types.Context) -> str:
+def put_on_tracks(context: bpy.types.Context) -> str:
     """Put the variants on NLA tracks of their armature in sequence; return a message."""
     scene = context.scene
     armature, actions = listing.armature_of(scene), listing.chosen(scene)

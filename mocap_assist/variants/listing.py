@@ -11,7 +11,7 @@ from ..blender import compat
 from ..blender.compat import Source
 
 
-def fill(
+def list_variants(
     scene: bpy.types.Scene,
     armature: bpy.types.Object | None,
     actions: Sequence[bpy.types.Action],
@@ -78,7 +78,7 @@ def keep_picked(scene: bpy.types.Scene) -> str:
     variants = scene.mocap_assist.variants
     kept = chosen(scene)
     others = [row.action for row in variants.rows if row.action not in {None, *kept}]
-    fill(scene, variants.armature, kept)
+    list_variants(scene, variants.armature, kept)
     spared = [action for action in others if is_used(action)]
     for action in others:
         if action not in spared:

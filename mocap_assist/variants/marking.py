@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..find_similar.marking import catalog_number, clip_tags, mark
+from ..find_similar.marking import catalog_number, clip_tags, mark_as_asset
 from . import listing
 
 TAG = "variant"
@@ -16,5 +16,5 @@ def mark_variants(scene: bpy.types.Scene, tags: str, catalog: str) -> str:
     number = catalog_number(catalog)
     actions = listing.chosen(scene)
     for action in actions:
-        mark(action, [TAG, *clip_tags(action), *tags.split(",")], number)
+        mark_as_asset(action, [TAG, *clip_tags(action), *tags.split(",")], number)
     return f"Marked {len(actions)} variants as assets."

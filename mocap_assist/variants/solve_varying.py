@@ -1,4 +1,4 @@
-"""Solve of the button Vary."""
+"""Solve of the button Vary: learn from examples, and draw new motions."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -83,7 +83,7 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
         progress(0.8 + 0.1 * index / len(made.motions), "Drawing")
         normalized = normalize_postures(postures_from_motion(motion), motion.frame_rate)
         angle = float(first.headings[0] - normalized.headings[0])
-        aligned = moved(motion, normalized.hip_positions[0], angle, first.hip_positions[0])
+        aligned = move_to(motion, normalized.hip_positions[0], angle, first.hip_positions[0])
         resample_variant = resample_loop if is_loop else resample
         finer = motion.frame_rate > problem.frame_rate
         motions.append(resample_variant(aligned, problem.frame_rate) if finer else aligned)
@@ -117,7 +117,7 @@ def are_similar(motions: Sequence[Motion]) -> bool:
     )
 
 
-def moved(motion: Motion, pivot: Array, angle: float, target: Array) -> Motion:
+def move_to(motion: Motion, pivot: Array, angle: float, target: Array) -> Motion:
     """Rotate a motion about the vertical through a pivot, and move the pivot to a position.
 
     Parameters

@@ -13,7 +13,7 @@ NUMBER = re.compile(re.escape(BETWEEN) + r"(\d+)(\.\d{3,})?$")
 MIN_DIGITS = 2
 
 
-def tag(action: bpy.types.Action, examples: list[str], number: int, seed: int) -> None:
+def tag_variant(action: bpy.types.Action, examples: list[str], number: int, seed: int) -> None:
     """Store in an action the examples of the variant."""
     store_json(action, VARIANT, {"examples": examples, "number": number, "seed": seed})
 

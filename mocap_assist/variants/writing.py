@@ -18,7 +18,7 @@ from .button_settings import VaryBundle
 from .keys import BaseExample, hold_others, without_still
 from .reading import Switches, VaryScene, read
 from .solve_varying import Varied
-from .tags import names_for, tag
+from .tags import names_for, tag_variant
 
 
 @Sliced
@@ -64,7 +64,7 @@ def write_variants(
         for action in _actions_with_numbers(made):
             bpy.data.actions.remove(action)
         raise
-    listing.fill(scene, armature, _actions_with_numbers(made))
+    listing.list_variants(scene, armature, _actions_with_numbers(made))
     return writer.message()
 
 
@@ -107,7 +107,7 @@ class _Writer(NamedTuple):
         except BaseException:
             bpy.data.actions.remove(action)
             raise
-        tag(action, list(self.examples), number + 1, self.settings.varying.seed)
+        tag_variant(action, list(self.examples), number + 1, self.settings.varying.seed)
         give_picture(action, self.varied.pictures[number])
         return int(action.session_uid)
 
@@ -125,7 +125,7 @@ class _Writer(NamedTuple):
         """Return the entry for the action's history."""
         return {
             "operation": "vary",
-            "settings": history.plain(*self.settings),
+            "settings": history.json_ready(*self.settings),
             "examples": list(self.examples),
             "number": number + 1,
         }

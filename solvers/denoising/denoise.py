@@ -19,7 +19,7 @@ from .denoise_settings import (
     DenoiseSettings,
     joint_factors,
 )
-from .denoised import Denoised, join_segments, unchanged
+from .denoised import Denoised, join_segments, keep_as_recorded
 from .discontinuities import find_held_and_cuts, remove_path_jumps, restore_path_jumps
 from .edge_poses import (
     find_edge_poses,
@@ -153,7 +153,7 @@ def _denoise_segments(
         if cuts and is_short_shot(stop - start, take.frame_rate):
             unchanged_settings = replace(settings, strength=0.0)
             results.append(
-                unchanged(segment)
+                keep_as_recorded(segment)
                 if observed_mask(segment).all()
                 else _denoise_segment(segment, bases, None, unchanged_settings, step)
             )

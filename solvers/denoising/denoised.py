@@ -54,7 +54,7 @@ class Denoised:
         return f"{shots} {describe_edge_poses(self.edge_poses, frames)}".strip()
 
 
-def unchanged(segment: Motion | Tracks) -> Denoised:
+def keep_as_recorded(segment: Motion | Tracks) -> Denoised:
     """Return the result of a segment that is kept as recorded."""
     none = np.zeros(observed_mask(segment).shape, dtype=np.bool_)
     return Denoised(segment, none, none, 1.0 - none, 0, True, "")

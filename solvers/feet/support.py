@@ -65,7 +65,10 @@ def both_in_contact(contact: Flags) -> Flags:
 
 
 def resting_steps(height: Array, contact: Flags, size: float) -> Array:
-    """Return how certainly what has a height rests in each step, as `Support.steps`."""
+    """Return how certainly what has a height rests in each step, as `Support.steps`.
+
+    Height in meters and contact have the shape (n_frames,); `size` is relative to a human.
+    """
     steps = np.repeat(both_in_contact(contact)[:, None].astype(np.float64), 3, axis=1)
     rise = np.abs(height - median_contact_heights(height, contact))
     rise = np.maximum(rise[1:], rise[:-1])

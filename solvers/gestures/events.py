@@ -1,4 +1,4 @@
-"""Events of gesture recognition."""
+"""The gestures that are recognized, and the event of one."""
 
 from dataclasses import dataclass
 from enum import Enum

@@ -179,7 +179,7 @@ def chord(start: Array, marker: Array, outward: Array, half_width: float) -> Arr
     """Return the joint center for which the marker is perpendicular to the bone.
 
     The marker is `half_width` from it, on the side of `outward`, and the bone starts at `start`
-    (the chord function of [2]_ in `joint_centers`).
+    (the chord function of [2]_ in `joint_centers`). All have the shape (n_frames, 3), meters.
     """
     arm = marker - start
     length = np.linalg.norm(arm, axis=-1, keepdims=True)

@@ -125,7 +125,8 @@ def most_likely_swap(
 
     The most likely sequence of labels, by the Viterbi algorithm. A jump is evidence for a
     change if the pair would not jump with swapped labels; in each frame, the distances to
-    neighbors are evidence for one of the two labels.
+    neighbors are evidence for one of the two labels. `positions` has the shape (n_frames,
+    n_markers, 3), meters.
     """
     first, second = pair
     relative = (positions[:, second] - positions[:, first])[:, None]

@@ -1,4 +1,4 @@
-"""What a fitted motion is to meet."""
+"""The interface of goals: terms whose sum a fitted motion makes least."""
 
 from typing import Protocol
 

@@ -65,7 +65,8 @@ def follow_target(
 ) -> SimulatedTrajectory:
     """Simulate all frames; reset a lost body to its target and continue.
 
-    `report_frame` is called with the index of each frame.
+    `report_frame` is called with the index of each frame. `friction_factors` has the shape
+    (n_frames, n_feet).
     """
     n_frames = target.n_frames
     coordinates = np.empty((n_frames, world.model.nq))

@@ -42,7 +42,7 @@ def end_after(event: Callable[[], object], clean_up: Callable[[], None] = nothin
     threading.Thread(target=watch, daemon=True, name="end with parent").start()
 
 
-def leave(status: int) -> None:
+def exit_at_once(status: int) -> None:
     """End this process at once, after its output is flushed; nothing else is waited for."""
     for stream in (sys.stdout, sys.stderr):
         try:

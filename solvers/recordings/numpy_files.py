@@ -15,7 +15,7 @@ from .containers import (
     frame_files,
     read_array,
 )
-from .conventions import DEFAULT_FRAME_RATE, Bodies, check_scale, observed_body
+from .conventions import DEFAULT_FRAME_RATE, Bodies, JointSamples, check_scale, observed_body
 from .joint_files import read_freemocap_points
 from .point_bodies import (
     body_of_named_points,
@@ -214,7 +214,12 @@ def _read_points(
     named = body_of_named_points(stated.names, points) if is_named else None
     if named is not None:
         placed = in_room(named.names, named.positions, stated.roots)
-        return stand_body(path, named.names, placed, rate=rate, scale=scale, progress=progress)
+        return stand_body(
+            path,
+            JointSamples(named.names, placed, frame_rate=rate),
+            scale=scale,
+            progress=progress,
+        )
     body = body_of_points(path, points)
     if body is not None:
         body = body._replace(positions=in_room(body.names, body.positions, stated.roots))

@@ -1,4 +1,4 @@
-"""Arms and legs of both bodies."""
+"""Arms and legs of source and target, measured for placing feet and hands."""
 
 from dataclasses import dataclass
 

@@ -64,7 +64,10 @@ def positions_in_body_frame(motion: Motion, headings: Array | None = None) -> Ar
 
 
 def align_examples(motions: Sequence[Motion], headings: Sequence[Array]) -> AlignedExamples:
-    """Align examples in time with their medoid by dynamic time warping."""
+    """Align examples in time with their medoid by dynamic time warping.
+
+    The headings of a motion are angles in radians, (n_frames,).
+    """
     steps = [
         max(
             round(motion.frame_rate / ALIGNMENT_RATE_HZ),

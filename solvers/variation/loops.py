@@ -35,7 +35,10 @@ closed before against rounding in their file."""
 
 
 def detect_loop(motion: Motion, headings: Array) -> bool:
-    """Return whether a clip ends nearly in its first pose and at its first velocity."""
+    """Return whether a clip ends nearly in its first pose and at its first velocity.
+
+    `headings` are angles in radians, (n_frames,).
+    """
     if motion.n_frames < MIN_LOOP_FRAMES:
         return False
     body = positions_in_body_frame(motion, headings)

@@ -44,7 +44,7 @@ def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[s
         remarks.append(
             f"In {int((~tracked).sum())} of {len(tracked)} frames no person is detected."
         )
-    ratio = thickness(captured)
+    ratio = relative_thickness(captured)
     if fitted and ratio > MAX_THICKNESS_RATIO:
         remarks.append(
             f"The actor would be {ratio:.1f} times as thick as the default body. Check the"
@@ -67,7 +67,7 @@ def _fit_remarks(overlap: float, offset: float) -> list[str]:
     ]
 
 
-def thickness(captured: Capture) -> float:
+def relative_thickness(captured: Capture) -> float:
     """Return the thickness of the body for its length, relative to the default body."""
     default = default_body()
     radii = np.median(captured.body.radii / default.radii)

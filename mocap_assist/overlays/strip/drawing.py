@@ -9,7 +9,7 @@ import numpy as np
 
 from ....solvers.arrays import Single
 from ...languages import translated
-from ..marked_ranges import COLORS, LANES, Range, StripRow, grouped, most_important
+from ..marked_ranges import COLORS, LANES, Range, StripRow, join_related_rows, most_important
 from . import labels, reading
 from .reading import Strip
 
@@ -64,7 +64,7 @@ def fitting_strip(context: bpy.types.Context) -> Strip | None:
     known = _low_strips.get(key)
     if known is None or known[0] is not strip:
         _make_room(_low_strips)
-        rows = most_important(grouped(strip.rows), key[1])
+        rows = most_important(join_related_rows(strip.rows), key[1])
         known = _low_strips[key] = strip, strip._replace(rows=rows)
     return known[1]
 

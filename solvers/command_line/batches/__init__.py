@@ -14,9 +14,9 @@ if TYPE_CHECKING:
         note_other_builds,
         record_end,
         report_folder,
-        share,
         task_entries,
         verb_name,
+        work_if_unclaimed,
     )
     from .parallel import run_tasks, until_released, workers_for
     from .report import PAGE, PICTURE, has_picture, picture_file, remove_picture, write_report
@@ -43,12 +43,12 @@ __all__ = [
     "remove_picture",
     "report_folder",
     "run_tasks",
-    "share",
     "shared_tasks",
     "task_entries",
     "tasks_of",
     "until_released",
     "verb_name",
+    "work_if_unclaimed",
     "workers_for",
     "write_report",
 ]

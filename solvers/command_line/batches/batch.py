@@ -51,7 +51,7 @@ class FinishedTask(NamedTuple):
 
 def attempt_task(verb: Verb, task: Task, progress: Progress, prepared: Any) -> FinishedTask:
     """Do the work on a task, in whichever process, and record it; see `share`."""
-    return share(task, partial(_work, verb, task, prepared, progress))
+    return work_if_unclaimed(task, partial(_work, verb, task, prepared, progress))
 
 
 def _work(verb: Verb, task: Task, prepared: Any, progress: Progress) -> FinishedTask:
@@ -105,7 +105,7 @@ def _draw(task: Task) -> None:
     draw_stick_figures(motions, StickFigureSettings(n_figures=9, height=150)).save(picture)
 
 
-def share(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:
+def work_if_unclaimed(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:
     """Do the work on a task unless another process does or has done it; record the result.
 
     A task without an output folder is not shared.
@@ -123,7 +123,7 @@ def record_end(finished: FinishedTask) -> FinishedTask:
 
     While another process holds its claim there is no record, and the other's end is returned.
     """
-    return share(finished.task, lambda: finished)
+    return work_if_unclaimed(finished.task, lambda: finished)
 
 
 def _share(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:

@@ -1,4 +1,4 @@
-"""The result of any method on channels."""
+"""The result of any method on channels: values, and how reliable they are."""
 
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -23,7 +23,10 @@ def hide_held_samples(recording: Motion | Tracks, held: Flags) -> Motion | Track
 
 
 def held_joints(recording: Motion | Tracks, held: Flags) -> Flags:
-    """Return the held samples of each joint or point; the first joint's include the root's."""
+    """Return the held samples of each joint or point, shape (n_frames, n_joints).
+
+    `held` is what `find_held_samples` returns. The first joint's include the root's position.
+    """
     if isinstance(recording, Tracks):
         return held
     joints = held[:, :-1].copy()

@@ -104,7 +104,7 @@ def connect_runs(
 
     They have the same frames. In a motion they are most of the body, or each part hangs on
     another one of them, as in a limb. Joints that are still, or never observed, connect what
-    hangs on them with what they hang on.
+    hangs on them with what they hang on. `is_still` has the shape (n_parts,).
     """
     times = runs.starts * (recording.n_frames + 1) + runs.stops
     if isinstance(recording, Tracks):

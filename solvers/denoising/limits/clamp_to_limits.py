@@ -120,7 +120,7 @@ class _Limit:
         )
 
     def rotations(self, angles: Array) -> Array:
-        """Invert `angles`."""
+        """Return the rotations (n_frames, 4) of angles (n_frames, 3), radians."""
         if self.order == ROTATION_VECTOR:
             in_limit_frame = quaternion_from_rotation_vector(angles)
         else:

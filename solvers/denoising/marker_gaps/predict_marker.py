@@ -164,7 +164,10 @@ def _solve(
 
 
 def matern(steps: Array) -> Array:
-    """Return the Matern covariance of smoothness 5/2; the unit of distance contains sqrt(5)."""
+    """Return the Matern covariance of smoothness 5/2 at these distances, of any shape.
+
+    They are relative to the length of the kernel, and contain the factor sqrt(5).
+    """
     return np.asarray((1.0 + steps + steps**2 / 3.0) * np.exp(-steps))
 
 

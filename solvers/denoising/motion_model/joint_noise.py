@@ -1,4 +1,4 @@
-"""The noise of each joint of a take."""
+"""Estimate the noise of each joint of a take along the joint's own axes."""
 
 from typing import NamedTuple
 

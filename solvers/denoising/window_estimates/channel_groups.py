@@ -1,7 +1,5 @@
 """Apply the default method to a complete take: select channels and prior, solve in groups."""
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +13,7 @@ from ..outliers import OFFSET_DEVIATION
 from ..window_priors import FilterBases, FilterBasesSettings, WindowPrior, Windows
 from .estimate_channels import estimate_channels
 from .prior_selection import build_examples_prior, build_take_prior, select_prior
+from .rough_take import RoughTake
 
 MAX_GROUP_CHANNELS = 96
 """Channels solved together; rigs with more are split between joints. It bounds the run time;
@@ -29,20 +28,6 @@ POOR_FIT_FRACTION = 0.2
 """Fraction of plain smoothness above which the examples are reported to fit badly. By
 definition of the report: it only decides its sentence."""
 PARTS = ("values", "inliers", "deviation", "leave_one_out_error")
-
-
-class RoughTake(NamedTuple):
-    """A first estimate of a take, padded to at least one window."""
-
-    noisy: Array
-    """NaN where not observed, and beyond the end of a take shorter than a window."""
-    is_error: NDArray[np.bool_]
-    """Samples known to be wrong."""
-    values: Array
-    """Without spikes, gaps bridged by straight lines: no NaN."""
-    noise: Array
-    n_observed: NDArray[np.intp]
-    windows: Windows
 
 
 def estimate_in_groups(
@@ -72,36 +57,19 @@ def estimate_in_groups(
     iterations, converged, smooth_fractions = 0, True, []
     for index, columns in enumerate(groups):
         step = within(progress, index / len(groups), (index + 1) / len(groups))
-        first_noise = shrink_noise(
-            take.noise[columns], take.n_observed[columns], FIRST_GUESS_EFFICIENCY
-        )
-        part = take._replace(
-            noisy=take.noisy[:, columns],
-            is_error=take.is_error[:, columns],
-            values=take.values[:, columns],
-            noise=first_noise,
-        )
+        part = take.select_channels(columns)
+        first_noise = shrink_noise(part.noise, part.n_observed, FIRST_GUESS_EFFICIENCY)
+        part = part._replace(noise=first_noise)
         prior = build_take_prior(
-            part.values,
-            first_noise,
-            take.n_observed[columns] > 0,
-            take.windows,
-            window,
-            pattern_rate,
+            part.values, first_noise, part.n_observed > 0, part.windows, window, pattern_rate
         )
         if bases is not None and in_examples[columns[0]]:
             examples = _build_examples_prior(
                 part, n_frames, bases, channels.keys, columns, prior
             )
-            prior, smooth_fraction = select_prior(
-                examples, prior, part.noisy, part.is_error, part.values, part.noise,
-                columns // 3, take.windows, step,
-            )  # fmt: skip
+            prior, smooth_fraction = select_prior(examples, prior, part, columns // 3, step)
             smooth_fractions += [smooth_fraction] * len(columns)
-        group_estimate = estimate_channels(
-            part.noisy, part.is_error, part.values, part.noise, prior, take.windows,
-            within(step, 0.4, 1.0),
-        )  # fmt: skip
+        group_estimate = estimate_channels(part, prior, within(step, 0.4, 1.0))
         for complete, name in zip(parts, PARTS, strict=True):
             complete[:, columns] = getattr(group_estimate, name)
         iterations = max(iterations, group_estimate.iterations)

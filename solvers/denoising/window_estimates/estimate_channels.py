@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...progress import Progress, unwatched
@@ -21,6 +20,7 @@ from .covariance import adapt_covariance, covariance_from_prior
 from .filter_pass import filter_windows
 from .filters import Filter, build_filters, compute_variance, sum_window_weights
 from .gap_patterns import find_gap_patterns, find_long_gaps
+from .rough_take import RoughTake
 from .smoothness import fit_smoothness
 
 MAX_ITERATIONS = 30
@@ -47,12 +47,8 @@ definition, that of a mean of two estimates."""
 
 
 def estimate_channels(
-    noisy: Array,
-    is_error: NDArray[np.bool_],
-    start: Array,
-    noise: Array,
+    take: RoughTake,
     prior: WindowPrior,
-    windows: Windows,
     progress: Progress = unwatched,
     *,
     noise_factors: Sequence[float] = NOISE_FACTORS,
@@ -71,22 +67,16 @@ def estimate_channels(
 
     Parameters
     ----------
-    noisy : shape (n_frames, n_channels)
-        NaN where not observed.
-    is_error : same shape
-        Samples known to be wrong.
-    start : same shape, without NaN
-    noise : shape (n_channels,)
-        First estimate of the standard deviation.
+    take : RoughTake
+        Where the alternation starts.
     prior : WindowPrior
-    windows : Windows
     progress : Progress
     noise_factors : sequence of float
         Inflation of the noise, one for each of the first rounds.
     max_iterations : int
         Iterations after them.
     """
-    state = _PosteriorState(noisy, is_error, start, noise, prior, windows.with_less_overlap)
+    state = _PosteriorState(take, prior)
     n_first_rounds, n_rounds = len(noise_factors), len(noise_factors) + max_iterations
     for index, factor in enumerate(noise_factors):
         progress(index / n_rounds, "Denoising")
@@ -102,7 +92,7 @@ def estimate_channels(
         if iteration == 0:
             state.update_smoothness()
         if iteration == N_ADAPTATIONS:
-            state.set_windows(windows)
+            state.set_windows(take.windows)
         if iteration <= N_ADAPTATIONS:
             state.update_filters(reuse_gapped=adapts and iteration > 0)
         last_change = state.update_estimate(adapts=adapts)
@@ -114,26 +104,18 @@ def estimate_channels(
 class _PosteriorState:
     """The state of the alternation: weights, noise, covariance, filters and estimate."""
 
-    def __init__(
-        self,
-        noisy: Array,
-        is_error: NDArray[np.bool_],
-        start: Array,
-        noise: Array,
-        prior: WindowPrior,
-        windows: Windows,
-    ) -> None:
-        self.observed, self.samples = np.isfinite(noisy), np.nan_to_num(noisy)
-        self.prior = prior.truncated(windows.length)
-        self.set_windows(windows)
-        self.estimate, self.mean = start, prior.mean
-        self.first_noise = self.noise = noise
-        self.covariance = covariance_from_prior(self.prior, windows.length)
+    def __init__(self, take: RoughTake, prior: WindowPrior) -> None:
+        self.observed, self.samples = np.isfinite(take.noisy), np.nan_to_num(take.noisy)
+        self.prior = prior.truncated(take.windows.length)
+        self.set_windows(take.windows.with_less_overlap)
+        self.estimate, self.mean = take.values, prior.mean
+        self.first_noise = self.noise = take.noise
+        self.covariance = covariance_from_prior(self.prior, take.windows.length)
         self.filters = list[Filter]()
-        self.may_be_right = self.observed & ~is_error
+        self.may_be_right = self.observed & ~take.is_error
         self.weight, self.rate = self.may_be_right.astype(float), MIN_OUTLIER_RATE
-        self.variance = np.zeros_like(noisy)
-        self.leave_one_out_ratio = np.ones_like(noisy)
+        self.variance = np.zeros_like(take.noisy)
+        self.leave_one_out_ratio = np.ones_like(take.noisy)
         """Variance without the sample, relative to `variance`, the variance with it."""
 
     def set_windows(self, windows: Windows) -> None:

@@ -30,7 +30,7 @@ class GapPattern:
     (n_gap_channels, n_slow, rank): the projection is B B^T."""
 
     def mask_frames(self, frames: Array) -> Array:
-        """Return windows with zeros in the gaps."""
+        """Return windows (n_windows, length, n_channels) with zeros in the gaps."""
         frames = frames.copy()
         frames[:, :, self.channels] *= self.observed_mask
         return frames
@@ -112,7 +112,7 @@ def find_gap_patterns(
     an estimate with little support, they would drift without end.
 
     If the matrices of all patterns would fill the memory, all gaps are filled iteratively, like
-    short ones.
+    short ones. `observed` has the shape (n_frames, n_channels).
     """
     gaps = find_long_gaps(observed, windows.long_gap)
     groups: dict[bytes, list[int]] = {}

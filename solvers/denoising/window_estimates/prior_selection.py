@@ -19,6 +19,7 @@ from ..window_priors import (
 from .estimate_channels import estimate_channels
 from .filters import compute_gains
 from .mean_pose import estimate_mean_pose
+from .rough_take import RoughTake
 from .smoothness import build_smooth_kernels
 
 SMOOTH_FRACTIONS = (0.003, 0.05, 0.3)
@@ -114,6 +115,14 @@ def build_take_prior(
 
     Channels that were never observed may be off by as much as outliers. The covariance between
     channels is learned from the take during the solve, with more weight for longer takes.
+
+    Parameters
+    ----------
+    rough : shape (n_frames, n_channels), without NaN
+    noise, ever_observed : shape (n_channels,)
+    windows : Windows
+    bases_window : int
+        Frames of a window at `frame_rate`, hertz: that of the patterns.
     """
     kernels = build_smooth_kernels(bases_window, frame_rate)
     variance = np.maximum(rough.var(axis=0) - noise**2, 0.05 * noise**2 + 1e-6)
@@ -132,12 +141,8 @@ def build_take_prior(
 def select_prior(
     examples: WindowPrior,
     own: WindowPrior,
-    noisy: Array,
-    is_error: NDArray[np.bool_],
-    rough: Array,
-    noise: Array,
+    take: RoughTake,
     joints: NDArray[np.intp],
-    windows: Windows,
     progress: Progress,
 ) -> tuple[WindowPrior, float]:
     """Return the mixture that predicts the take best, and its fraction of `own`.
@@ -146,43 +151,46 @@ def select_prior(
     prediction from all others (leave one out). Samples that most candidates classify as
     outliers hardly count; otherwise candidates that follow bursts of errors would win. Examples
     of another movement lose against plain smoothness, and cannot do harm. Only channels that
-    are mostly observed take part. Leaving out complete `joints` measures how well the others
+    are mostly observed take part. Leaving out complete joints measures how well the others
     predict a missing joint.
+
+    Parameters
+    ----------
+    examples, own : WindowPrior
+    take : RoughTake
+    joints : shape (n_channels,)
+        Of each channel.
+    progress : Progress
     """
     candidates = {
         fraction: mix_priors(examples, own, fraction) for fraction in SMOOTH_FRACTIONS
     }
     candidates[1.0] = own
-    scored = np.flatnonzero(np.isfinite(noisy).mean(axis=0) > MIN_OBSERVED_FRACTION)
+    scored = np.flatnonzero(np.isfinite(take.noisy).mean(axis=0) > MIN_OBSERVED_FRACTION)
     if not len(scored):
         return candidates[SMOOTH_FRACTIONS[0]], SMOOTH_FRACTIONS[0]
-    rough, noise = rough[:, scored], noise[scored]
-    noisy, is_error = noisy[:, scored], is_error[:, scored]
-    without_gaps = replace(windows, solve_gaps=False)
+    compared = take.select_channels(scored)
     trials = []
     for index, prior in enumerate(candidates.values()):
         progress(0.4 * index / len(candidates), "Comparing with the examples")
         trials.append(
             estimate_channels(
-                noisy,
-                is_error,
-                rough,
-                noise,
+                compared._replace(windows=replace(take.windows, solve_gaps=False)),
                 prior.select_channels(scored),
-                without_gaps,
                 max_iterations=N_TRIAL_ITERATIONS,
             )
         )
     inlier_probability = np.mean([trial.inliers for trial in trials], axis=0)
     scores = [
         IN_SAMPLE_PENALTY**index
-        * score_leave_one_out(trial.leave_one_out_error, inlier_probability, noise)
+        * score_leave_one_out(trial.leave_one_out_error, inlier_probability, compared.noise)
         for index, trial in enumerate(trials)
     ]
     best = list(candidates)[int(np.argmin(scores))]
     joint_error = score_leave_joint_out(
-        candidates[best].select_channels(scored), rough, noise, joints[scored], windows
-    )
+        candidates[best].select_channels(scored), compared.values, compared.noise,
+        joints[scored], take.windows,
+    )  # fmt: skip
     return replace(candidates[best], decoupling=float(np.clip(joint_error, 0.0, 1.0))), best
 
 

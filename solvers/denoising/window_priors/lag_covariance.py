@@ -92,7 +92,8 @@ def find_leading_eigenpairs(covariance: Array, energy: float) -> tuple[Array, Ar
 
     Each vector's largest entry is positive, so that the same clips give the same signs
     everywhere. Lanczos iteration (ARPACK) is twice as fast, but where the rank is low it goes
-    on from random numbers that differ from call to call.
+    on from random numbers that differ from call to call. Shapes are (n,) and (size, n), of a
+    covariance (size, size).
     """
     size, n_wanted = len(covariance), N_FIRST_EIGENVECTORS
     total = float(np.trace(covariance))

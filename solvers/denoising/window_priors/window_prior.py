@@ -99,7 +99,7 @@ class WindowPrior:
         )
 
     def with_smoothness(self, weights: Array) -> "WindowPrior":
-        """Return the prior with other variances at each correlation time."""
+        """Return the prior with other variances, (n_correlation_times, n_channels)."""
         change = replace(self.smooth, weights=weights - self.smooth.weights)
         slow, channels, fraction = self.slow.copy(), np.arange(len(self.mean)), change.fraction
         slow[:, channels, :, channels] += fraction * change.slow(self.n_slow)
@@ -121,7 +121,7 @@ def count_slow_coefficients(window: int) -> int:
 def build_smooth_prior(
     mean: Array, smooth: SmoothPrior, own_weight: float, own_weight_in_gaps: float
 ) -> WindowPrior:
-    """Return the prior of channels with known variance and smoothness only."""
+    """Return the prior of channels of this mean, (n_channels,), that are only smooth."""
     n_slow, channels = count_slow_coefficients(smooth.kernels.shape[1]), np.arange(len(mean))
     slow = np.zeros((n_slow, len(mean), n_slow, len(mean)))
     slow[:, channels, :, channels] = smooth.slow(n_slow)

@@ -51,7 +51,7 @@ def predict_pose(poses: list[Array], weight: float) -> Array:
 
 
 def joint_limits(pose: Array, weight: float) -> PoseEquations:
-    """Return equations that pull coordinates back inside the soft limits."""
+    """Return equations that pull coordinates of a pose, (36,), back inside the soft limits."""
     correction = np.clip(pose, LOWER_LIMITS, UPPER_LIMITS) - pose
     weights = np.where(correction != 0.0, weight, 0.0)
     return PoseEquations(

@@ -44,15 +44,8 @@ class BodyImage:
 
     def depth_image(self) -> Array:
         """Return the depth image (height, width), meters; 0 off the body."""
-        return self._image(self.depths, 0.0)
-
-    def segment_image(self) -> Array:
-        """Return the segment image (height, width), -1 off the body."""
-        return self._image(self.segments, NO_SEGMENT)
-
-    def _image(self, values: NDArray[np.generic], fill: float) -> Array:
-        image = np.full(self.camera.width * self.camera.height, fill)
-        image[self.pixels] = values
+        image = np.zeros(self.camera.width * self.camera.height)
+        image[self.pixels] = self.depths
         return image.reshape(self.camera.height, self.camera.width)
 
 

@@ -48,7 +48,7 @@ N_LENGTHS = len(_LENGTHS)
 
 
 def resize_body(body: BodyModel, change: Array) -> BodyModel:
-    """Return the body with each of its `MEASURES` scaled by exp(change), within its bounds."""
+    """Return the body with its `MEASURES` scaled by exp(change), (n,), within bounds."""
     lengths = body.lengths * np.exp(_LENGTH_MAP @ change[:N_LENGTHS])
     radius_factors = np.exp(_RADIUS_MAP @ change[N_LENGTHS:])
     radii = body.radii * radius_factors.reshape(len(CAPSULES), 2)

@@ -42,7 +42,10 @@ def choose_poses(scores: Array, joints: Array, movement_scale: float) -> Integer
 
 
 def nearest_tracked(tracked: Integers, n_frames: int) -> Integers:
-    """Return the nearest tracked frame for every frame; of two, the earlier."""
+    """Return the nearest tracked frame for each of (n_frames,); of two, the earlier.
+
+    `tracked` has frames in ascending order.
+    """
     frames = np.arange(n_frames)
     after = np.searchsorted(tracked, frames).clip(0, len(tracked) - 1)
     before = (after - 1).clip(0)

@@ -9,7 +9,7 @@ from ...depth_scene import Camera, DepthImage
 from ...errors import InvalidMotionError
 from ...settings import setting
 from ..body import N_COORDINATES, N_ROOT, BodyModel, PoseEquations, joint_positions, stay_near
-from ..forest import PARTS, PixelForest, PixelParts, classify_pixels
+from ..forest import PixelForest, PixelParts, classify_pixels
 from ..terms import DEFAULT_TRACKER, Hypothesis, Observation, render_hypothesis
 from ..tracking import register_pose
 from .pose_score import pose_score
@@ -73,13 +73,6 @@ class DetectedPose:
     pixels: PixelParts
     parts: FoundParts
     step: int
-
-    @property
-    def missing_parts(self) -> tuple[str, ...]:
-        """The `PARTS` without pixels; their pose is a guess."""
-        return tuple(
-            part for part, weight in zip(PARTS, self.parts.weights, strict=True) if weight == 0
-        )
 
 
 def detect_pose(

@@ -1,4 +1,4 @@
-"""The weights of [WZC12]."""
+"""Settings of the tracker that are those of [WZC12]."""
 
 import numpy as np
 

@@ -186,7 +186,7 @@ def track_frame(
 def assemble_motion(
     body: BodyModel, poses: Array, qualities: list[FitQuality], frame_rate: float
 ) -> TrackedMotion:
-    """Assemble the poses and fit qualities of all frames."""
+    """Assemble the poses, (n_frames, 36), and the fit qualities of all frames."""
     positions = joint_positions(body, segment_frames(body, poses))
     confidence = np.array([quality.confidence for quality in qualities])
     return TrackedMotion(

@@ -81,7 +81,10 @@ def _axis_across_foot(skeleton: Skeleton, ankle: int) -> Array:
 def hinge_limit(
     fitted: FittedMotion, joint: int, end: int, axis: Array, reserve: float
 ) -> HingeLimit:
-    """Return the goal that a hinge bends no less than recorded, or than `reserve` radians."""
+    """Return the goal that a hinge bends no less than recorded, or than `reserve` radians.
+
+    It bends about `axis`, (3,), in the axes of the joint's parent.
+    """
     minimum = np.minimum(hinge_flexion(fitted, joint, end, axis), reserve)
     return HingeLimit(joint, end, axis, minimum)
 

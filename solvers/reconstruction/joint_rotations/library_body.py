@@ -83,7 +83,8 @@ def bone_frames(postures: Array) -> dict[int, Array]:
     """Return the axes (columns) in which the direction of each corrected bone is expressed.
 
     For bones of the trunk: up from hips to chest, and left along the shoulders or the hips. For
-    a foot: the axes of its shin. NaN where a joint is NaN.
+    a foot: the axes of its shin. NaN where a joint is NaN. Each has the shape (n_frames, 3, 3),
+    of postures (n_frames, 20, 3).
     """
     up = postures[:, CHEST] - postures[:, HIPS]
     across = {

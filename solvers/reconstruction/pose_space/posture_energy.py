@@ -77,7 +77,10 @@ def posture_energy(postures: Array, targets: EnergyTargets) -> Array:
 
 
 def control_term(x: Array, targets: EnergyTargets) -> Array:
-    """Squared distances from observed joints, weighted by reliability (eq. 10)."""
+    """Squared distances from observed joints, weighted by reliability (eq. 10).
+
+    As of all terms the shape is (n_frames, n_samples), of x (n_frames, n_samples, 20, 3).
+    """
     differences = x - targets.observed[:, None]
     squares = np.nan_to_num(np.einsum("fsik,fsik->fsi", differences, differences))
     return np.asarray(np.einsum("fsi,fi->fs", squares, targets.reliability))

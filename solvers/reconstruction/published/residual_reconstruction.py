@@ -112,7 +112,11 @@ def minimize_terms(
     weights: Array,
     settings: ThreeTermSettings,
 ) -> Array:
-    """Minimize eq. 5.6 of [ZH14] in each frame, given the frames 1/30 and 1/15 s before."""
+    """Minimize eq. 5.6 of [ZH14] in each frame, given the frames 1/30 and 1/15 s before.
+
+    Predicted offsets, in meters, have the shape (n_frames, 20, 3), variances and weights
+    (n_frames, 20).
+    """
     observed = fill_gaps(posture_positions(recording)) * CM_PER_M
     offsets = predicted * CM_PER_M - observed
     spatial = settings.spatial / (2.0 * variances * CM_PER_M**2)

@@ -42,7 +42,11 @@ def behavior_term(positions: Array, frame_rate: float, settings: ReliabilitySett
 
 
 def path_angles(positions: Array, step: int, shortest: float) -> Array:
-    """Return the change of direction at each frame, degrees; 0 where the path hardly moves."""
+    """Return the change of direction at each frame, degrees; 0 where the path hardly moves.
+
+    Shape (n_frames, n_joints), of positions (n_frames, n_joints, 3) that move by more than
+    `shortest` meters in `step` frames.
+    """
     angles = np.zeros(positions.shape[:2])
     if len(positions) > 2 * step:
         moved = positions[step:] - positions[:-step]  # eq. 1 and 2
@@ -73,7 +77,11 @@ def kinematics_term(lengths: Array, reference: Array, parents: NDArray[np.intp])
 
 
 def mean_at_joints(values: Array, parents: NDArray[np.intp]) -> Array:
-    """Return the mean over the segments that meet at each joint; 0 where none is known."""
+    """Return the mean over the segments that meet at each joint; 0 where none is known.
+
+    Shape (n_frames, n_joints), of values of the segments by their lower joint, NaN where
+    unknown.
+    """
     is_known = np.isfinite(values)
     values = np.where(is_known, values, 0.0)
     n_joints = len(parents)
@@ -117,7 +125,7 @@ def gaussian_mean(values: Array, frame_rate: float, settings: ReliabilitySetting
 
     The paper specifies neither the width of the Gaussian nor a normalization. Here the standard
     deviation is a third of the window, and the weights add up to 1. If not causal, half the
-    window is on each side.
+    window is on each side. Frames are on the first axis.
     """
     n_window = frame_count(settings.window, frame_rate)
     if settings.causal:

@@ -24,7 +24,7 @@ large gives the same."""
 
 
 def inducing_points(features: Array, count: int, seed: int) -> Array:
-    """Return at most `count` points among the features: cluster centers (k-means)."""
+    """Return at most `count` of the features, (n, n_features): cluster centers (k-means)."""
     distinct = np.unique(features, axis=0)
     if len(distinct) <= count:
         return distinct
@@ -35,7 +35,7 @@ def inducing_points(features: Array, count: int, seed: int) -> Array:
 
 
 def cholesky_root(points: Array, length: float) -> Array:
-    """Return the lower triangular root of the inducing points' covariance."""
+    """Return the lower triangular root, (n, n), of the covariance of inducing points."""
     return np.linalg.cholesky(
         squared_exponential(points, points, length) + REGULARIZATION * np.eye(len(points))
     )
@@ -50,7 +50,8 @@ def basis_functions(features: Array, points: Array, length: float) -> Array:
 def basis_values(squared: Array, length: float, root: Array) -> Array:
     """Return what `basis_functions` does, from distances and a root that are already computed.
 
-    `squared` are the squared distances from the points; `root` is their `cholesky_root`.
+    `squared` are the squared distances from the points, (n_frames, n); `root` is their
+    `cholesky_root`, (n, n).
     """
     values = np.exp(-0.5 * squared / length**2)
     # The transposed root is in the order of LAPACK, which would copy the root itself.

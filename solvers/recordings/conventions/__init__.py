@@ -90,7 +90,7 @@ from .time_stamps import (
     common_rate,
     constant_rate_from_times,
 )
-from .tracked_joints import joint_recording
+from .tracked_joints import JointSamples, joint_recording
 from .unit_estimate import describe_guessed_unit, guess_unit
 
 __all__ = [
@@ -112,6 +112,7 @@ __all__ = [
     "Bodies",
     "Body",
     "ConstantRate",
+    "JointSamples",
     "MarkerSubject",
     "UpAxis",
     "UpAxisName",

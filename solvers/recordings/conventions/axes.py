@@ -48,7 +48,7 @@ def rotations_y_up_from_z_up(rotations: NDArray[np.float64]) -> NDArray[np.float
 
 
 def longest_bone_path(parents: Sequence[int], offsets: NDArray[np.float64]) -> float:
-    """Return the maximum distance between two joints, measured along the bones."""
+    """Return the maximum distance between two joints along bones of offsets (n_joints, 3)."""
     below = np.zeros(len(parents))
     longest = 0.0
     for joint in range(len(parents) - 1, 0, -1):

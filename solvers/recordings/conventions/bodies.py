@@ -222,7 +222,7 @@ def observed_body(
     *,
     is_person: bool = True,
 ) -> Body:
-    """Return a body from the frames in which it is observed, of a recording of this length."""
+    """Return a body from the indices of frames in which it is observed, of all `n_frames`."""
     first, last = (int(frames[0]), int(frames[-1])) if len(frames) else (0, -1)
     fraction, seconds = len(frames) / n_frames, duration_s * (last + 1 - first) / n_frames
     return Body(name, len(frames), first, last, fraction, seconds, is_person)
@@ -262,7 +262,7 @@ def bodies_of_frames(
 def stack_body_frames(
     body: Key, frames: Sequence[Mapping[Key, NDArray[np.float64]]]
 ) -> NDArray[np.float64]:
-    """Stack the values of one body; NaN in the frames without it."""
+    """Stack the values of one body, shape (n_frames, ...); NaN in the frames without it."""
     shape = next(frame[body].shape for frame in frames if body in frame)
     missing = np.full(shape, np.nan)
     return np.stack([frame.get(body, missing) for frame in frames])

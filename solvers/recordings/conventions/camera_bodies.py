@@ -32,7 +32,10 @@ def up_along(points: Array, high: Sequence[int], low: Sequence[int]) -> AxisName
 
 
 def stand_along(points: Array, high: Sequence[int], low: Sequence[int]) -> Array:
-    """Rotate points by quarter turns so that some are above others (`up_along`)."""
+    """Rotate points (n_frames, n_points, 3) by quarter turns: some are above others.
+
+    `high` and `low` are their indices (`up_along`).
+    """
     return points_z_up(points, up_along(points, high, low))
 
 

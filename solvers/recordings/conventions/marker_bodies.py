@@ -68,6 +68,7 @@ def direction_of_named_markers(names: Sequence[str], points: Array) -> Array | N
     """Return the direction from feet to head in most frames; None if names show neither.
 
     Its components are medians over the frames, so that it is shorter than 1 where it changes.
+    Points have the shape (n_frames, n_points, 3).
     """
     trunk = _from_feet_to_top(names, points)
     if trunk is None:
@@ -87,7 +88,8 @@ def stature_of_markers(names: Sequence[str], points: Array) -> float | None:
     """Return the stature of the actor, meters; None where names show no head or no feet.
 
     It follows from the paths from the feet to the head, over knees and hips where names show
-    them: a posture only shortens the distance between their ends.
+    them: a posture only shortens the distance between their ends. Points have the shape
+    (n_frames, n_points, 3), meters.
     """
     trunk = _from_feet_to_top(names, points)
     if trunk is None:

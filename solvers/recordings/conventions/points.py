@@ -65,7 +65,7 @@ def guess_unit_of_points(
 
     Labels of head and feet show the stature of the actor (`estimate_unit`). Without them, as
     with points of a limb, it is that of meters, centimeters and millimeters whose extent is
-    nearest to a person's.
+    nearest to a person's. Points have the shape (n_frames, n_points, 3), in that unit.
     """
     height = stature_of_markers(labels, points)
     if height is not None and 0.0 < height < np.inf:
@@ -130,7 +130,7 @@ def axes_of_points(up: str, unit: float = 1.0) -> FileConventions:
 
 
 def points_z_up(points: NDArray[np.float64], up: str) -> NDArray[np.float64]:
-    """Rotate points so that `up`, such as `+Y`, becomes Z."""
+    """Rotate points, shape (..., 3), so that `up`, such as `+Y`, becomes Z."""
     if up[-1] == "X":
         points = np.roll(points, -1, axis=-1)  # x y z -> y z x
     if up[-1] == "Y":

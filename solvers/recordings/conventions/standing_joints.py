@@ -82,7 +82,7 @@ def _positions(motion: Motion, frames: NDArray[np.intp]) -> Array:
 
 
 def is_unfolded(rest: Array, body: StandingJoints) -> bool:
-    """Whether the rest pose shows a body with separate legs, not all joints at one point."""
+    """Whether a rest pose, (n_joints, 3), shows separate legs, not all joints at one point."""
     spread = np.linalg.norm(rest[body.feet[0]] - rest[body.feet[-1]])
     return len(body.feet) < 2 or bool(
         spread > MIN_SPREAD_FRACTION * np.ptp(rest[body.joints], axis=0).max()
@@ -90,7 +90,10 @@ def is_unfolded(rest: Array, body: StandingJoints) -> bool:
 
 
 def measure_standing(positions: Array, body: StandingJoints) -> dict[AxisName, float]:
-    """Return how far each axis points from feet to hips to head in most frames, -1 to 1."""
+    """Return how far each axis points from feet to hips to head in most frames, -1 to 1.
+
+    Here and below, positions have the shape (n_frames, n_joints, 3), in any unit.
+    """
     trunk = positions[:, body.head] - positions[:, body.hips]
     legs = positions[:, body.hips] - positions[:, body.feet].mean(axis=1)
     directions = [

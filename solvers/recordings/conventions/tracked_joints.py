@@ -1,7 +1,7 @@
 """Build a joint recording: mark gaps, resample to a constant rate, and check the unit."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,21 +20,42 @@ SENSOR_AXES: dict[Sensor, tuple[AxisName, AxisName]] = {
 """Axes of each camera's space that are up, and toward the camera (`sensor_axes`)."""
 
 
+@dataclass(frozen=True, eq=False)
+class JointSamples:
+    """Joints as a file or a stream has them, in its own unit.
+
+    Attributes
+    ----------
+    names : sequence of str
+    positions : float array, shape (n_frames, n_joints, 3), in the file's unit
+        A position that is NaN, exactly 0, or in state 0 was not observed.
+    sensor : Sensor
+    states : int8 array, shape (n_frames, n_joints), or None
+    confidence : float array, shape (n_frames, n_joints), 0 to 1, or None
+    times : float array, shape (n_frames,), seconds, or None
+        Time of each frame. A recording is resampled to a constant rate (`ConstantRate`), which
+        is `frame_rate` if the times agree with it.
+    frame_rate : float, hertz
+    """
+
+    names: Sequence[str]
+    positions: NDArray[np.float64]
+    sensor: Sensor = Sensor.OTHER
+    states: NDArray[np.int8] | None = None
+    confidence: NDArray[np.float64] | None = None
+    times: NDArray[np.float64] | None = None
+    frame_rate: float = DEFAULT_FRAME_RATE
+
+
 def joint_recording(
     path: Path | str,
-    names: Sequence[str],
-    positions: NDArray[np.float64],
-    sensor: Sensor,
+    joints: JointSamples,
     *,
-    states: NDArray[np.int8] | None = None,
-    confidence: NDArray[np.float64] | None = None,
-    times: NDArray[np.float64] | None = None,
-    frame_rate: float = DEFAULT_FRAME_RATE,
-    nan_only: bool = False,
     scale: float | None,
+    progress: Progress,
+    nan_only: bool = False,
     default_unit: float = 1.0,
     conventions: FileConventions | None = None,
-    progress: Progress,
 ) -> JointRecording:
     """Build a recording from the contents of a file.
 
@@ -42,28 +63,19 @@ def joint_recording(
     ----------
     path : Path or str
         For error messages.
-    names : sequence of str
-    positions : float array, shape (n_frames, n_joints, 3), in the file's unit, Z up
-        A position that is NaN, exactly 0, or in state 0 was not observed: its state becomes 0,
-        and the position NaN.
-    sensor : Sensor
-    states : int8 array, shape (n_frames, n_joints), or None
-    confidence : float array, shape (n_frames, n_joints), 0 to 1, or None
-    times : float array, shape (n_frames,), seconds, or None
-        Time of each frame. The recording is then resampled to a constant rate
-        (`ConstantRate`), which is `frame_rate` if the times agree with it.
-    frame_rate : float, hertz
+    joints : JointSamples
+        Z is up. Where a joint was not observed, its state becomes 0 and its position NaN.
+    scale : float, meters per unit of the file, or None
+        None: the default unit, or the unit that gives a human body if the default does not.
+    progress : Progress
+        Receives a message on resampling, and on the unit if it was estimated.
     nan_only : bool
         True: only NaN was not observed. The origin is a valid position, and a joint that was
         not tracked keeps its position.
-    scale : float, meters per unit of the file, or None
-        None: the default unit, or the unit that gives a human body if the default does not.
     default_unit : float, meters
         Default unit of the format.
     conventions : FileConventions or None
         How the axes were interpreted. None: as the sensor has them.
-    progress : Progress
-        Receives a message on resampling, and on the unit if it was estimated.
 
     Returns
     -------
@@ -74,6 +86,8 @@ def joint_recording(
     InvalidFileError
         No joint is observed in any frame, or the time stamps are invalid.
     """
+    positions, states, confidence = joints.positions, joints.states, joints.confidence
+    frame_rate = joints.frame_rate
     missing = ~np.isfinite(positions).all(axis=-1)
     if not nan_only:
         missing |= (positions == 0.0).all(axis=-1)
@@ -83,18 +97,18 @@ def joint_recording(
     positions = np.where(missing[..., None], np.nan, positions)
     if missing.all():
         raise InvalidFileError(f"{path} has no joint that is observed in any frame.")
-    if times is not None:
-        resampler = ConstantRate(path, times, frame_rate)
+    if joints.times is not None:
+        resampler = ConstantRate(path, joints.times, frame_rate)
         frame_rate = resampler.frame_rate
         positions = resampler.positions(positions)
         states = None if states is None else resampler.states(states)
         confidence = None if confidence is None else resampler.confidence(confidence)
     uneven = f"Resampled to {frame_rate:.4g} Hz from its time stamps"
-    progress(1.0, READING if times is None else Remark(uneven))
+    progress(1.0, READING if joints.times is None else Remark(uneven))
     unit = default_unit if scale is None else scale
     positions *= unit  # a copy of the argument
-    axes = conventions or FileConventions(*SENSOR_AXES.get(sensor, ("Z", "-Y")))
+    axes = conventions or FileConventions(*SENSOR_AXES.get(joints.sensor, ("Z", "-Y")))
     noted = replace(axes, unit=unit, has_floor=False)
-    tracks = Tracks(tuple(names), positions, frame_rate, confidence, noted)
-    recording = JointRecording(tracks, states, sensor)
+    tracks = Tracks(tuple(joints.names), positions, frame_rate, confidence, noted)
+    recording = JointRecording(tracks, states, joints.sensor)
     return recording if scale is not None else convert_to_body_unit(recording, unit, progress)

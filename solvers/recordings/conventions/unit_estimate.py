@@ -125,7 +125,7 @@ def estimate_unit(
 
 
 def guess_unit(parents: Sequence[int], offsets: NDArray[np.float64]) -> float:
-    """Return the probable meters per unit of a skeleton; centimeters with too few joints."""
+    """Return the probable meters per unit of offsets (n_joints, 3); 0.01 with few joints."""
     reach = longest_bone_path(parents, offsets)
     if len(parents) < MIN_BODY_JOINTS or not 0.0 < reach < inf:
         return CENTIMETER

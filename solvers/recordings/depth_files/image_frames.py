@@ -67,6 +67,8 @@ def frames_by_number(names: Sequence[str], frame_rate: float) -> Frames:
 def frames_by_time(path: Path, times: NDArray[np.float64]) -> Frames:
     """Assign to each frame of a constant rate the nearest image, up to half a frame away.
 
+    `times`, in seconds, has the shape (n_images,).
+
     Raises InvalidFileError if the time stamps are invalid.
     """
     resampler = ConstantRate(path, times)
@@ -74,7 +76,7 @@ def frames_by_time(path: Path, times: NDArray[np.float64]) -> Frames:
 
 
 def match_times(times: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return the index of the nearest other time for each time, -1 for none."""
+    """Return the index of the nearest other time, in seconds, for each of (n,); -1 for none."""
     if not len(others):
         return np.full(len(times), NO_IMAGE)
     order = np.argsort(others)

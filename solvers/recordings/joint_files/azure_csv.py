@@ -23,6 +23,7 @@ from ..conventions import (
     MILLIMETER,
     Bodies,
     Body,
+    JointSamples,
     check_scale,
     from_azure_space,
     joint_recording,
@@ -105,10 +106,9 @@ def open_azure_csv(
         states = values[..., 3].astype(np.int8) if values.shape[-1] > 3 else None
         return joint_recording(
             path,
-            names,
-            from_azure_space(values[..., :3]),
-            Sensor.AZURE_KINECT,
-            states=states,
+            JointSamples(
+                names, from_azure_space(values[..., :3]), Sensor.AZURE_KINECT, states=states
+            ),
             scale=scale,
             default_unit=MILLIMETER,
             progress=progress,

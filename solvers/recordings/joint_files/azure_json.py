@@ -11,17 +11,24 @@ from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched
 from ..containers import UniqueNames, array_from_json, json_members, printable
-from ..conventions import MILLIMETER, Bodies, check_scale, from_azure_space, joint_recording
+from ..conventions import (
+    MILLIMETER,
+    Bodies,
+    JointSamples,
+    check_scale,
+    from_azure_space,
+    joint_recording,
+)
 from .azure_csv import azure_joint
 from .json_bodies import (
     BodiesFrame,
     BodyJoints,
-    listed,
+    checked_objects,
     name_of_body,
     number,
     open_frames,
     position_of,
-    stacked,
+    stack_body,
 )
 
 MICROSECOND = 1e-6
@@ -91,13 +98,10 @@ def open_azure_json(
         )
 
     def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
-        positions, _ = stacked(body, frames)
+        positions, _ = stack_body(body, frames)
         return joint_recording(
             path,
-            joints,
-            from_azure_space(positions),
-            Sensor.AZURE_KINECT,
-            times=times,
+            JointSamples(joints, from_azure_space(positions), Sensor.AZURE_KINECT, times=times),
             scale=scale,
             default_unit=MILLIMETER,
             progress=progress,
@@ -111,7 +115,7 @@ def _read_frame(frame: Any, done: float, location: str) -> BodiesFrame:
     if not isinstance(frame, dict):
         raise InvalidFileError(f"{location}: a frame is required. Export the file again.")
     bodies: dict[str, BodyJoints] = {}
-    for count, body in enumerate(listed(frame.get("bodies"), location), start=1):
+    for count, body in enumerate(checked_objects(frame.get("bodies"), location), start=1):
         listed_positions = body.get("joint_positions")
         if isinstance(listed_positions, list):
             listed_positions = [*map(position_of, listed_positions)]

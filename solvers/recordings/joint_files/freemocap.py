@@ -112,7 +112,10 @@ def read_freemocap_points(
 def with_centers(
     names: tuple[str, ...], points: NDArray[np.float64]
 ) -> tuple[tuple[str, ...], NDArray[np.float64]]:
-    """Add the joints in the middle of the body; missing where any of their points is."""
+    """Add the joints in the middle of the body; missing where any of their points is.
+
+    Points have the shape (n_frames, n_points, 3).
+    """
     centers = [
         points[:, [BODY_POINTS.index(side) for side in sides]].mean(axis=1)
         for sides in COMPUTED_JOINTS.values()

@@ -14,6 +14,7 @@ from ..containers import printable, read_bytes, read_number, shown
 from ..conventions import (
     MILLISECOND,
     Bodies,
+    JointSamples,
     bodies_of_frames,
     check_scale,
     from_kinect_space,
@@ -100,11 +101,13 @@ def open_irds(
         joints = stack_body_frames(keys[index], frames)
         return joint_recording(
             path,
-            NAMES,
-            from_kinect_space(joints[..., :3]),
-            Sensor.KINECT_V2,
-            states=np.nan_to_num(joints[..., 3]).astype(np.int8),
-            times=times,
+            JointSamples(
+                NAMES,
+                from_kinect_space(joints[..., :3]),
+                Sensor.KINECT_V2,
+                states=np.nan_to_num(joints[..., 3]).astype(np.int8),
+                times=times,
+            ),
             scale=scale,
             progress=progress,
         )

@@ -12,7 +12,7 @@ from ...errors import InvalidFileError, InvalidMotionError
 from ...motion import FileConventions, JointRecording, Sensor
 from ...progress import Progress
 from ..containers import shown
-from ..conventions import METERS, axes_of_points, joint_recording, points_z_up
+from ..conventions import METERS, JointSamples, axes_of_points, joint_recording, points_z_up
 from .kinect_csv import checked_states
 
 FORMAT = "mocap-assist-joints"
@@ -96,13 +96,15 @@ def build_recording(
             raise InvalidFileError(f"{path} has a confidence that is not between 0 and 1.")
     return joint_recording(
         path,
-        names,
-        points_z_up(positions, header.conventions.up),
-        header.sensor,
-        states=None if states is None else checked_states(np.nan_to_num(states), path),
-        confidence=confidence,
-        times=times if header.frame_rate is None else None,
-        frame_rate=header.frame_rate or 1.0,
+        JointSamples(
+            names,
+            points_z_up(positions, header.conventions.up),
+            header.sensor,
+            states=None if states is None else checked_states(np.nan_to_num(states), path),
+            confidence=confidence,
+            times=times if header.frame_rate is None else None,
+            frame_rate=header.frame_rate or 1.0,
+        ),
         nan_only=True,
         scale=header.unit if scale is None else scale,
         conventions=header.conventions,

@@ -9,7 +9,13 @@ from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched, within
 from ..containers import LineReader, spaces_from_commas, stream_rows
-from ..conventions import DEFAULT_FRAME_RATE, check_scale, from_kinect_space, joint_recording
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    JointSamples,
+    check_scale,
+    from_kinect_space,
+    joint_recording,
+)
 
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 WITHOUT_TIME = 4 * len(NAMES)
@@ -86,12 +92,14 @@ def read_kinect_csv(
     joints = rows[:, width - WITHOUT_TIME :].reshape(len(rows), len(NAMES), 4)
     return joint_recording(
         path,
-        NAMES,
-        from_kinect_space(joints[..., :3]),
-        Sensor.KINECT_V2,
-        states=checked_states(joints[..., 3], path),
-        times=rows[:, 0] * TICK if width > WITHOUT_TIME else None,
-        frame_rate=frame_rate,
+        JointSamples(
+            NAMES,
+            from_kinect_space(joints[..., :3]),
+            Sensor.KINECT_V2,
+            states=checked_states(joints[..., 3], path),
+            times=rows[:, 0] * TICK if width > WITHOUT_TIME else None,
+            frame_rate=frame_rate,
+        ),
         scale=scale,
         progress=progress,
     )

@@ -14,7 +14,7 @@ MAX_SPREAD = 100
 body. It bounds the memory of damaged files."""
 
 
-def grouped(numbers: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def group_equal_lines(numbers: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the first line of each group of equal ones, in order, and the group of each.
 
     Parameters

@@ -33,7 +33,7 @@ from ..point_bodies import (
     over_midnight,
     recording_from_landmarks,
 )
-from .line_groups import MAX_SPREAD, first_repeated_line, frames_of_lines, grouped
+from .line_groups import MAX_SPREAD, first_repeated_line, frames_of_lines, group_equal_lines
 from .long_columns import LongColumns, long_columns, number_of_frame, number_or_missing
 from .mediapipe_csv import mediapipe_landmark
 from .points_recording import recording_of_points
@@ -253,13 +253,13 @@ def _people(
     if columns.identity is not None and not person:
         is_enough = len(rows) >= MIN_JOINTS * len(table.words[columns.identity])
         choices[1:1] = [[columns.identity]] if is_enough else []
-    groups = (grouped(rows[:, choice]) for choice in choices)
+    groups = (group_equal_lines(rows[:, choice]) for choice in choices)
     unique = (
         (choice, first, people)
         for choice, (first, people) in zip(choices, groups, strict=True)
         if first_repeated_line((people, frames, joints)) is None
     )
-    used, first, people = next(unique, (person, *grouped(rows[:, person])))
+    used, first, people = next(unique, (person, *group_equal_lines(rows[:, person])))
     names = [
         " ".join(table.words[at].name(int(np.nan_to_num(rows[line, at]))) for at in used)
         for line in first

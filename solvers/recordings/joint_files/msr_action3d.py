@@ -8,7 +8,7 @@ from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched, within
 from ..containers import read_bytes, read_rows
-from ..conventions import check_scale, from_kinect_space, joint_recording
+from ..conventions import JointSamples, check_scale, from_kinect_space, joint_recording
 
 FRAME_RATE_HZ = 15.0
 """Frame rate of the data set, hertz; its files do not state it."""
@@ -99,11 +99,13 @@ def read_msr_action3d(
         )
     return joint_recording(
         path,
-        NAMES,
-        from_kinect_space(joints[..., :3]),
-        Sensor.KINECT_V1,
-        confidence=np.clip(np.nan_to_num(joints[..., 3]), 0.0, 1.0),
-        frame_rate=frame_rate,
+        JointSamples(
+            NAMES,
+            from_kinect_space(joints[..., :3]),
+            Sensor.KINECT_V1,
+            confidence=np.clip(np.nan_to_num(joints[..., 3]), 0.0, 1.0),
+            frame_rate=frame_rate,
+        ),
         scale=scale,
         progress=progress,
     )

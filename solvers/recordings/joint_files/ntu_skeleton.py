@@ -13,6 +13,7 @@ from ..containers import read_bytes, read_rows
 from ..conventions import (
     DEFAULT_FRAME_RATE,
     Bodies,
+    JointSamples,
     bodies_of_frames,
     check_scale,
     from_kinect_space,
@@ -89,10 +90,12 @@ def open_ntu_skeleton(
         joints = _read_body(lines, frames, keys[index], path, within(progress, 0.0, 0.9))
         return joint_recording(
             path,
-            NAMES,
-            from_kinect_space(joints[..., :3]),
-            Sensor.KINECT_V2,
-            states=checked_states(joints[..., 3], path),
+            JointSamples(
+                NAMES,
+                from_kinect_space(joints[..., :3]),
+                Sensor.KINECT_V2,
+                states=checked_states(joints[..., 3], path),
+            ),
             scale=scale,
             progress=progress,
         )

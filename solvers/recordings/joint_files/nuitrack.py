@@ -17,6 +17,7 @@ from ..conventions import (
     DEFAULT_FRAME_RATE,
     MILLIMETER,
     Bodies,
+    JointSamples,
     check_scale,
     joint_recording,
     observed_body,
@@ -25,13 +26,13 @@ from ..conventions import (
 from .json_bodies import (
     BodiesFrame,
     BodyJoints,
+    checked_objects,
     json_frames,
-    listed,
     name_of_body,
     number,
     open_frames,
     point,
-    stacked,
+    stack_body,
 )
 
 CSV_HEAD = re.compile(rb"(?i)[^\r\n]*\bJOINT_WAIST\.x\b")
@@ -153,7 +154,7 @@ def open_nuitrack_json(
         progress(done, "Reading")
 
     def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
-        positions, confidence = stacked(body, frames)
+        positions, confidence = stack_body(body, frames)
         names = list(NUITRACK.values())
         return _recording(
             path, names, positions, confidence, times, scale, MILLIMETER, progress
@@ -164,7 +165,7 @@ def open_nuitrack_json(
 
 def _read_frame(value: Mapping[str, Any], done: float, location: str) -> BodiesFrame:
     bodies: dict[str, BodyJoints] = {}
-    for count, body in enumerate(listed(_first(value, tuple(KEYS)), location)):
+    for count, body in enumerate(checked_objects(_first(value, tuple(KEYS)), location)):
         joints = _first(body, ("joints", "Joints"))
         found = _read_joints(body if joints is None else joints, location)
         bodies.setdefault(name_of_body(body, IDS, count), found)
@@ -225,11 +226,7 @@ def _recording(
         confidence = None if confidence is None else confidence[:, kept]
     return joint_recording(
         path,
-        names,
-        positions,
-        Sensor.NUITRACK,
-        confidence=confidence,
-        times=times,
+        JointSamples(names, positions, Sensor.NUITRACK, confidence=confidence, times=times),
         scale=scale,
         default_unit=unit,
         progress=progress,

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from ...progress import READING, Progress, Remark
 from ..conventions import (
     DEFAULT_FRAME_RATE,
     ConstantRate,
+    JointSamples,
     guess_unit_of_points,
     stand_markers,
 )
@@ -76,8 +76,10 @@ def recording_of_points(
         progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     if body is not None:
         placed = in_room(body.names, body.positions, roots)
-        clock: dict[str, Any] = {"times": times, "rate": rate or DEFAULT_FRAME_RATE}
-        return stand_body(path, body.names, placed, **clock, scale=unit, progress=progress)
+        joints = JointSamples(
+            body.names, placed, times=times, frame_rate=rate or DEFAULT_FRAME_RATE
+        )
+        return stand_body(path, joints, scale=unit, progress=progress)
     progress(0.8, _remark_of_markers(names, lacking))
     if times is not None:
         resampler = ConstantRate(path, times, rate)

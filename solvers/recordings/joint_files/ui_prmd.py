@@ -9,7 +9,7 @@ from ...motion import FileConventions, JointRecording, Sensor, Tracks
 from ...motion.skeletons import UI_PRMD
 from ...progress import Progress, unwatched, within
 from ..containers import read_archive
-from ..conventions import check_scale, joint_recording, with_conventions
+from ..conventions import JointSamples, check_scale, joint_recording, with_conventions
 
 NAMES = tuple(UI_PRMD)
 MARKERS = (
@@ -83,10 +83,7 @@ def read_ui_prmd_pair(
     meters = float(unit) if scale is None else scale
     recording = joint_recording(
         path,
-        NAMES,
-        kinect,
-        Sensor.KINECT_V2,
-        frame_rate=float(frame_rate),
+        JointSamples(NAMES, kinect, Sensor.KINECT_V2, frame_rate=float(frame_rate)),
         scale=meters,
         conventions=FileConventions(),
         progress=within(progress, 0.0, 0.9),

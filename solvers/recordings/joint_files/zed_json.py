@@ -14,6 +14,7 @@ from ...progress import Progress, Remark, unwatched
 from ..containers import array_from_json
 from ..conventions import (
     Bodies,
+    JointSamples,
     check_scale,
     is_mirrored,
     joint_recording,
@@ -22,12 +23,12 @@ from ..conventions import (
 from .json_bodies import (
     BodiesFrame,
     BodyJoints,
+    checked_objects,
     json_frames,
-    listed,
     name_of_body,
     number,
     open_frames,
-    stacked,
+    stack_body,
 )
 
 HEAD = re.compile(rb'\s*[\[{].*"(body_list|is_tracked)"\s*:', re.DOTALL)
@@ -103,7 +104,7 @@ def _recording(
             f"{path} has bodies of {', '.join(map(str, sorted(n_joints)))} joints; those of 18,"
             " 34 or 38 are read. Export one of these."
         )
-    positions, confidence = stacked(body, frames)
+    positions, confidence = stack_body(body, frames)
     names = list(ZED_BODIES[positions.shape[1]])
     positions, confidence = _with_means(names, positions, confidence)
     ankles = [names.index(f"Ankle{side}") for side in SIDE_SUFFIXES]
@@ -114,11 +115,7 @@ def _recording(
         progress(0.0, Remark("The axes of the file are left-handed; the body is mirrored back"))
     return joint_recording(
         path,
-        names,
-        positions,
-        Sensor.ZED,
-        confidence=confidence,
-        times=times,
+        JointSamples(names, positions, Sensor.ZED, confidence=confidence, times=times),
         scale=scale,
         progress=progress,
     )
@@ -143,7 +140,7 @@ def _with_means(
 
 def _read_frame(key: str, value: dict[str, Any], done: float, location: str) -> BodiesFrame:
     bodies: dict[str, BodyJoints] = {}
-    for count, body in enumerate(listed(value.get("body_list"), location)):
+    for count, body in enumerate(checked_objects(value.get("body_list"), location)):
         if not body.get("keypoint"):
             continue
         positions = array_from_json(body["keypoint"], (-1, 3), f"{location}, keypoint")

@@ -11,6 +11,7 @@ from ...motion.skeletons import BODY_POINTS
 from ...progress import Progress, Remark
 from ..conventions import (
     DEFAULT_FRAME_RATE,
+    JointSamples,
     UpAxis,
     describe_guessed_axis,
     estimate_up_of_joints,
@@ -92,12 +93,14 @@ def recording_from_landmarks(
     _say_missing_rate(times, frame_rate, progress)
     return joint_recording(
         path,
-        LANDMARK_JOINTS,
-        with_computed_joints(from_azure_space(points)),
-        Sensor.MEDIAPIPE,
-        confidence=(None if visibility is None else with_computed_joints(visibility)),
-        times=times,
-        frame_rate=frame_rate or DEFAULT_FRAME_RATE,
+        JointSamples(
+            LANDMARK_JOINTS,
+            with_computed_joints(from_azure_space(points)),
+            Sensor.MEDIAPIPE,
+            confidence=None if visibility is None else with_computed_joints(visibility),
+            times=times,
+            frame_rate=frame_rate or DEFAULT_FRAME_RATE,
+        ),
         nan_only=True,
         scale=scale,
         progress=progress,
@@ -151,11 +154,15 @@ def _converted(
     joints = [LANDMARK_JOINTS.index(name) for name in body.names if name in LANDMARK_JOINTS]
     return stand_body(
         path,
-        body.names,
-        body.positions,
-        rate=frame_rate or DEFAULT_FRAME_RATE,
-        times=times,
-        confidence=None if visibility is None else with_computed_joints(visibility)[:, joints],
+        JointSamples(
+            body.names,
+            body.positions,
+            frame_rate=frame_rate or DEFAULT_FRAME_RATE,
+            times=times,
+            confidence=None
+            if visibility is None
+            else with_computed_joints(visibility)[:, joints],
+        ),
         scale=scale,
         progress=progress,
     )

@@ -66,7 +66,7 @@ def is_normalized(points: Array) -> bool:
 
 
 def is_inside_picture(points: Array) -> bool:
-    """Return whether x and y are fractions of a picture's size."""
+    """Return whether x and y of points, shape (..., 3), are fractions of a picture's size."""
     flat = points[..., :2][np.isfinite(points).all(axis=-1)]
     inside = (flat >= 0.0) & (flat <= 1.0)
     return bool(inside.mean() >= MIN_INSIDE)

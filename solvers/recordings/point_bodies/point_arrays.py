@@ -15,6 +15,7 @@ from ...progress import Progress, Remark
 from ..conventions import (
     DEFAULT_FRAME_RATE,
     SWAPPED,
+    JointSamples,
     conventions_of,
     describe_guessed_axis,
     estimate_up_of_joints,
@@ -149,12 +150,14 @@ def read_body(
     )
     return stand_body(
         path,
-        body.names,
-        body.positions,
+        JointSamples(
+            body.names,
+            body.positions,
+            frame_rate=rate or default_rate,
+            times=times,
+            sensor=SENSORS.get(body.layout, Sensor.OTHER),
+        ),
         up=UP_OF_SMPL if body.layout == SMPL else UP,
-        rate=rate or default_rate,
-        times=times,
-        sensor=SENSORS.get(body.layout, Sensor.OTHER),
         scale=scale,
         progress=progress,
     )
@@ -162,14 +165,9 @@ def read_body(
 
 def stand_body(
     path: Path | str,
-    names: tuple[str, ...],
-    positions: Array,
+    joints: JointSamples,
     *,
     up: Mapping[AxisName, float] = UP,
-    rate: float = DEFAULT_FRAME_RATE,
-    times: Array | None = None,
-    sensor: Sensor = Sensor.OTHER,
-    confidence: Array | None = None,
     scale: float | None,
     progress: Progress,
 ) -> JointRecording:
@@ -178,18 +176,14 @@ def stand_body(
     Parameters
     ----------
     path : Path or str
-    names : names of joints with humanoid roles
-    positions : shape (n_frames, n_joints, 3), in the unit and axes of the file
+    joints : JointSamples
+        With names of humanoid roles; NaN where not observed; in the axes of the file.
     up : evidence of the format for each axis
-    rate : float, hertz
-    times : shape (n_frames,), seconds, or None for the rate
-    sensor : Sensor
-    confidence : shape (n_frames, n_joints), 0 to 1, or None
     scale : float, meters per unit of the file, or None
     progress : Progress
         Receives what was estimated.
     """
-    positions = z_up_from_y_up(positions)
+    names, positions = tuple(joints.names), z_up_from_y_up(joints.positions)
     roles = {role: names.index(name) for role, name in roles_by_name(names).items()}
     estimated = estimate_up_of_joints(positions, roles, up)
     refuse_parent_positions(path, positions, roles)
@@ -199,12 +193,7 @@ def stand_body(
         progress(0.8, Remark(describe_guessed_axis(estimated.axis)))
     recording = joint_recording(
         path,
-        names,
-        positions,
-        sensor,
-        confidence=confidence,
-        times=times,
-        frame_rate=rate,
+        replace(joints, positions=positions),
         nan_only=True,
         scale=scale,
         conventions=file_conventions("Y"),

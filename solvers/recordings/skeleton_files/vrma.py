@@ -191,7 +191,7 @@ def _objects(value: Any) -> list[Mapping[str, Any]]:
 
 
 def _unit(rotation: Array) -> Array:
-    return rotation / np.linalg.norm(rotation) if rotation.any() else np.array(IDENTITY)
+    return np.where(rotation @ rotation > 0.0, normalize(rotation), IDENTITY)
 
 
 def _channel(

@@ -51,7 +51,7 @@ def motion_from_world_poses(
 
 
 def body_extent(positions: Array) -> float:
-    """Return the largest side of the box around the joints in most complete frames."""
+    """Return the median of the largest side of the box around (n_frames, n_joints, 3)."""
     complete = np.isfinite(positions).all(axis=(1, 2))
     boxes = np.ptp(positions[complete], axis=1).max(axis=-1)
     return float(np.median(boxes)) if len(boxes) else 0.0

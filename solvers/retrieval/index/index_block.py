@@ -96,7 +96,7 @@ def build_block(clips: list[int], described: list[Segments]) -> IndexBlock:
 
 
 def merge_blocks(blocks: list[IndexBlock], alive: NDArray[np.int64]) -> IndexBlock:
-    """Merge blocks, without the segments of clips that are no longer `alive`."""
+    """Merge blocks; keep the segments of clips whose numbers are in `alive`."""
     kept = [np.isin(block.clips, alive) for block in blocks]
     columns = {
         item.name: np.concatenate([

@@ -50,7 +50,10 @@ class SearchIndex:
     def best_segments(
         self, distances: Single, ignore: Collection[int]
     ) -> tuple[Single, Integers]:
-        """Return the minimum distance of each clip, and the segment with this distance."""
+        """Return the minimum distance of each clip, and the segment with this distance.
+
+        `distances` has the shape (n_segments,); clips to ignore are left out.
+        """
         order, starts, numbers = self._by_clip
         if not len(starts):
             return np.zeros(0, dtype=np.float32), order

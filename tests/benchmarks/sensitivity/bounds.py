@@ -29,6 +29,7 @@ BOUNDS: dict[str, tuple[str, ...]] = {
         "denoising/marker_gaps/fill_markers.MAX_GAPS_TOGETHER",
         "denoising/marker_gaps/gap_boundaries.MAX_TRAINING_FRAMES",
         "denoising/outliers/predictive_density.N_RARE_COMPONENTS",
+        "denoising/outliers/window_density.MAX_SAMPLE_RATIO",
         "denoising/quality/bone_drift.MAX_SAMPLED_FRAMES",
         "denoising/window_estimates/mean_pose.MAX_NEIGHBORS",
         "denoising/window_priors/lag_covariance.N_FIRST_EIGENVECTORS",

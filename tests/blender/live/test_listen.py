@@ -95,7 +95,7 @@ def test_a_port_in_use_is_reported(listen, load, window, port):
 
 
 def test_gestures_reach_the_library_and_a_performance_starts_a_search(
-    listen, act, library, load, window
+    listen, act, library, window
 ):
     button = listen()
 
@@ -107,7 +107,6 @@ def test_gestures_reach_the_library_and_a_performance_starts_a_search(
     assert library[:3] == ["show", 1, -1]
     (query,) = library[3:]
     assert query.n_frames > 30 and query.frame_rate == 30.0
-    assert query is load("mocap_assist.live.commands").last_performance()
     assert window.status[-1].startswith("Searched.")
 
     library.append("choose")
@@ -115,13 +114,12 @@ def test_gestures_reach_the_library_and_a_performance_starts_a_search(
     assert window.status[-1].startswith("Found.")
 
 
-def test_missing_library_is_reported_and_the_performance_is_kept(listen, act, load, window):
+def test_missing_library_is_reported(listen, act, window):
     button = listen()
 
     act(button, "hand up", "clap", "rest", "clap")
 
     assert "There is no library yet" in window.status[-1]
-    assert load("mocap_assist.live.commands").last_performance().n_frames >= 15
 
 
 def test_zoom_and_turn_gestures_move_the_view(listen, act, view):

@@ -29,7 +29,7 @@ def test_related_rows_share_one(load, ranges, drawing):
         row.RIGHT_FOOT: (ranges.Range(4.0, 9.0, mark.RIGHT_FOOT),),
     }
 
-    found = ranges.grouped(rows)
+    found = ranges.join_related_rows(rows)
 
     assert list(found) == [row.CONFIDENCE, row.ISSUES, row.FILLED, row.CONTACTS]
     assert found[row.ISSUES] == rows[row.SPIKES] + rows[row.GAPS]

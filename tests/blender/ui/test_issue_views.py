@@ -110,7 +110,7 @@ def test_view_moves_only_to_a_point_that_it_does_not_show(load, x, is_moved):
 def test_point_behind_a_view_is_not_shown(load):
     behind = Matrix(((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, -1, 0)))
 
-    assert not load("mocap_assist.overlays.view_control").shows(behind, Vector((0, 0, 1)))
+    assert not load("mocap_assist.overlays.view_control").is_in_view(behind, Vector((0, 0, 1)))
 
 
 def test_jump_shows_the_bone_in_the_scene(blank, switches, issue, actor, load, monkeypatch):

@@ -53,6 +53,18 @@ def test_undo_keeps_the_list_of_the_action_that_is_still_played(blank, noisy, re
     assert renewing._awaited == {blank.context.scene.name: True}
 
 
+def test_undo_checks_the_scene_of_the_window_again(blank, noisy, renewing):
+    """Another scene, in which Check was pressed too, was awaited instead of it."""
+    blank.ops.mocap_assist.measure_quality("EXEC_DEFAULT", True)
+    blank.data.scenes.new("Scenes after it").mocap_assist.report = "Checked."
+    blank.ops.ed.undo_push(message="start")
+    blank.ops.ed.undo_push(message="another step")
+
+    blank.ops.ed.undo()
+
+    assert renewing._awaited == {blank.context.scene.name: True}
+
+
 def test_list_of_a_result_is_not_shown_for_the_recorded_action(blank, noisy, renewing):
     buttons = blank.ops.mocap_assist
     buttons.measure_quality("EXEC_DEFAULT", True)

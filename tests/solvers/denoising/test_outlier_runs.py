@@ -172,14 +172,35 @@ def test_density_of_the_others_needs_no_factorization_of_its_own(tested, rng):
 
     density = predictive.of_run(slice(8, 9), np.array(tested), valid)
     others = density.valid & ~density.tested
-    both, _ = predictive.log_marginals(density.frames, density.channels, density.valid)
-    alone, _ = predictive.log_marginals(density.frames, density.channels, others)
+    both, alone = (
+        density.density.log_marginals(density.samples, density.channels, known)[0]
+        for known in (density.valid, others)
+    )
 
     continued = np.logaddexp.reduce(both) - np.logaddexp.reduce(alone)
     begun = np.log(NEW_MOVEMENT_RATE) + np.logaddexp.reduce(
         np.log(MIXTURE.weights) + both - alone
     )
     assert density.as_movement == pytest.approx(np.logaddexp(continued, begun), abs=1e-9)
+
+
+@pytest.mark.parametrize("rate", [30.0, 1000.0])
+def test_matrix_of_a_window_does_not_grow_with_the_frame_rate(rate, rng, monkeypatch):
+    """A gap of 0.3 s at 1000 Hz took 7 s and 2 GB for each error next to it."""
+    length = round(MIXTURE.window * rate / MIXTURE.frame_rate)
+    windows = Windows(length, length, rate / MIXTURE.frame_rate)
+    samples = 10.0 * rng.normal(size=(length, 3))
+    valid = np.tile(np.arange(length)[:, None] > 0.6 * length, 3)
+    sizes, cholesky = [], np.linalg.cholesky
+    monkeypatch.setattr(
+        np.linalg, "cholesky", lambda each: sizes.append(each.shape[-1]) or cholesky(each)
+    )
+
+    predictive = PredictiveDensity(samples, np.full(3, 2.0), windows, MIXTURE, np.eye(3))
+    density = predictive.of_run(slice(length - 3, length), np.ones(3, bool), valid)
+
+    assert np.isfinite(density.as_movement)
+    assert max(sizes) <= 3 * MIXTURE.window + 4
 
 
 def interpolate(samples: np.ndarray, suspected: np.ndarray) -> np.ndarray:

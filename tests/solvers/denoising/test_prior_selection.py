@@ -13,6 +13,7 @@ from solvers.denoising.window_estimates.prior_selection import (
     score_leave_one_out,
     select_prior,
 )
+from solvers.denoising.window_estimates.rough_take import RoughTake
 from solvers.denoising.window_estimates.smoothness import (
     CORRELATION_TIMES_S,
     build_smooth_kernels,
@@ -107,16 +108,13 @@ def test_only_the_smooth_fraction_is_fitted(rng):
 def test_selects_examples_of_the_movement_but_not_of_stillness(rng):
     prior = coupled_channels(rng)
     take = sample_take(prior, rng)
-    noisy, noise = take + 0.5 * rng.normal(size=take.shape), np.full(5, 0.5)
+    noisy, no_errors = take + 0.5 * rng.normal(size=take.shape), np.zeros(take.shape, bool)
+    rough = RoughTake(noisy, no_errors, take, np.full(5, 0.5), np.full(5, len(take)), WINDOWS)
     own = smooth_channels(take.var(axis=0))
     still = replace(prior, slow=1e-4 * prior.slow, fast=1e-4 * prior.fast)
-    no_errors = np.zeros(take.shape, dtype=np.bool_)
 
     fractions = [
-        select_prior(examples, own, noisy, no_errors, take, noise, JOINTS, WINDOWS, unwatched)[
-            1
-        ]
-        for examples in (prior, still)
+        select_prior(examples, own, rough, JOINTS, unwatched)[1] for examples in (prior, still)
     ]
 
     assert fractions[0] < 0.1

@@ -8,6 +8,7 @@ from solvers.denoising import denoise
 from solvers.denoising.outliers import fit_inlier_probability, outlier_rate
 from solvers.denoising.window_estimates.estimate_channels import estimate_channels
 from solvers.denoising.window_estimates.prior_selection import build_take_prior
+from solvers.denoising.window_estimates.rough_take import RoughTake
 from solvers.denoising.window_priors import Windows
 from solvers.recordings import read_bvh
 
@@ -55,18 +56,15 @@ def test_noise_that_is_given_far_too_large_does_not_hide_outliers(rng):
     noise, windows = np.full(12, 15.0), Windows(200, 30, 1.0)
     start = median_filter(noisy, (9, 1))
     prior = build_take_prior(start, noise, np.ones(12, dtype=bool), windows, 30, 30.0)
+    no_errors = np.zeros(noisy.shape, dtype=bool)
+    take = RoughTake(noisy, no_errors, start, noise, np.full(12, 200), windows)
 
-    estimate = estimate_channels(
-        noisy, np.zeros(noisy.shape, dtype=bool), start, noise, prior, windows
-    )
+    estimate = estimate_channels(take, prior)
 
     assert (estimate.inliers < 0.5)[is_outlier].mean() > 0.9
     assert np.abs(estimate.values - truth).mean() < 6.0
     assert estimate.converged
-    stopped = estimate_channels(
-        noisy, np.zeros(noisy.shape, dtype=bool), start, noise, prior, windows, max_iterations=1
-    )
-    assert not stopped.converged
+    assert not estimate_channels(take, prior, max_iterations=1).converged
 
 
 def test_invisible_changes_are_not_reported(recordings):

@@ -13,7 +13,7 @@ from solvers.errors import MocapAssistError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.motion.humanoid import posture_joints
 from solvers.recordings import read_recording, write_joint_csv
-from solvers.recordings.conventions import stature, unit_of_skeleton
+from solvers.recordings.conventions import JointSamples, stature, unit_of_skeleton
 from solvers.recordings.conventions.body_unit import convert_to_body_unit
 from solvers.recordings.conventions.tracked_joints import joint_recording
 from solvers.recordings.conventions.unit_estimate import estimate_unit
@@ -47,9 +47,12 @@ def test_body_has_human_size_for_any_default_unit(walk, default, true):
     messages = KeptMessages()
 
     found = joint_recording(
-        "take", walk.names, walk.tracks.positions / true, Sensor.KINECT_V1,
-        scale=None, default_unit=default, progress=messages,
-    )  # fmt: skip
+        "take",
+        JointSamples(walk.names, walk.tracks.positions / true, Sensor.KINECT_V1),
+        scale=None,
+        default_unit=default,
+        progress=messages,
+    )
 
     assert np.allclose(found.tracks.positions, walk.tracks.positions)
     if true == default:
@@ -93,7 +96,10 @@ def test_who_gives_the_unit_is_obeyed(walk):
     messages, positions = KeptMessages(), 1000.0 * walk.tracks.positions
 
     found = joint_recording(
-        "take", walk.names, positions, Sensor.KINECT_V1, scale=1.0, progress=messages
+        "take",
+        JointSamples(walk.names, positions, Sensor.KINECT_V1),
+        scale=1.0,
+        progress=messages,
     )
 
     assert np.allclose(found.tracks.positions, positions)

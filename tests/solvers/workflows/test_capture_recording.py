@@ -17,7 +17,7 @@ from solvers.depth_tracking.capturing.capture import CaptureSettings
 from solvers.errors import InvalidMotionError
 from solvers.recordings import read_depth
 from solvers.workflows import capture_recording
-from solvers.workflows.capture_remarks import thickness
+from solvers.workflows.capture_remarks import relative_thickness
 
 BODY = default_body()
 FAST = CaptureSettings(backward=False, refine=False, check_every=1000)
@@ -165,7 +165,7 @@ def test_very_thick_body_is_reported_as_a_possible_wrong_focal_length():
         recording, settings=CaptureSettings(backward=False), planting=None
     )
 
-    assert thickness(found.captured) > 1.3
+    assert relative_thickness(found.captured) > 1.3
     assert any(
         "times as thick as the default body. Check the focal" in message
         for message in found.remarks

@@ -3,13 +3,13 @@
 from .bodies import (
     BodiesFrame,
     BodyJoints,
+    checked_objects,
     json_frames,
-    listed,
     name_of_body,
     number,
     open_frames,
     point,
-    stacked,
+    stack_body,
 )
 from .people import is_frames_json, is_no_position, people_of_frame
 from .points import position_of
@@ -27,12 +27,12 @@ __all__ = [
     "MIN_SAMPLING_HZ",
     "BodiesFrame",
     "BodyJoints",
+    "checked_objects",
     "is_frame_json",
     "is_frames_json",
     "is_no_position",
     "is_number",
     "json_frames",
-    "listed",
     "name_of_body",
     "number",
     "open_frames",
@@ -40,7 +40,7 @@ __all__ = [
     "people_of_frame",
     "point",
     "position_of",
-    "stacked",
+    "stack_body",
     "stated_rates",
     "time_of_frame",
 ]

@@ -98,7 +98,7 @@ def open_frames(
     )
 
 
-def listed(value: Any, location: str) -> list[Any]:
+def checked_objects(value: Any, location: str) -> list[Any]:
     """Return a list of objects; raise InvalidFileError for other values."""
     if value is None:
         return []
@@ -122,7 +122,7 @@ def point(value: Any, location: str) -> Array:
     return array_from_json(value, (3,), location)
 
 
-def stacked(body: str, frames: list[BodiesFrame]) -> tuple[Array, Array | None]:
+def stack_body(body: str, frames: list[BodiesFrame]) -> tuple[Array, Array | None]:
     """Return positions and confidence, 0 to 1, of a body; NaN and 0 in frames without it.
 
     Raises ValueError if it has different joints in different frames.

@@ -8,7 +8,7 @@ from ....arrays import Array
 from ....errors import InvalidFileError
 from ....motion import JointRecording
 from ....progress import Progress, Remark
-from ...conventions import DEFAULT_FRAME_RATE
+from ...conventions import DEFAULT_FRAME_RATE, JointSamples
 from ...point_bodies import (
     body_of_named_points,
     body_of_points,
@@ -19,7 +19,7 @@ from ...point_bodies import (
     refuse_pictures,
     stand_body,
 )
-from .bodies import BodiesFrame, roots_of, stacked
+from .bodies import BodiesFrame, roots_of, stack_body
 
 MAX_SPREAD = 20
 """Columns of named joints in all frames for each point in them, a ratio. It bounds the memory
@@ -91,7 +91,7 @@ def recording_of_body(
         The number of points changes, or they form no known body.
     """
     try:
-        points, confidence = stacked(body, frames)
+        points, confidence = stack_body(body, frames)
     except ValueError:
         raise InvalidFileError(
             f"{path}: the number of joints of body {body} changes. Export it again."
@@ -123,10 +123,12 @@ def recording_of_body(
         progress(0.8, Remark(f"The file has no times; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     return stand_body(
         path,
-        found.names,
-        in_room(found.names, found.positions, roots),
-        times=times,
-        rate=rate or DEFAULT_FRAME_RATE,
+        JointSamples(
+            found.names,
+            in_room(found.names, found.positions, roots),
+            times=times,
+            frame_rate=rate or DEFAULT_FRAME_RATE,
+        ),
         scale=scale,
         progress=progress,
     )

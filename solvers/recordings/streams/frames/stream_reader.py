@@ -10,7 +10,7 @@ import numpy as np
 from ....errors import InvalidFileError, MocapAssistError
 from ....motion import JointRecording
 from ....progress import unwatched
-from ...conventions import joint_recording
+from ...conventions import JointSamples, joint_recording
 from .joint_frames import LiveFrame, decode_frame
 from .people import BODY_TIMEOUT_S, NEW_STREAM_S, Person, StreamPeople
 from .pose_frames import PoseFrame
@@ -211,12 +211,14 @@ def recording_from_frames(frames: Sequence[LiveFrame]) -> JointRecording:
     states = [frame.states for frame in frames if frame.states is not None]
     return joint_recording(
         PERFORMANCE,
-        names,
-        np.stack([frame.positions for frame in frames]),
-        frames[0].sensor,
-        states=np.stack(states) if len(states) == len(frames) else None,
-        confidence=np.stack([frame.confidence for frame in frames]),
-        times=np.array([frame.time for frame in frames]),
+        JointSamples(
+            names,
+            np.stack([frame.positions for frame in frames]),
+            frames[0].sensor,
+            states=np.stack(states) if len(states) == len(frames) else None,
+            confidence=np.stack([frame.confidence for frame in frames]),
+            times=np.array([frame.time for frame in frames]),
+        ),
         nan_only=True,
         scale=1.0,
         progress=unwatched,

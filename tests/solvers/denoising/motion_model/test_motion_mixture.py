@@ -62,9 +62,10 @@ def frame_covariance(
     return covariance + noise**2 * np.eye(len(covariance))
 
 
-def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
+@pytest.mark.parametrize("observed_fraction", [0.8, 0.3])
+def test_predictive_density_is_the_ratio_of_two_densities(mixture, observed_fraction, rng):
     samples, noise = 5.0 * rng.normal(size=(WINDOW, 3)), 0.7
-    valid = rng.random((WINDOW, 3)) < 0.8
+    valid = rng.random((WINDOW, 3)) < observed_fraction
     run, tested = slice(3, 5), np.array([True, False, True])
     valid[run] |= tested
     predictive = PredictiveDensity(

@@ -41,6 +41,20 @@ def test_the_rest_pose_is_a_t_pose_in_which_nothing_turns(read_any):
     assert_allclose(head, (0.0, 0.0, 1.62), atol=1e-6)
 
 
+@pytest.mark.parametrize("size", [0.0, 1e-200])
+def test_rest_rotations_without_length_are_none(read_any, size):
+    """The square of 1e-200 is 0, and a rotation divided by it is no number."""
+
+    def rest(rotation):
+        def change(document):
+            for node in document["nodes"]:
+                node["rotation"] = rotation
+
+        return read_any(vrma(change)).rotations
+
+    assert_allclose(rest([0.0, size, 0.0, 0.0]), rest([0.0, 0.0, 0.0, 1.0]), atol=1e-9)
+
+
 def test_centimeters_are_recognized_and_reported(tmp_path):
     """A VRM animation is in meters by definition, but not every converter minded it."""
 
