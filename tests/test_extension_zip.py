@@ -115,6 +115,19 @@ def test_notice_names_every_learned_file_and_library(shipped):
     }  # fmt: skip
 
 
+def test_notice_names_every_module_with_learned_numbers():
+    notice = (ROOT / "NOTICE.md").read_text(encoding="utf-8")
+    named = dict(re.findall(r"^- `(\S+)`: `(\S+)`", notice, re.MULTILINE))
+    scripts = {
+        path.relative_to(ROOT).as_posix(): Path(found[1]).stem
+        for path in (ROOT / "solvers").rglob("*.py")
+        if (found := re.search(r"Learned by\s+`(\S+?)[` ]", path.read_text(encoding="utf-8")))
+    }
+
+    assert scripts
+    assert {name: Path(script).stem for name, script in named.items()} == scripts
+
+
 def test_zip_has_a_small_manual_whose_links_lead_somewhere(shipped):
     root = f"{build_extension.PAGES.as_posix()}/"
     names = {name for name in shipped.namelist() if name.startswith(root)}
