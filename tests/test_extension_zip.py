@@ -27,7 +27,10 @@ SHIPPED = {
     "mocap_assist",
     "operators",
 }
-TEXTS = {"", ".css", ".html", ".jpg", ".js", ".md", ".png", ".po", ".py", ".toml", ".typed"}
+TEXTS = {
+    "", ".css", ".html", ".jpg", ".js", ".md", ".png", ".po", ".py", ".sh", ".toml", ".typed",
+    ".yaml",
+}  # fmt: skip
 """Endings of files that people write or draw; all others hold learned numbers."""
 MAX_MANUAL_BYTES = 2_000_000
 OURS = {"solvers", "mocap_assist", "operators"}
