@@ -12,8 +12,8 @@ MIN_STEP = 0.01
 
 
 def escape_undecodable_names(stream: TextIO) -> None:
-    """Let a stream escape file names that it cannot encode, as stderr does."""
-    if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+    """Let a stream escape what it cannot encode, such as names of files, as stderr does."""
+    if isinstance(stream, io.TextIOWrapper):
         stream.reconfigure(errors="backslashreplace")
 
 
