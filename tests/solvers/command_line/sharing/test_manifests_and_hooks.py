@@ -108,7 +108,8 @@ def test_manifest_that_never_ends_is_refused(call, tmp_path):
     )
 
     assert status == 2
-    assert err == "The manifest /dev/zero cannot be read: it is too large.\n"
+    sentence = "The manifest /dev/zero cannot be read: it has more than 16 MiB; divide it.\n"
+    assert err == sentence
 
 
 def test_two_entries_with_one_output_are_refused(call, folder, tmp_path):
