@@ -186,7 +186,7 @@ bench-import-corpus: .venv-4.5/ready  ## read every recording of other makers, a
 	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_import_corpus $(ARGUMENTS)
 
 bench-roles: .venv-4.5/ready  ## measure how often the role of a bone is right, by its reason
-	PYTHONPATH=.:tests/fixtures $(PYTHON_4.5) -m tests.benchmarks.importing.bench_role_confidence
+	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_role_confidence
 
 bench-up-axis: .venv-4.5/ready  ## measure how often the up axis of points is right
 	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_up_axis $(ARGUMENTS)
@@ -225,7 +225,7 @@ bench-retarget-rig: .venv-4.5/ready  ## measure Retarget in Blender against baki
 	$(PYTHON_4.5) -m tests.benchmarks.retarget.bench_retarget_rig $(ARGUMENTS)
 
 bench-farm: .venv-4.5/ready  ## measure batches on a Dask cluster against processes of this machine
-	PYTHONPATH=.:tests/fixtures $(PYTHON_4.5) -m tests.benchmarks.farm.bench_farm $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.farm.bench_farm $(ARGUMENTS)
 
 sensitivity: .venv-4.5/ready  ## halve and double each tuned constant; ARGUMENTS="--family feet"
 	nice $(PYTHON_4.5) -m tests.benchmarks.sensitivity.run_sensitivity $(ARGUMENTS)

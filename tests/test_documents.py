@@ -1,7 +1,10 @@
 """What the documents say must be so: tables, links, buttons and commands."""
 
 import ast
+import os
 import re
+import subprocess
+import sys
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
@@ -254,6 +257,21 @@ def test_options_in_the_documents_exist(capsys):
             options = set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
             shown = set(re.findall(r"--[a-z-]+", words.partition("#")[0]))
             assert shown <= options, f"{name_of(document)}: {verb} {words}"
+
+
+def test_benchmarks_start_as_the_documents_write_it():
+    texts = (document.read_text(encoding="utf-8") for document in DOCUMENTS)
+    named = {name for text in texts for name in re.findall(r"-m (tests\.[\w.]+)", text)}
+    code = "import importlib, sys; [*map(importlib.import_module, sys.argv[1:])]"
+    environment = {name: text for name, text in os.environ.items() if name != "PYTHONPATH"}
+
+    started = subprocess.run(
+        [sys.executable, "-c", code, *sorted(named)], cwd=ROOT, env=environment,
+        capture_output=True, text=True, check=False, timeout=500,
+    )  # fmt: skip
+
+    assert "tests.benchmarks.farm.bench_farm" in named
+    assert started.returncode == 0, started.stderr
 
 
 def test_messages_do_not_point_to_pages_that_the_zip_lacks():

@@ -27,7 +27,10 @@ SHIPPED = {
     "mocap_assist",
     "operators",
 }
-TEXTS = {"", ".css", ".html", ".jpg", ".js", ".md", ".png", ".po", ".py", ".toml", ".typed"}
+TEXTS = {
+    "", ".css", ".html", ".jpg", ".js", ".md", ".png", ".po", ".py", ".sh", ".toml", ".typed",
+    ".yaml",
+}  # fmt: skip
 """Endings of files that people write or draw; all others hold learned numbers."""
 MAX_MANUAL_BYTES = 2_000_000
 OURS = {"solvers", "mocap_assist", "operators"}
@@ -113,6 +116,19 @@ def test_notice_names_every_learned_file_and_library(shipped):
     assert libraries == set(re.findall(r"^\| (\w+) \|", notice.lower(), re.MULTILINE)) - {
         "file", "library",
     }  # fmt: skip
+
+
+def test_notice_names_every_module_with_learned_numbers():
+    notice = (ROOT / "NOTICE.md").read_text(encoding="utf-8")
+    named = dict(re.findall(r"^- `(\S+)`: `(\S+)`", notice, re.MULTILINE))
+    scripts = {
+        path.relative_to(ROOT).as_posix(): Path(found[1]).stem
+        for path in (ROOT / "solvers").rglob("*.py")
+        if (found := re.search(r"Learned by\s+`(\S+?)[` ]", path.read_text(encoding="utf-8")))
+    }
+
+    assert scripts
+    assert {name: Path(script).stem for name, script in named.items()} == scripts
 
 
 def test_zip_has_a_small_manual_whose_links_lead_somewhere(shipped):

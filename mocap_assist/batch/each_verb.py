@@ -29,6 +29,7 @@ from ...solvers.command_line.batches import (
     has_picture,
     made_record,
     note_other_builds,
+    note_pipe,
     picture_file,
     remove_picture,
     shared_tasks,
@@ -107,13 +108,14 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
         raise InvalidSettingError(f"jobs is {arguments.jobs}; it must be at least 1.")
     folder: Path = arguments.output_folder
     stamp_options(arguments)
+    note_pipe(arguments, screen)
     every = _tasks(arguments)
-    tasks = shared_tasks(every, arguments)
+    tasks = shared_tasks(every, arguments, screen)
     failed: list[str] = []
     faults: tuple[str, ...] = ()
     try:
         note_other_builds(tasks, screen)
-        run_all = partial(_work_on_tasks, arguments=arguments)
+        run_all = partial(_work_on_tasks, arguments=arguments, screen=screen)
         for finished in until_released(tasks, run_all, screen):
             sys.stdout.write(f"{_describe(finished)}\n")
             sys.stdout.flush()
@@ -195,7 +197,7 @@ def _blends_in(folder: Path) -> list[Path]:
 
 
 def _work_on_tasks(
-    tasks: Sequence[Task], arguments: argparse.Namespace
+    tasks: Sequence[Task], arguments: argparse.Namespace, screen: Screen
 ) -> Iterator[FinishedTask]:
     """Yield existing results, then each task when it finishes, and record it."""
     remaining = []
@@ -209,6 +211,8 @@ def _work_on_tasks(
             yield FinishedTask(task, already_made(record))
         else:
             remaining.append(task)
+    if not remaining:
+        return
     stopped = Event()
     with ThreadPoolExecutor(arguments.jobs) as pool:
         waiting = [
@@ -216,7 +220,7 @@ def _work_on_tasks(
             for task in remaining
         ]
         try:
-            for done in as_completed(waiting):
+            for done in screen.counted(as_completed(waiting), len(waiting)):
                 yield done.result()
         finally:
             stopped.set()

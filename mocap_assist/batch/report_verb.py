@@ -19,9 +19,11 @@ def add_report_options(parser: argparse.ArgumentParser) -> None:
 
 
 def perform_report(arguments: argparse.Namespace, screen: Screen) -> None:
-    """Write the report; raise InvalidFileError if a file failed."""
+    """Write the report; raise InvalidFileError if a file failed, or its command of --after."""
     outcome = report_folder(Task((arguments.folder,), None, arguments), None, screen.progress)
     sys.stdout.write(f"{printable(outcome.text)}\n")
     sys.stdout.flush()
+    for sentence in outcome.failures[:-1]:
+        screen.write_line(sentence)
     if outcome.failures:
-        raise InvalidFileError(f"{len(outcome.failures)} files failed. {outcome.failures[0]}")
+        raise InvalidFileError(outcome.failures[-1])

@@ -100,7 +100,8 @@ def _parser(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> Sente
 def _add_common_options(parser: argparse.ArgumentParser, makes: OutputKind) -> None:
     has_manifest = makes is OutputKind.FILES
     parser.add_argument(
-        "files", nargs="*" if has_manifest else "+", type=Path, metavar="FILE",
+        "files", nargs="*" if has_manifest else "+", type=Path,
+        metavar="DIR" if makes is OutputKind.REPORT else "FILE",
         help=FILES[makes],
     )  # fmt: skip
     if has_manifest:

@@ -23,6 +23,7 @@ from .batches import (
     has_picture,
     made_record,
     note_other_builds,
+    note_pipe,
     printable,
     record_end,
     run_tasks,
@@ -53,8 +54,9 @@ def run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
     if folder is None and reporting:
         raise InvalidSettingError("A report needs a folder: name it with --output-folder DIR.")
     stamp_options(arguments)
+    note_pipe(arguments, screen)
     every = tasks_of(verb, arguments)
-    tasks = every if folder is None else shared_tasks(every, arguments)
+    tasks = every if folder is None else shared_tasks(every, arguments, screen)
     has_failures = False
     try:
         for finished in _run_tasks(verb, tasks, screen):

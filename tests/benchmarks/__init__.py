@@ -6,6 +6,10 @@ library moves such rows: with 80 columns of depth from 4.70 cm to 5.67.
 """
 
 import os
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).parents[1] / "fixtures"))  # for clusters and rigs
 
 # Before numpy is imported.
 for variable, value in {

@@ -77,6 +77,7 @@ def test_blender_installs_from_the_folder_the_zip_that_suits_it(tmp_path):
         for path in sorted(served.glob("*.zip"))
     ]
     assert len(lines) == 2
+    assert "Allow Online Access" in (served / "index.html").read_text(encoding="utf-8")
     address = (served / "index.json").as_uri()
     installed = subprocess.run(
         [sys.executable, "-c", INSTALL, address], capture_output=True, text=True, check=False,

@@ -101,7 +101,8 @@ def test_wheel_holds_one_package_with_all_its_files(wheel):
     }
 
     assert packaged == ours
-    assert {path.suffix for path in packaged} == {".py", ".npz", ".html", ".js", ".typed"}
+    kinds = {".py", ".npz", ".html", ".js", ".sh", ".typed", ".yaml"}
+    assert {path.suffix for path in packaged} == kinds
 
 
 def test_every_package_and_public_name_can_be_imported(installed):

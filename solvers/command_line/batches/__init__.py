@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .parallel import run_tasks, until_released, workers_for
     from .report import PAGE, PICTURE, has_picture, picture_file, remove_picture, write_report
     from .screen import Screen, escape_undecodable_names, printable
-    from .tasks import check_output_folder, find_inputs, shared_tasks, tasks_of
+    from .tasks import check_output_folder, find_inputs, note_pipe, shared_tasks, tasks_of
 
 __all__ = [
     "PAGE",
@@ -37,6 +37,7 @@ __all__ = [
     "has_picture",
     "made_record",
     "note_other_builds",
+    "note_pipe",
     "picture_file",
     "printable",
     "record_end",

@@ -133,7 +133,7 @@ def _share(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:
         if claim.is_own_batch:
             return FinishedTask(task, None, is_held=True)
         if claim.holder:
-            text = f"taken by {claim.holder}"
+            text = f"another process on {claim.holder} is working on it"
             return FinishedTask(task, Outcome(f"Skipped: {text}.", {SKIPPED: text}))
         if claim.taken_over:
             records.clear_up(output, task.target, picture_file(task))
@@ -257,21 +257,30 @@ def report_folder(task: Task, prepared: None, progress: Progress) -> Outcome:
         raise InvalidFileError(f"There are no records of a batch in the folder {folder}.")
     verb = ", ".join(dict.fromkeys(record.verb for record in records))
     faults = write_report(folder, verb, lambda: _folder_entries(folder))
-    entries = _folder_entries(folder)
+    records = Records(folder).all()
+    entries = [_folder_entry(folder, record) for record in records]
+    hooks = tuple(
+        f"{_input_of(record)}: {sentence}"
+        for record in records
+        if (sentence := hook_remark(record.after))
+    )
     lines = [f"{'failed' if each.failure else 'done':7} {each.target}" for each in entries]
     n_failed = sum(bool(each.failure) for each in entries)
     text = "\n".join([*lines, f"{len(entries) - n_failed} done, {n_failed} failed"])
     failures = tuple(each.failure for each in entries if each.failure)
     figures = {"done": len(entries) - n_failed, "failed": n_failed}
-    return Outcome(text, figures, (*failures, *faults))
+    return Outcome(text, figures, (*failures, *hooks, *faults))
 
 
 def _folder_entries(folder: Path) -> list[Entry]:
-    return [
-        Entry(
-            (record.inputs or [record.output])[0],
-            str(folder / record.output),
-            picture_of(record.output),
-        ).with_record(record)
-        for record in Records(folder).all()
-    ]
+    return [_folder_entry(folder, record) for record in Records(folder).all()]
+
+
+def _folder_entry(folder: Path, record: Record) -> Entry:
+    target, picture = str(folder / record.output), picture_of(record.output)
+    return Entry(_input_of(record), target, picture).with_record(record)
+
+
+def _input_of(record: Record) -> str:
+    """Return the input of an output; of an old record, which has none, the output."""
+    return record.inputs[0] if record.inputs else record.output

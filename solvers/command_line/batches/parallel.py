@@ -51,11 +51,8 @@ def run_tasks(
             screen.title = f"[{number}/{len(tasks)}] {task.source.name}"
             yield attempt_task(verb, task, screen.progress, prepared)
     else:
-        screen.show_count(0, len(tasks))
         ended = _run_on_workers(verb, tasks, workers.share(prepared), workers, screen)
-        for number, finished in enumerate(ended, start=1):
-            yield finished
-            screen.show_count(number, len(tasks))
+        yield from screen.counted(ended, len(tasks))
 
 
 def _run_on_workers(
@@ -97,7 +94,7 @@ def until_released(
 
     A take ends in the claim's holder, or is made here as soon as its claim is abandoned.
     """
-    remaining = [*tasks]
+    remaining, n_reported = [*tasks], 0
     while remaining:
         taken: list[Task] = []
         for finished in run_all(remaining):
@@ -106,7 +103,11 @@ def until_released(
             else:
                 yield finished
         if taken:
-            screen.note(f"Waiting for takes that other processes have: {len(taken)}.")
+            if len(taken) != n_reported:  # Also in the log of a farm, which looks stuck else.
+                n_reported = len(taken)
+                screen.write_line(
+                    f"Waiting for takes on which other processes work: {n_reported}."
+                )
             check_output_folder(taken[0].arguments.output_folder)
             sleep(RENEWAL_INTERVAL_S)
         remaining = taken

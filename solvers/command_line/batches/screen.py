@@ -2,16 +2,18 @@
 
 import io
 import sys
-from typing import TextIO
+from collections.abc import Iterable, Iterator
+from typing import TextIO, TypeVar
 
 from ...faults import escaped
 
+T = TypeVar("T")
 MIN_STEP = 0.01
 
 
 def escape_undecodable_names(stream: TextIO) -> None:
-    """Let a stream escape file names that it cannot encode, as stderr does."""
-    if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+    """Let a stream escape what it cannot encode, such as names of files, as stderr does."""
+    if isinstance(stream, io.TextIOWrapper):
         stream.reconfigure(errors="backslashreplace")
 
 
@@ -38,11 +40,14 @@ class Screen:
         line = f"{self.title} {100 * fraction:3.0f} % {message}"
         self._replace(escaped(line)[:78])
 
-    def show_count(self, n_done: int, n_tasks: int) -> None:
-        """Show on the progress line how many tasks of several workers are done."""
-        self.title = f"[{n_done}/{n_tasks}]"
+    def counted(self, ends: Iterable[T], n_tasks: int) -> Iterator[T]:
+        """Yield the ends of tasks, at least one, and show meanwhile how many are done."""
+        self._show_count(0, n_tasks)
+        for n_done, end in enumerate(ends, start=1):
+            self.clear()
+            yield end
+            self._show_count(n_done, n_tasks)
         self.clear()
-        self.progress(n_done / n_tasks)
 
     def write_line(self, sentence: str) -> None:
         """Print a sentence on a line of its own."""
@@ -59,6 +64,11 @@ class Screen:
         """Clear the progress line."""
         if self._shown:
             self._replace("")
+
+    def _show_count(self, n_done: int, n_tasks: int) -> None:
+        self.title = f"[{n_done}/{n_tasks}]"
+        self.clear()
+        self.progress(n_done / n_tasks)
 
     def _replace(self, line: str) -> None:
         self.stream.write("\r" + line.ljust(len(self._shown)) + ("" if line else "\r"))

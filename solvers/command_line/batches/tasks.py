@@ -28,8 +28,9 @@ from ..arguments import (
     unique_targets,
     with_body,
 )
-from ..sharing import Listed, Records, claimed, read_manifest
+from ..sharing import Listed, Records, Shard, claimed, read_manifest
 from .report import PICTURE
+from .screen import Screen
 
 MAX_NAME_LETTERS = 40
 """Letters of the name of a body in the name of a file."""
@@ -133,7 +134,8 @@ def _tasks_without_folder(verb: Verb, arguments: argparse.Namespace) -> list[Tas
         )
     if len(files) != 2:
         raise InvalidSettingError(
-            f"{len(files)} files are named: name one to read and one to write, or name"
+            f"{len(files)} file{' is' if len(files) == 1 else 's are'} named: name one to read"
+            " and one to write, or name"
             " a folder for the results with --output-folder DIR."
         )
     source, target = files
@@ -161,7 +163,7 @@ def find_inputs(
     InvalidFileError
         A folder has no recordings, or the manifest is invalid.
     InvalidSettingError
-        There are no inputs.
+        There are no inputs, or one is named twice.
     """
     listed = [] if arguments.manifest is None else read_manifest(arguments.manifest)
     if not listed and not arguments.files:
@@ -180,10 +182,22 @@ def find_inputs(
             Listed(path, each.name / below if in_folder else each.name, each.output)
             for path, below in inside
         ]
+    twice = next((each.path for each, number in Counter(found).items() if number > 1), None)
+    if twice is not None:
+        raise InvalidSettingError(f"{twice} is named twice. Name it once.")
     return found
 
 
-def shared_tasks(tasks: Sequence[Task], arguments: argparse.Namespace) -> list[Task]:
+def note_pipe(arguments: argparse.Namespace, screen: Screen) -> None:
+    """Say at a terminal that a manifest is a pipe, which may wait for its writer forever."""
+    manifest: Path | None = getattr(arguments, "manifest", None)
+    if manifest is not None and manifest.is_fifo():
+        screen.note(f"Reading the manifest {manifest}, a pipe, until its writer closes it.")
+
+
+def shared_tasks(
+    tasks: Sequence[Task], arguments: argparse.Namespace, screen: Screen
+) -> list[Task]:
     """Return the tasks of this machine's shard, and make their records possible.
 
     What the one record of an earlier version says becomes a record of each output.
@@ -195,7 +209,14 @@ def shared_tasks(tasks: Sequence[Task], arguments: argparse.Namespace) -> list[T
         with claimed(records.claim(former.output)) as claim:
             if not claim.holder and records.read(former.output) is None:
                 records.write(former)
-    return [task for task in tasks if not arguments.shard or arguments.shard.has(task.name)]
+    shard: Shard | None = arguments.shard
+    if shard is None:
+        return [*tasks]
+    own = [task for task in tasks if shard.has(task.name)]
+    if not own:
+        part = f"part {shard.number} of {shard.n_shards}"
+        screen.write_line(f"No take is in {part}; takes in all parts: {len(tasks)}.")
+    return own
 
 
 def _bodies(

@@ -30,7 +30,7 @@ PART = re.compile(r"\.[0-9a-f]{16}\.claim\.part|[0-9a-f]{16}\.time")
 MAX_BYTES = 10_000
 """Bytes of a claim; a host and two numbers have a hundred. It bounds the memory for damaged
 files."""
-UNKNOWN_HOST = "another process"
+UNKNOWN_HOST = "another machine"
 Claims = dict[Path, dict[str, Any]]
 """Files of claims by number, with their content."""
 

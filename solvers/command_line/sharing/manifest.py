@@ -64,7 +64,8 @@ def _content(path: Path) -> bytes:
     with path.open("rb") as file:
         content = file.read(MAX_BYTES + 1)
     if len(content) > MAX_BYTES:
-        raise OSError(errno.EFBIG, "it is too large", str(path))
+        reason = f"it has more than {MAX_BYTES >> 20} MiB; divide it"
+        raise OSError(errno.EFBIG, reason, str(path))
     return content
 
 

@@ -50,6 +50,8 @@ def test_each_command_imports_cleans_and_resumes(blank, command, takes, tmp_path
     assert made == {"one.blend", "second/two.blend"}
     report = json.loads((raw / "report.json").read_text())
     assert (report["done"], report["failed"]) == (2, 1)
+    failures = [each["error"] for each in report["files"] if "error" in each]
+    assert command("report", raw)[::2] == (2, f"{failures[0]}\n")
     for each in report["files"]:
         if "error" not in each:
             assert (each["joints"], each["n_frames"], each["frame_rate_hz"]) == (22, 60, 30.0)

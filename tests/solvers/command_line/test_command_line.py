@@ -240,12 +240,12 @@ def test_help_fits_the_window(call, verb, monkeypatch):
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["convert", "IN"], "1 files are named: name one to read and one to write"),
+        (["convert", "IN"], "1 file is named: name one to read and one to write"),
         (["convert", "IN", "IN"], "would be overwritten. Recordings are never changed"),
         (["convert", "IN", "out.fbx"], "out.fbx cannot be written; end the name in .bvh"),
         (["convert", "IN", "no/out.bvh"], "there is no folder no"),
         (["convert", "IN", "out.c3d"], "A skeleton's motion cannot be written as out.c3d"),
-        (["convert", "IN", "IN", "--output-folder", "o"], "would both be written to"),
+        (["convert", "IN", "IN", "--output-folder", "o"], "is named twice. Name it once."),
         (["convert", "IN", "out.bvh", "--scale", "-1"], "scale is -1; it must be above 0."),
         (["convert", "IN", "out.bvh", "--jobs", "0"], "jobs is 0; it must be at least 1."),
         (["denoise", "IN", "out.bvh", "--strength", "7"], "must lie between 0 and 1"),

@@ -1,5 +1,6 @@
 """Folders with odd names, closed folders and other files: all takes that can be made are."""
 
+import io
 import json
 import os
 import shutil
@@ -7,6 +8,7 @@ import shutil
 import pytest
 from odd_files import OTHERS, close, pictures
 
+from solvers.command_line.batches import escape_undecodable_names
 from solvers.recordings import read_bvh, write_bvh
 from solvers.samples import GaitSettings, walking_gait
 
@@ -44,6 +46,18 @@ def test_name_that_is_not_utf_8_is_converted_and_shown_escaped(call, folder, tmp
     assert read_bvh(tmp_path / "out" / os.fsdecode(NO_UTF8)).n_frames == 30
     assert r"caf\udce9.bvh" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert json.loads((tmp_path / "out" / "report.json").read_text())["done"] == 3
+
+
+@pytest.mark.parametrize("errors", ["strict", "surrogateescape"])
+def test_figures_and_names_are_printed_where_the_system_has_ascii_only(errors):
+    """Python chooses `surrogateescape` in the locale C; figures have degrees."""
+    printed = io.BytesIO()
+    stream = io.TextIOWrapper(printed, "ascii", errors)
+
+    escape_undecodable_names(stream)
+    print("2.6°", os.fsdecode(NO_UTF8), file=stream, flush=True)
+
+    assert printed.getvalue() == rb"2.6\xb0 caf\udce9.bvh" + b"\n"
 
 
 def test_library_refuses_a_name_that_is_not_utf_8_and_adds_the_others(call, folder, tmp_path):

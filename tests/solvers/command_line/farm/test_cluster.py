@@ -218,6 +218,7 @@ def test_terminal_shows_how_many_takes_of_workers_are_done(small_batch, tmp_path
 
     counts = re.findall(r"\[(\d+)/24\]", shown.getvalue())
     assert [*map(int, counts)] == [*range(25)]
+    assert shown.getvalue().endswith(" \r"), "the last count stays before the shell's prompt"
 
 
 @pytest.mark.parametrize("batch", ["batch", "another"])
@@ -234,7 +235,8 @@ def test_take_of_a_lost_worker_waits_for_its_claim(
     if batch == "batch":
         assert ("120 frames" in printed, len(waited)) == (True, 2)
     else:
-        assert (printed, waited) == ("Skipped: taken by farm.\n", [])
+        sentence = "Skipped: another process on farm is working on it.\n"
+        assert (printed, waited) == (sentence, [])
 
 
 def test_crash_is_recorded_once_the_claim_of_the_lost_worker_ends(

@@ -1,4 +1,4 @@
-"""The job templates of docs/technical/farm run a batch in parts, as they stand."""
+"""The job templates for schedulers run a batch in parts, as they stand."""
 
 import os
 import shutil
@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[4]
-JOBS = ROOT / "docs" / "technical" / "farm"
+JOBS = ROOT / "solvers" / "command_line" / "farm" / "templates"
 COMMAND = f"env PYTHONPATH={ROOT} {sys.executable} -m solvers"
 OPENJD = [sys.executable, "-m", "openjd"]
 

@@ -27,9 +27,10 @@ def test_waiting_makes_the_take_of_a_process_that_ends(call, leg_file, tmp_path,
 
     monkeypatch.setattr(parallel, "sleep", end_the_other)
 
-    status, printed, _ = call(*words, "--wait")
+    status, printed, err = call(*words, "--wait")
 
     assert (status, len(waits)) == (0, 2)
+    assert err == "Waiting for takes on which other processes work: 1.\n"
     assert "Skipped" not in printed
     assert "120 frames" in printed
     assert (out / "leg.bvh").exists()

@@ -1,7 +1,9 @@
 """Lists of inputs, and commands that run after each take."""
 
 import json
+import os
 import shutil
+import subprocess
 import sys
 
 import pytest
@@ -9,6 +11,7 @@ import pytest
 from solvers.command_line.sharing.hooks import words_of_hook
 
 PYTHON = sys.executable
+WRITER = "import sys; open(sys.argv[1], 'w').write('a.bvh\\n')"
 
 
 @pytest.fixture
@@ -105,7 +108,8 @@ def test_manifest_that_never_ends_is_refused(call, tmp_path):
     )
 
     assert status == 2
-    assert err == "The manifest /dev/zero cannot be read: it is too large.\n"
+    sentence = "The manifest /dev/zero cannot be read: it has more than 16 MiB; divide it.\n"
+    assert err == sentence
 
 
 def test_two_entries_with_one_output_are_refused(call, folder, tmp_path):
@@ -117,6 +121,29 @@ def test_two_entries_with_one_output_are_refused(call, folder, tmp_path):
 
     assert (status, err.count("\n")) == (2, 1)
     assert "Two inputs would both be written to" in err
+
+
+def test_take_that_is_named_twice_is_refused(call, folder, tmp_path):
+    (folder / "m.txt").write_text("a.bvh\nday 2/a.bvh\na.bvh\n")
+    words = ["convert", "--manifest", folder / "m.txt", "--output-folder", tmp_path / "out"]
+
+    assert call(*words) == (2, "", f"{folder / 'a.bvh'} is named twice. Name it once.\n")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
+def test_terminal_says_that_a_pipe_is_awaited(call, folder, tmp_path, monkeypatch):
+    pipe = folder / "pipe"
+    os.mkfifo(pipe)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+
+    with subprocess.Popen([PYTHON, "-c", WRITER, str(pipe)]):
+        status, _, err = call(
+            "convert", "--manifest", pipe, "--output-folder", tmp_path / "out"
+        )
+
+    assert status == 0
+    assert err.startswith(f"Reading the manifest {pipe}, a pipe, until its writer closes it.\n")
+    assert made_in(tmp_path / "out") == {"a.bvh"}
 
 
 def test_hook_gets_the_files_as_single_words(call, folder, tmp_path):
@@ -154,12 +181,16 @@ def test_failed_hook_marks_the_take_keeps_the_output_and_runs_again(call, folder
     assert record_in(out, "a.bvh")["after"]["output"] == "no server\n"
     assert json.loads((out / "report.json").read_text())["files"][0]["remarks"] == [sentence]
     assert sentence in (out / "report.html").read_text()
+    status, printed, err = call("report", out)
+    assert (status, err) == (2, f"{folder / 'a.bvh'}: {sentence}\n")
+    assert printed.endswith("1 done, 0 failed\n")
 
     flag.touch()
     date = (out / "a.bvh").stat().st_mtime_ns
     again, last = call(*words), call(*words)
 
     assert (again[0], again[2], last[0]) == (0, "", 0)
+    assert call("report", out)[0] == 0
     assert "Already made." in again[1] and "Already made." in last[1]
     assert (out / "a.bvh").stat().st_mtime_ns == date
     assert (record_in(out, "a.bvh")["remarks"], record_in(out, "a.bvh")["after"]["status"]) == (

@@ -41,6 +41,18 @@ def test_added_take_leaves_the_others_in_their_shards(call, small_batch, tmp_pat
     assert before <= after
 
 
+def test_part_without_a_take_says_so(call, leg_file, tmp_path):
+    words = ["convert", leg_file, "--output-folder", tmp_path / "out", "--shard"]
+
+    ends = [call(*words, f"{number}/2") for number in (1, 2)]
+
+    assert [status for status, _, _ in ends] == [0, 0]
+    texts = sorted((printed, err) for _, printed, err in ends)
+    sentence = "No take is in part 2 of 2; takes in all parts: 1.\n"
+    assert texts[0] in {("", sentence), ("", sentence.replace("2 of", "1 of"))}
+    assert "120 frames" in texts[1][0] and not texts[1][1]
+
+
 @pytest.mark.parametrize("word", ["0/3", "4/3", "1", "1/0", "a/b", "-1/3", "1/3/5", "1/"])
 def test_impossible_shard_is_one_sentence(call, leg_file, tmp_path, word):
     status, _, err = call(

@@ -1,5 +1,5 @@
 #!/bin/bash
-# A batch as a SLURM array, one part of the takes per task. See ../farm.md.
+# A batch as a SLURM array, one part of the takes per task. See the page On a farm.
 #
 #   sbatch --array=1-20 slurm.sh MANIFEST OUTPUT_FOLDER VERB [OPTION ...]
 #
