@@ -113,10 +113,7 @@ def _smooth(
         smoothed.append(by_mixtures)
     if correlation_s and by_mixtures is not None:
         weights = np.tile([0.0, 1.0], (len(covariances), 1))
-        sentence = (
-            f"The noise is correlated over {correlation_s:.2f} s, so slower changes are"
-            " smoothed, too."
-        )
+        sentence = "The jitter lasts several frames, so slower movement was smoothed, too."
         return blend(estimate, smoothed, weights, is_good), sentence
     averaged, weights = average_estimates(complete, estimate, smoothed, is_good, deviations)
     n_smoothed = int(np.count_nonzero(weights[:, 0] < 0.5))

@@ -12,7 +12,7 @@ from solvers.rotations import angle_between, multiply, quaternion_from_rotation_
 from solvers.samples import GaitSettings, walking_gait
 
 RATE = 30.0
-CORRELATED = "The noise is correlated"
+CORRELATED = "The jitter lasts several frames"
 
 
 def autoregressive(shape: tuple[int, ...], correlation: float, seed: int = 5) -> np.ndarray:
