@@ -124,7 +124,7 @@ class _PosteriorState:
         windows: Windows,
     ) -> None:
         self.observed, self.samples = np.isfinite(noisy), np.nan_to_num(noisy)
-        self.prior = prior.truncated(windows.length)
+        self.prior = prior.in_windows(windows)
         self.set_windows(windows)
         self.estimate, self.mean = start, prior.mean
         self.first_noise = self.noise = noise
