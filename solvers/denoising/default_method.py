@@ -5,15 +5,14 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array, Flags
-from ..progress import Progress, within
+from ..progress import Progress, unwatched, within
 from .averaging import (
     MIN_NOISE,
     average_estimates,
-    blend,
     noise_factors,
     smooth_by_spline,
 )
-from .channels import Channels, Estimate, Smoothed
+from .channels import Channels, Estimate
 from .limb_gaps import load_body_relation, predict_limbs
 from .motion_model import (
     N_CHANNELS,
@@ -22,11 +21,11 @@ from .motion_model import (
     MixtureSmoother,
     estimate_joint_noise,
     load_motion_mixture,
-    noise_correlation,
+    noise_exponent,
 )
 from .outliers import confirm_outliers, find_bursts
-from .window_estimates import estimate_in_groups
-from .window_priors import FilterBases
+from .window_estimates import estimate_in_groups, window_length
+from .window_priors import FilterBases, deviation_ratio
 
 OUTLIER_THRESHOLD = 0.5
 """Probability of being an inlier below which a sample is an outlier. By definition."""
@@ -42,7 +41,7 @@ def apply_default_method(
        mixture rejects those that people's movement explains, such as a kick.
     3. A smoothing spline and the mixtures of joints and of pairs smooth what remains. Each
        joint is the mean of the three, weighted to have the least expected error. If the noise
-       is correlated over time, only the mixtures smooth, with the spectrum of that noise.
+       is not white, the take is estimated again with the spectrum of that noise.
     4. Without examples, joints that are missing for long are predicted from the others.
 
     Parameters
@@ -69,7 +68,18 @@ def apply_default_method(
     estimate = replace(estimate, inliers=np.where(known, ~outliers, estimate.inliers))
     complete = np.where(is_good, noisy, estimate.values)
     noise = estimate_joint_noise(np.where(outliers, np.nan, noisy), MIN_NOISE)
-    averaged, smoothing = _smooth(channels, complete, estimate, noise, is_good, frame_rate)
+    exponent = 0.0
+    if len(noisy) >= window_length(bases, frame_rate):
+        exponent = _noise_exponent(channels, complete, noise, is_good, frame_rate)
+    if exponent:
+        estimate, prior_used = _estimate_with_colored_noise(
+            channels, complete, estimate, is_good, frame_rate, bases, exponent
+        )
+        length = round(mixture.window * frame_rate / mixture.frame_rate)
+        noise = noise.multiplied(deviation_ratio(length, exponent))
+    averaged, smoothing = _smooth(
+        channels, complete, estimate, noise, is_good, frame_rate, exponent
+    )
     filling = ""
     if bases is None:
         averaged, n_predicted = predict_limbs(
@@ -80,6 +90,40 @@ def apply_default_method(
     return averaged, " ".join(filter(None, (prior_used, smoothing, filling)))
 
 
+def _noise_exponent(
+    channels: Channels, complete: Array, noise: JointNoise, is_good: Flags, frame_rate: float
+) -> float:
+    """Return the exponent of the rotations' noise; 0 for white noise."""
+    if not channels.n_rotations:
+        return 0.0
+    shape = len(complete), -1, N_CHANNELS
+    rotations = complete.reshape(shape)[:, :-1]
+    observed = is_good.reshape(shape)[:, :-1].all(axis=2)
+    return noise_exponent(rotations, noise, observed, frame_rate, load_motion_mixture())
+
+
+def _estimate_with_colored_noise(
+    channels: Channels,
+    complete: Array,
+    first: Estimate,
+    is_good: Flags,
+    frame_rate: float,
+    bases: FilterBases | None,
+    exponent: float,
+) -> tuple[Estimate, str]:
+    """Return the estimate of a complete take whose noise is not white.
+
+    What is known of outliers and gaps is that of the first estimate.
+    """
+    complete_channels = replace(channels, values=complete.reshape(channels.values.shape))
+    no_errors = np.zeros(complete.shape, dtype=np.bool_)
+    estimate, prior_used = estimate_in_groups(
+        complete_channels, no_errors, frame_rate, bases, unwatched, exponent
+    )
+    deviation = np.where(is_good, estimate.deviation, first.deviation)
+    return replace(estimate, inliers=first.inliers, deviation=deviation), prior_used
+
+
 def _smooth(
     channels: Channels,
     complete: Array,
@@ -87,38 +131,28 @@ def _smooth(
     noise: JointNoise,
     is_good: Flags,
     frame_rate: float,
+    exponent: float,
 ) -> tuple[Estimate, str]:
     """Return the mean of the estimate and of two smoothers, and a sentence on the smoothing.
 
-    Where the noise is correlated over time, only the mixtures count: to the others it is
-    movement.
+    The spline takes noise that is not white for movement, so it is not used then.
     """
+    smoothed = [] if exponent else [smooth_by_spline(complete)]
+    factors = noise_factors(noise.deviation, complete, [estimate, *smoothed], is_good)
+    noise = noise.multiplied(factors)
     mixtures = load_motion_mixture(), load_motion_mixture(SHIPPED_PAIRS, 2)
-    correlation_s = 0.0
-    if channels.n_rotations:
-        rotations = complete.reshape(len(complete), -1, N_CHANNELS)[:, :-1]
-        observed = is_good.reshape(len(complete), -1, N_CHANNELS)[:, :-1].all(axis=2)
-        correlation_s = noise_correlation(rotations, noise, observed, frame_rate, mixtures[0])
-    smoothed: list[Smoothed] = []
-    covariances, deviations = noise.covariances, noise.deviation
-    if not correlation_s:
-        smoothed = [smooth_by_spline(complete)]
-        factors = noise_factors(deviations, complete, [estimate, *smoothed], is_good)
-        deviations = np.maximum(deviations * factors, MIN_NOISE)
-        covariances = covariances * np.square(factors[::3])[:, None, None]
     smooth_by_mixtures = MixtureSmoother(
-        covariances, frame_rate, mixtures, channels.parents, correlation_s
+        noise.covariances, frame_rate, mixtures, channels.parents, exponent
     )
     if (by_mixtures := smooth_by_mixtures(complete)) is not None:
         smoothed.append(by_mixtures)
-    if correlation_s and by_mixtures is not None:
-        weights = np.tile([0.0, 1.0], (len(covariances), 1))
-        sentence = (
-            f"The noise is correlated over {correlation_s:.2f} s, so slower changes are"
-            " smoothed, too."
-        )
-        return blend(estimate, smoothed, weights, is_good), sentence
+    deviations = np.maximum(noise.deviation, MIN_NOISE)
     averaged, weights = average_estimates(complete, estimate, smoothed, is_good, deviations)
+    if exponent:
+        return (
+            averaged,
+            "The jitter lasts several frames, so slower movement was smoothed, too.",
+        )
     n_smoothed = int(np.count_nonzero(weights[:, 0] < 0.5))
     if not n_smoothed:
         return averaged, ""

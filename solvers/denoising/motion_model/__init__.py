@@ -9,7 +9,7 @@ from .motion_mixture import (
     MotionMixture,
     load_motion_mixture,
 )
-from .noise_correlation import noise_correlation
+from .noise_color import noise_exponent
 from .noise_levels import noise_levels
 from .principal_axes import principal_axes, robust_axes
 from .smooth_joints import MAX_LEVERAGE, MixtureSmoother
@@ -26,7 +26,7 @@ __all__ = [
     "estimate_joint_noise",
     "learn_motion_mixture",
     "load_motion_mixture",
-    "noise_correlation",
+    "noise_exponent",
     "noise_levels",
     "principal_axes",
     "robust_axes",

@@ -30,6 +30,15 @@ class JointNoise(NamedTuple):
     is_free: Flags
     """Whether a joint can turn about all of its axes, shape (n_joints,)."""
 
+    def multiplied(self, factors: Array | float) -> "JointNoise":
+        """Return the noise with deviations multiplied by these factors, one for each channel
+        and the same for those of a joint."""
+        deviation = self.deviation * factors
+        of_joints = np.broadcast_to(factors, deviation.shape)[::3, None, None]
+        return self._replace(
+            covariances=self.covariances * np.square(of_joints), deviation=deviation
+        )
+
 
 def estimate_joint_noise(samples: Array, minimum: float) -> JointNoise:
     """Estimate the noise of each joint along its own axes.

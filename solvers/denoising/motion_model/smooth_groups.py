@@ -10,7 +10,6 @@ import numpy as np
 from ...arrays import Array
 from ..window_priors import Windows
 from .motion_mixture import MotionMixture
-from .noise_spectrum import noise_spectrum
 from .principal_axes import principal_axes
 
 N_OVERLAPS = 4
@@ -38,8 +37,8 @@ class _Transform(NamedTuple):
     """Shape (length, n_coefficients)."""
     to_frames: Array
     """Shape (n_coefficients, length)."""
-    spectrum: Array
-    """Variance of the noise of each coefficient, relative to white noise."""
+    deviations: Array
+    """Of the noise, relative to white noise, shape (n_coefficients,)."""
 
 
 class _GroupFilters(NamedTuple):
@@ -74,8 +73,10 @@ class GroupSmoother:
         Covariances, square degrees or centimeters.
     frame_rate : float, Hz
     mixture : MotionMixture
-    correlation_s : float, seconds
-        Of the noise; 0 for white noise.
+    noise_exponent : float
+        Of the noise's power over the frequency (`noise_spectrum`); 0 for white noise.
+    n_ignored : int
+        Number of the slowest coefficients that do not count.
 
     References
     ----------
@@ -86,7 +87,8 @@ class GroupSmoother:
     noise: Array
     frame_rate: float
     mixture: MotionMixture
-    correlation_s: float = 0.0
+    noise_exponent: float = 0.0
+    n_ignored: int = 0
 
     def __call__(self, samples: Array) -> tuple[Array, Array]:
         """Return the smoothed samples, and the variance of their error.
@@ -124,7 +126,7 @@ class GroupSmoother:
             Logarithms, without constants.
         """
         axes, basis = principal_axes(samples, self.noise), self._basis
-        of_spectrum = 0.5 * axes.variance.shape[1] * np.log(self._transform.spectrum).sum()
+        of_units = axes.variance.shape[1] * np.log(self._transform.deviations).sum()
         along_axes = np.einsum("tjc,jac->tja", samples, axes.from_channels)
         along_axes = along_axes.reshape(len(samples), -1)
         found = np.empty((len(windows.starts), len(self.noise), len(factors)))
@@ -141,11 +143,13 @@ class GroupSmoother:
                     total = basis.variances + factor**2 * variance[:, None, None]
                     log_density = _log_density(squares, total, self._density_at_zero(total))
                     found[block, group, index] = np.logaddexp.reduce(log_density, axis=1)
-        return np.asarray(found - of_spectrum)
+        return np.asarray(found - of_units)
 
     def windows(self, n_frames: int, n_overlaps: int = N_OVERLAPS) -> Windows:
         """Return the windows of a take."""
-        return Windows(n_frames, self.length, self._density, n_overlaps)
+        return Windows(
+            n_frames, self.length, self._density, n_overlaps, noise_exponent=self.noise_exponent
+        )
 
     def _average_windows(
         self, samples: Array, filters: Sequence[_GroupFilters]
@@ -191,21 +195,18 @@ class GroupSmoother:
 
     @cached_property
     def _transform(self) -> _Transform:
-        windows = Windows(self.length, self.length, self._density)
-        cosines = windows.dct_basis(self.mixture.truncated(self.length).window)
-        spectrum = noise_spectrum(
-            cosines.shape[1], self.length, self.frame_rate, self.correlation_s
-        )
-        deviations = np.sqrt(spectrum)
-        return _Transform(
-            cosines / deviations / self._density, (cosines * deviations).T, spectrum
-        )
+        windows, size = self.windows(self.length), self.mixture.truncated(self.length).window
+        to_frames = windows.dct_basis(size)[:, self.n_ignored :]
+        deviations = windows.noise_deviations[self.n_ignored : size]
+        to_coefficients = to_frames / np.square(deviations) / self._density
+        return _Transform(to_coefficients, to_frames.T, deviations)
 
     @cached_property
     def _basis(self) -> _Basis:
         transform = self._transform
-        deviations = np.sqrt(transform.spectrum)
+        deviations = transform.deviations
         covariances = self.mixture.truncated(self.length).covariances
+        covariances = covariances[..., self.n_ignored :, self.n_ignored :]
         covariances = covariances / np.outer(deviations, deviations)
         variances, vectors = np.linalg.eigh(covariances.transpose(1, 0, 2, 3))
         frames = transform.to_frames.T / np.sqrt(self._density) @ vectors
@@ -267,7 +268,7 @@ class GroupSmoother:
         means = (projected @ filtered.transpose(0, 2, 1)).transpose(1, 0, 2)
         power = np.einsum("akw,wk->wa", squares[..., 1], responsibility)
         spread = (power - np.square(means).sum(axis=-1)) / filters.noise
-        spread *= self._transform.spectrum.mean()
+        spread *= np.square(self._transform.deviations).mean()
         return means, responsibility, spread
 
 

@@ -36,15 +36,15 @@ class MixtureSmoother:
         The first one is of joints.
     parents : shape (n_joints,), optional
         -1 where there is none. Points have none.
-    correlation_s : float, seconds
-        Of the noise; 0 for white noise.
+    noise_exponent : float
+        Of the noise's power over the frequency (`noise_spectrum`); 0 for white noise.
     """
 
     noise: Array
     frame_rate: float
     mixtures: Sequence[MotionMixture]
     parents: NDArray[np.intp] | None = None
-    correlation_s: float = 0.0
+    noise_exponent: float = 0.0
 
     def __call__(self, samples: Array) -> Smoothed | None:
         """Return the smoothed take; None if it is shorter than a window.
@@ -64,7 +64,7 @@ class MixtureSmoother:
             n_joints, size = mixture.n_joints, N_CHANNELS * mixture.n_joints
             groups = find_joint_groups(parents, moves, n_joints)
             noise = self._noise_of(groups).reshape(len(groups), size, size)
-            smooth = GroupSmoother(noise, self.frame_rate, mixture, self.correlation_s)
+            smooth = GroupSmoother(noise, self.frame_rate, mixture, self.noise_exponent)
             if len(samples) < smooth.length:
                 return None
             found = smooth(joints[:, groups].reshape(len(samples), len(groups), size))

@@ -10,7 +10,13 @@ from ..averaging import MIN_NOISE
 from ..channels import Channels, Estimate
 from ..motion_model import MAX_CONSTANT_RANGE
 from ..outliers import OFFSET_DEVIATION
-from ..window_priors import FilterBases, FilterBasesSettings, WindowPrior, Windows
+from ..window_priors import (
+    FilterBases,
+    FilterBasesSettings,
+    WindowPrior,
+    Windows,
+    deviation_ratio,
+)
 from .estimate_channels import estimate_channels
 from .prior_selection import build_examples_prior, build_take_prior, select_prior
 from .rough_take import RoughTake
@@ -36,15 +42,21 @@ def estimate_in_groups(
     frame_rate: float,
     bases: FilterBases | None,
     progress: Progress,
+    noise_exponent: float = 0.0,
 ) -> tuple[Estimate, str]:
     """Estimate all channels; return them with a sentence on the prior.
 
-    Samples known to be errors, shape (n_frames, n_channels), are outliers from the start.
+    Samples known to be errors, shape (n_frames, n_channels), are outliers from the start. The
+    noise has this exponent (`noise_spectrum`); if it is not 0, the take must be complete and
+    at least as long as a window.
     """
     n_frames, n_channels = channels.flat.shape
-    pattern_rate = float(bases.frame_rate) if bases else FilterBasesSettings().frame_rate
-    window = bases.window if bases else FilterBasesSettings().n_frames
-    take = _estimate_roughly(channels.flat, is_error, frame_rate, pattern_rate, window)
+    window, pattern_rate = _window_of(bases)
+    length = window_length(bases, frame_rate)
+    windows = Windows(
+        max(n_frames, length), length, length / window, noise_exponent=noise_exponent
+    )
+    take = _estimate_roughly(channels.flat, is_error, windows)
     is_unknown = np.isnan(take.noisy) & (take.n_observed == 0)
     parts = (
         take.values.copy(),
@@ -79,6 +91,19 @@ def estimate_in_groups(
     return estimate, _describe_prior(bases, smooth_fractions, n_channels)
 
 
+def window_length(bases: FilterBases | None, frame_rate: float) -> int:
+    """Return the number of frames of a window of a take."""
+    window, pattern_rate = _window_of(bases)
+    return max(round(window * frame_rate / pattern_rate), 2)
+
+
+def _window_of(bases: FilterBases | None) -> tuple[int, float]:
+    """Return the number of frames of a window of patterns, and their frame rate."""
+    if bases is None:
+        return FilterBasesSettings().n_frames, FilterBasesSettings().frame_rate
+    return bases.window, float(bases.frame_rate)
+
+
 def _build_examples_prior(
     part: RoughTake,
     n_frames: int,
@@ -102,22 +127,15 @@ def _build_examples_prior(
     )  # fmt: skip
 
 
-def _estimate_roughly(
-    noisy: Array,
-    is_error: NDArray[np.bool_],
-    frame_rate: float,
-    pattern_rate: float,
-    window: int,
-) -> RoughTake:
-    length = max(round(window * frame_rate / pattern_rate), 2)
-    padded = np.full((max(len(noisy), length), noisy.shape[1]), np.nan)
+def _estimate_roughly(noisy: Array, is_error: NDArray[np.bool_], windows: Windows) -> RoughTake:
+    padded = np.full((windows.n_frames, noisy.shape[1]), np.nan)
     padded[: len(noisy)] = noisy
     padded_errors = np.zeros(padded.shape, dtype=np.bool_)
     padded_errors[: len(noisy)] = is_error
     despiked = np.where(padded_errors, np.nan, padded)
     despiked = remove_outliers(despiked, SPIKE_HALF_WIDTH)
-    noise = np.maximum(estimate_noise(despiked), MIN_NOISE)
-    windows = Windows(len(padded), length, length / window)
+    ratio = deviation_ratio(windows.length, windows.noise_exponent)
+    noise = np.maximum(ratio * estimate_noise(despiked), MIN_NOISE)
     return RoughTake(
         padded,
         padded_errors,

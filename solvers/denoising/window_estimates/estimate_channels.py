@@ -106,7 +106,7 @@ class _PosteriorState:
 
     def __init__(self, take: RoughTake, prior: WindowPrior) -> None:
         self.observed, self.samples = np.isfinite(take.noisy), np.nan_to_num(take.noisy)
-        self.prior = prior.truncated(take.windows.length)
+        self.prior = prior.in_windows(take.windows)
         self.set_windows(take.windows.with_less_overlap)
         self.estimate, self.mean = take.values, prior.mean
         self.first_noise = self.noise = take.noise

@@ -227,7 +227,7 @@ def score_leave_joint_out(
     coefficients y, the error of the coefficients J predicted by all others is (K^-1)_JJ^-1
     (K^-1 y)_J.
     """
-    prior = prior.truncated(windows.length)
+    prior = prior.in_windows(windows)
     gains = compute_gains(prior.matrix, prior.fast, noise, windows.density)
     n_slow, n_channels = prior.n_slow, len(prior.mean)
     coefficients = windows.coefficients_from_frames(

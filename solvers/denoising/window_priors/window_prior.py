@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from .windows import Windows
 
 SLOW_FRACTION = 0.6
 """Fraction of the coefficients, slowest first, with a joint covariance; faster ones are
@@ -76,15 +77,18 @@ class WindowPrior:
         """Number of slow coefficients."""
         return len(self.slow)
 
-    def truncated(self, n_coefficients: int) -> "WindowPrior":
-        """Return the prior of windows with at most this many coefficients."""
+    def in_windows(self, windows: Windows) -> "WindowPrior":
+        """Return the prior of at most as many coefficients as these windows have, in their
+        units."""
+        units = windows.noise_deviations[: self.smooth.kernels.shape[1]]
+        slow, fast = units[: self.n_slow], units[self.n_slow :]
+        kernels = self.smooth.kernels[:, : len(units), : len(units)] / np.outer(units, units)
+        of_slow = self.slow[: len(slow), :, : len(slow)]
         return replace(
             self,
-            slow=self.slow[:n_coefficients, :, :n_coefficients],
-            fast=self.fast[: max(n_coefficients - self.n_slow, 0)],
-            smooth=replace(
-                self.smooth, kernels=self.smooth.kernels[:, :n_coefficients, :n_coefficients]
-            ),
+            slow=of_slow / slow[:, None, None, None] / slow[:, None],
+            fast=self.fast[: len(fast)] / np.square(fast)[:, None],
+            smooth=replace(self.smooth, kernels=kernels),
         )
 
     def select_channels(self, channels: NDArray[np.intp]) -> "WindowPrior":

@@ -8,6 +8,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from .noise_spectrum import noise_spectrum
 
 N_OVERLAPS = 6
 """Number of windows, and of trial gaps of a limb, that start within the length of one. Chosen
@@ -28,7 +29,8 @@ class Windows:
     """Split `n_frames` frames into windows of `length` frames, and add windows up again.
 
     A window is a sum of cosines (the orthonormal discrete cosine transform, divided by the root
-    of `density`, so that the same movement has the same coefficients at any frame rate).
+    of `density`, so that the same movement has the same coefficients at any frame rate). If the
+    noise is not white, a coefficient is in units of the noise at its frequency, in which it is.
     """
 
     n_frames: int
@@ -39,6 +41,8 @@ class Windows:
     """Number of windows that start within the length of one, as far as frames allow."""
     solve_gaps: bool = True
     """Solve long gaps exactly; otherwise fill them iteratively, like short ones."""
+    noise_exponent: float = 0.0
+    """Of the noise's power over the frequency, see `noise_spectrum`; 0 for white noise."""
 
     @property
     def with_less_overlap(self) -> "Windows":
@@ -78,11 +82,12 @@ class Windows:
         A product with all cosines takes a third of the time of a fast transform: windows are
         short, and channels many.
         """
-        return np.asarray((self._cosines.T / self.density) @ frames)
+        units = self.density * self.noise_deviations[:, None]
+        return np.asarray((self._cosines.T / units) @ frames)
 
     def frames_from_coefficients(self, coefficients: Array) -> Array:
         """Invert `coefficients_from_frames`."""
-        return np.asarray(self._cosines @ coefficients)
+        return np.asarray(self.dct_basis(self.length) @ coefficients)
 
     def add(self, total: Array, frames: Array, starts: NDArray[np.intp]) -> None:
         """Add windows (n, length, n_channels), or one at all starts, to a sum over the take."""
@@ -95,7 +100,12 @@ class Windows:
 
     def dct_basis(self, n_coefficients: int) -> Array:
         """Return the slowest cosines, (length, n_coefficients), whose sums are the frames."""
-        return self._cosines[:, :n_coefficients]
+        return np.asarray((self._cosines * self.noise_deviations)[:, :n_coefficients])
+
+    @cached_property
+    def noise_deviations(self) -> Array:
+        """Unit of each coefficient, shape (length,): 1 for white noise."""
+        return np.sqrt(noise_spectrum(self.length, self.noise_exponent))
 
     @cached_property
     def _cosines(self) -> Array:

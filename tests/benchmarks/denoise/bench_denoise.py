@@ -65,7 +65,7 @@ def walking(chosen: argparse.Namespace) -> list[Scores]:
 def strangers(chosen: argparse.Namespace) -> list[Scores]:
     """CMU walks again, but no example is of the person who is cleaned."""
     names = _walks(chosen)
-    levels = [Level(3.0), Level(3.0, 0.10)]
+    levels = [Level(3.0), Level(3.0, 0.10), Level(3.0, drifts=True)]
     cases = leave_one_out(clips.walks(), names, levels, chosen.clean_root, other_subjects=True)
     title = f"CMU walks, {len(names)} clips, leave one subject out"
     return compare(cases, _wanted(chosen, cases, blender=False), title)[:1]

@@ -16,6 +16,7 @@ from ..shared.noise import (
     channel_error,
     corrupt,
     corrupt_in_bursts,
+    one_over_f,
     seeded,
 )
 
@@ -28,10 +29,14 @@ class Level:
     fraction: float = 0.0
     bursts: bool = False
     """Whether outliers are whole joints for a few frames instead of single samples."""
+    drifts: bool = False
+    """Whether the noise is 1/f noise instead of white noise; then there are no outliers."""
     follows: bool = True
     """Whether a line in a picture leads from the level before to this one."""
 
     def __str__(self) -> str:
+        if self.drifts:
+            return f"{self.sigma:g}, 1/f drift"
         outliers = f"{100 * self.fraction:g} %" if self.fraction else "0"
         return f"{self.sigma:g}, {outliers}{' in bursts' if self.bursts else ''}"
 
@@ -65,7 +70,9 @@ class Case:
         """Corrupted channels, same shape as `clean`."""
         rng = seeded(self.name, self.level.sigma, self.level.fraction)
         sigma, fraction = self.level.sigma, self.level.fraction
-        if self.level.bursts:
+        if self.level.drifts:
+            noisy = self.clean + sigma * one_over_f(self.clean.shape, rng)
+        elif self.level.bursts:
             noisy = corrupt_in_bursts(self.clean, sigma, fraction, self._groups, rng)
         else:
             noisy = corrupt(self.clean, sigma, fraction, rng)

@@ -17,6 +17,7 @@ from ..shared.noise import (
     corrupt,
     corrupt_in_bursts,
     learn_channels,
+    one_over_f,
     seeded,
 )
 from .root_bone import below_bone, spin, without_bone
@@ -116,7 +117,7 @@ class Case:
         half = len(result) // 2
         result[half:] = self.clean[half:] + condition.quiet * (result - self.clean)[half:]
         if condition.drift:
-            result += condition.drift * _one_over_f(result.shape, rng)
+            result += condition.drift * one_over_f(result.shape, rng)
         for joints, frames in self._repeats:
             columns = self.channels.of_joints(joints)
             if 0 in joints:
@@ -212,11 +213,3 @@ class Case:
         moving = np.flatnonzero(self.channels.joints)
         root = np.arange(-3, 0) + self.clean.shape[1]
         return [*(self.channels.of_joints([int(joint)]) for joint in moving), root]
-
-
-def _one_over_f(shape: tuple[int, int], rng: np.random.Generator) -> Array:
-    """Return noise with a power of one over the frequency and standard deviation 1."""
-    spectrum = np.fft.rfft(rng.normal(size=shape), axis=0)
-    frequencies = np.maximum(np.arange(len(spectrum)), 1.0)
-    noise = np.fft.irfft(spectrum / np.sqrt(frequencies)[:, None], n=shape[0], axis=0)
-    return np.asarray(noise / noise.std(axis=0))

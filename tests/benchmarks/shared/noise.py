@@ -107,6 +107,14 @@ def corrupt_in_bursts(
     return noisy
 
 
+def one_over_f(shape: tuple[int, int], rng: np.random.Generator) -> Array:
+    """Return noise with a power of one over the frequency and standard deviation 1."""
+    spectrum = np.fft.rfft(rng.normal(size=shape), axis=0)
+    frequencies = np.maximum(np.arange(len(spectrum)), 1.0)
+    noise = np.fft.irfft(spectrum / np.sqrt(frequencies)[:, None], n=shape[0], axis=0)
+    return np.asarray(noise / noise.std(axis=0))
+
+
 def seeded(*what: object) -> np.random.Generator:
     """Return the generator of a clip, level or mask: the same in every run."""
     return np.random.default_rng(crc32(repr(what).encode()))

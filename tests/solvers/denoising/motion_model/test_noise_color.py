@@ -1,0 +1,131 @@
+"""Jitter that lasts several frames is found, and smoothed as such."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.fft import dct
+
+from solvers.denoising import denoise, learn_filter_bases
+from solvers.denoising.window_priors.noise_spectrum import deviation_ratio, noise_spectrum
+from solvers.motion import Motion
+from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
+from solvers.samples import GaitSettings, walking_gait
+
+RATE = 30.0
+COLORED = "The jitter lasts several frames"
+
+
+def power_law_noise(shape: tuple[int, ...], exponent: float, seed: int = 5) -> np.ndarray:
+    """Noise of deviation 1, whose power falls with this exponent of the frequency."""
+    spectrum = np.fft.rfft(np.random.default_rng(seed).normal(size=shape), axis=0)
+    frequencies = np.maximum(np.arange(len(spectrum)), 1.0)
+    spectrum *= frequencies.reshape(-1, *[1] * (len(shape) - 1)) ** (-0.5 * exponent)
+    noise = np.fft.irfft(spectrum, n=shape[0], axis=0)
+    return np.asarray(noise / noise.std())
+
+
+def with_noise(motion: Motion, degrees: float, exponent: float) -> Motion:
+    vectors = degrees * power_law_noise((*motion.rotations.shape[:2], 3), exponent)
+    vectors[:, [motion.skeleton.is_end_site(joint) for joint in range(motion.n_joints)]] = 0.0
+    noise = quaternion_from_rotation_vector(np.radians(vectors))
+    return motion.with_poses(multiply(motion.rotations, noise))
+
+
+def mean_error(motion: Motion, truth: Motion) -> float:
+    return float(np.degrees(angle_between(motion.rotations, truth.rotations)).mean())
+
+
+@pytest.fixture(scope="module")
+def walk() -> Motion:
+    return walking_gait(GaitSettings(duration=6.0, frame_rate=RATE))
+
+
+@pytest.mark.parametrize("exponent", [0.5, 1.0])
+@pytest.mark.parametrize("length", [16, 40])
+def test_spectrum_is_that_of_windows_of_a_long_take(length, exponent):
+    noise = power_law_noise((64 * length, 300), exponent)
+    windows = noise.reshape(64, length, 300)
+    measured = np.square(dct(windows, axis=1, norm="ortho")).mean(axis=(0, 2))
+    differences = np.sqrt(np.square(np.diff(noise, 3, axis=0)).mean() / 20.0)
+
+    relative = noise_spectrum(length, exponent) * deviation_ratio(length, exponent) ** 2
+
+    assert_allclose(measured[1:] / differences**2, relative[1:], rtol=0.3)
+    assert_allclose(measured[4:] / differences**2, relative[4:], rtol=0.12)
+
+
+def test_white_noise_has_the_same_variance_at_all_frequencies():
+    assert_allclose(noise_spectrum(15, 0.0), 1.0)
+    assert deviation_ratio(15, 0.0) == pytest.approx(1.0)
+    assert noise_spectrum(15, 1.5).mean() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("degrees", [2.0, 4.0])
+def test_colored_noise_is_found_and_more_of_it_removed(walk, degrees, monkeypatch):
+    noisy = with_noise(walk, degrees, 1.0)
+
+    cleaned = denoise(noisy)
+    monkeypatch.setattr("solvers.denoising.default_method.noise_exponent", lambda *_: 0.0)
+    as_white = denoise(noisy)
+
+    assert COLORED in cleaned.prior_used
+    assert COLORED not in as_white.prior_used
+    assert isinstance(cleaned.recording, Motion)
+    assert isinstance(as_white.recording, Motion)
+    error = mean_error(cleaned.recording, walk)
+    assert error < 0.8 * mean_error(as_white.recording, walk)
+
+
+def test_examples_help_with_colored_noise(walk):
+    others = [
+        walking_gait(GaitSettings(duration=6.0, frame_rate=RATE, speed=speed))
+        for speed in (1.1, 1.25, 1.5)
+    ]
+    noisy = with_noise(walk, 3.0, 1.0)
+
+    alone, with_examples = denoise(noisy), denoise(noisy, learn_filter_bases(others))
+
+    assert isinstance(alone.recording, Motion)
+    assert isinstance(with_examples.recording, Motion)
+    error = mean_error(with_examples.recording, walk)
+    assert error < 0.9 * mean_error(alone.recording, walk)
+
+
+def test_gaps_and_outliers_keep_what_the_first_estimate_knows_of_them(walk):
+    noisy = with_noise(walk, 3.0, 1.0)
+    joint = noisy.skeleton.names.index("LeftForeArm")
+    rotations = noisy.rotations.copy()
+    rotations[60:90, joint] = np.nan
+    spike = quaternion_from_rotation_vector(np.radians([80.0, 0.0, 0.0]))
+    rotations[120, joint] = multiply(rotations[120, joint], spike)
+
+    cleaned = denoise(noisy.with_poses(rotations))
+
+    assert COLORED in cleaned.prior_used
+    assert cleaned.outliers[120, joint]
+    assert cleaned.confidence[70:80, joint].max() < cleaned.confidence[30:50, joint].min()
+    assert np.isfinite(cleaned.recording.rotations).all()
+
+
+@pytest.mark.parametrize(
+    ("degrees", "exponent"), [(0.0, 0.0), (1.0, 0.0), (3.0, 0.0), (0.2, 1.0)]
+)
+def test_clean_takes_and_white_or_small_noise_are_white(walk, degrees, exponent):
+    assert COLORED not in denoise(with_noise(walk, degrees, exponent)).prior_used
+
+
+@pytest.mark.parametrize("rate", [12.0, 24.0])
+def test_noise_of_slow_recordings_is_white(rate):
+    walk = walking_gait(GaitSettings(duration=6.0, frame_rate=rate))
+
+    assert COLORED not in denoise(with_noise(walk, 3.0, 1.0)).prior_used
+
+
+@pytest.mark.parametrize("n_frames", [1, 2, 15, 16, 19, 20, 21])
+def test_takes_of_about_a_window_are_cleaned(walk, n_frames):
+    noisy = with_noise(walk, 3.0, 1.0).slice(0, n_frames)
+
+    cleaned = denoise(noisy).recording
+
+    assert isinstance(cleaned, Motion)
+    assert np.isfinite(cleaned.rotations).all()
