@@ -67,7 +67,9 @@ def apply_default_method(
     is_good = known & ~outliers
     estimate = replace(estimate, inliers=np.where(known, ~outliers, estimate.inliers))
     complete = np.where(is_good, noisy, estimate.values)
-    noise = estimate_joint_noise(np.where(outliers, np.nan, noisy), MIN_NOISE)
+    noise = estimate_joint_noise(
+        np.where(outliers, np.nan, noisy), MIN_NOISE, channels.n_rotations
+    )
     exponent = 0.0
     if len(noisy) >= window_length(bases, frame_rate):
         exponent = _noise_exponent(channels, complete, noise, is_good, frame_rate)

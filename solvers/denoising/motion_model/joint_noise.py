@@ -16,6 +16,10 @@ definition: a hundredth of the noise changes no estimate."""
 MAX_EQUAL_RATIO = 3.0
 """Noise along an axis, relative to the mean of the joint, above which it is the axis's own.
 Chosen by hand: with fast movement the ratio is up to 2."""
+MAX_EQUAL_POSITION_RATIO = 1.5
+"""Noise of a position along an axis, relative to the mean, above which each axis has its own:
+cameras measure depth least exactly. Chosen by hand on the development takes of the first press:
+where the noise is equal and large, the ratio is 1.4 at most."""
 
 
 class JointNoise(NamedTuple):
@@ -40,11 +44,13 @@ class JointNoise(NamedTuple):
         )
 
 
-def estimate_joint_noise(samples: Array, minimum: float) -> JointNoise:
+def estimate_joint_noise(
+    samples: Array, minimum: float, n_rotations: int | None = None
+) -> JointNoise:
     """Estimate the noise of each joint along its own axes.
 
     It is equal along the axes about which the joint can turn, unless it is much larger along
-    one of them. Axes about which it cannot turn, as those of a knee that only bends, are fixed
+    one of them, and along those of a position, unless it is larger along one of them. Axes about which it cannot turn, as those of a knee that only bends, are fixed
     and do not count. Joints that stand still do not count for the others; they get the others'
     noise.
 
@@ -54,6 +60,9 @@ def estimate_joint_noise(samples: Array, minimum: float) -> JointNoise:
         NaN where missing.
     minimum : float
         Smallest noise, degrees or centimeters.
+    n_rotations : int, optional
+        Number of channels, the first ones, that are rotations; the others are positions. All
+        are, if it is not given.
     """
     joints = samples.reshape(len(samples), -1, 3)
     axes = _noise_axes(joints)
@@ -70,7 +79,11 @@ def estimate_joint_noise(samples: Array, minimum: float) -> JointNoise:
     differences = np.diff(along, DIFFERENCE_ORDER, axis=0)
     n_samples = n_free * np.isfinite(differences).all(axis=2).sum(axis=0)
     mean = np.maximum(shrink_noise(mean, n_samples, DIFFERENCE_EFFICIENCY), minimum)[:, None]
-    equal = np.where(noise > MAX_EQUAL_RATIO * mean, noise, mean)
+    is_own = noise > MAX_EQUAL_RATIO * mean
+    positions = slice(len(noise) if n_rotations is None else n_rotations // 3, None)
+    unequal = noise[positions] > MAX_EQUAL_POSITION_RATIO * mean[positions]
+    is_own[positions] |= unequal.any(axis=1, keepdims=True)
+    equal = np.where(is_own, noise, mean)
     is_fixed = ~is_free & (n_free > 0)[:, None]
     own = _covariances(axes, np.where(is_fixed, noise, equal))
     deviation = np.sqrt(np.einsum("jcc->jc", own)).ravel()

@@ -57,6 +57,20 @@ def test_joint_keeps_its_much_larger_noise_about_one_axis(movement, rng):
     assert np.sqrt(TURN[:, 0] @ noise[forearm] @ TURN[:, 0]) < 2.0
 
 
+def test_position_has_the_larger_noise_of_a_depth_camera_along_its_axis(movement, rng):
+    """A rotation with the same noise has one figure for all axes."""
+    depth = TURN[:, 2]
+    noisy = movement + rng.normal(scale=0.5, size=movement.shape)
+    noisy[:, [0, -1]] += rng.normal(scale=1.5, size=(N_FRAMES, 2, 1)) * depth
+    samples = noisy.reshape(N_FRAMES, -1)
+
+    noise = estimate_joint_noise(samples, MINIMUM, samples.shape[1] - 3).covariances
+
+    assert_allclose(np.sqrt(depth @ noise[-1] @ depth), np.hypot(0.5, 1.5), rtol=0.2)
+    assert_allclose(np.sqrt(TURN[:, 0] @ noise[-1] @ TURN[:, 0]), 0.5, rtol=0.3)
+    assert_allclose(noise[0], noise[0, 0, 0] * np.eye(3), atol=1e-9)
+
+
 def test_noisier_joint_keeps_its_own_noise(movement, rng):
     hand = 7
     scale = np.full((N_JOINTS, 1), 0.5)
