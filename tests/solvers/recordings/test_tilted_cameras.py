@@ -16,11 +16,21 @@ LEANS = "degrees while standing, as where a camera is tilted"
 LIMBS = ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 
 
-def joints(path, walker, tilt_deg):
-    """Write the joints of a walker, Z up, as a table that has no floor."""
+def joints(path, walker, tilt_deg, bend_deg=0.0):
+    """Write the joints of a walker, Z up, as a table that has no floor.
+
+    Trunk and arms lean by `tilt_deg`, the legs by that and `bend_deg`.
+    """
     names = ["hips", "head", *(side + part for side in ("left", "right") for part in LIMBS)]
-    turn = quaternion_from_euler(np.radians([[tilt_deg, 0.0, 0.0]]), "XYZ")[0]
-    points = rotate(turn, np.stack([walker[name][:F] for name in names], axis=1))
+    tilt, leg = (
+        quaternion_from_euler(np.radians([[each, 0.0, 0.0]]), "XYZ")[0]
+        for each in (tilt_deg, tilt_deg + bend_deg)
+    )
+    hips = walker["hips"][:F]
+    points = np.stack([
+        hips + rotate(leg if name.endswith(("Leg", "Foot")) else tilt, walker[name][:F] - hips)
+        for name in names
+    ], axis=1)  # fmt: skip
     titles = ",".join(f"{name}_{axis}" for name in names for axis in "xyz")
     np.savetxt(path, points.reshape(F, -1), delimiter=",", header=titles, comments="")
     return path
@@ -72,6 +82,13 @@ def test_joints_of_a_tilted_camera_stand(tmp_path, walker, tilt_deg):
     assert trunk(recording, "pelvis", "head")[2] > np.cos(np.radians(8.0))
     assert (LEANS in said) == (tilt_deg != 0.0)
     assert ("is turned upright" in said) == (tilt_deg != 0.0)
+
+
+def test_who_sits_with_straight_legs_leans_by_intention(tmp_path, walker):
+    recording, said = read(joints(tmp_path / "take.csv", walker, 0.0, bend_deg=60.0))
+
+    assert trunk(recording, "pelvis", "head")[2] > np.cos(np.radians(8.0))
+    assert LEANS not in said
 
 
 def test_smpl_in_the_axes_of_a_tilted_camera_stands_on_a_level_floor(tmp_path):
