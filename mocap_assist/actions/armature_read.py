@@ -31,6 +31,7 @@ def read_take(
     source: Source | None = None,
     grid: Grid | None = None,
     root: str = "",
+    holds_ends: bool = False,
 ) -> Steps[ArmatureTake]:
     """Read an action, by default the armature's own, through its F-Curves in bulk.
 
@@ -47,6 +48,8 @@ def read_take(
         Frames to read instead of those of the keys within `choice`.
     root : str
         Bone that the body begins with; empty estimates it from the bones that travel.
+    holds_ends : bool
+        Whether bones hold their pose before their first and after their last key.
 
     Returns
     -------
@@ -76,7 +79,8 @@ def read_take(
     for number, bone in enumerate(rig.bones):
         step = grid.step if recorded else None
         pose_bone = keyed.pose_bone(bone)
-        channels.append(read_bone(pose_bone, keyed.curves, grid.frames, step, gaps=not thinned))
+        about = {"gaps": not thinned, "holds_ends": holds_ends}
+        channels.append(read_bone(pose_bone, keyed.curves, grid.frames, step, **about))
         travels.append(channels[-1].travels)
         if should_yield():
             yield 0.2 + 0.5 * number / len(rig.bones)

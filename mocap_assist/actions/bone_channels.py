@@ -58,11 +58,12 @@ def read_bone(
     step: float | None = None,
     *,
     gaps: bool = True,
+    holds_ends: bool = False,
 ) -> BoneChannels:
     """Read the rotation channels of the bone's own mode, and its location.
 
-    Channels without keys have the pose's present value. `step` is that of `unobserved`; without
-    `gaps` nothing is.
+    Channels without keys have the pose's present value. `step` and `holds_ends` are those of
+    `unobserved`; without `gaps` nothing is.
     """
     rotation_channels, location_channels = (
         rotation_curves(bone, curves),
@@ -73,7 +74,9 @@ def read_bone(
     is_exported = step is None  # by another program, which may have removed redundant keys
     if gaps:
         change = REDUNDANT_CHANGE_RAD * is_exported
-        missing = gaps_of(rotation_channels, frames, step, redundant_change=change)
+        missing = gaps_of(
+            rotation_channels, frames, step, redundant_change=change, holds_ends=holds_ends
+        )
         rotations[missing] = np.nan
     if bone.bone.use_connect and bone.parent:
         return BoneChannels(
@@ -83,7 +86,9 @@ def read_bone(
     if gaps:
         size = max(np.abs(locations).max(), bone.bone.length)
         change = REDUNDANT_CHANGE_FRACTION * size * is_exported
-        missing = gaps_of(location_channels, frames, step, redundant_change=change)
+        missing = gaps_of(
+            location_channels, frames, step, redundant_change=change, holds_ends=holds_ends
+        )
         locations[missing] = np.nan
     return BoneChannels(rotations, locations, bool(rotation_channels), bool(location_channels))
 
@@ -158,9 +163,12 @@ def gaps_of(
     step: float | None = None,
     *,
     redundant_change: float = 0.0,
+    holds_ends: bool = False,
 ) -> NDArray[np.bool_]:
     """Return where a property was not captured, shape (n_frames,); see `unobserved`."""
     if not curves or all(channel.keyed_at(frames) for channel in curves.values()):
         return np.zeros(len(frames), bool)
     keys = [channel.keys for channel in curves.values()]
-    return unobserved(keys, frames, step, redundant_change=redundant_change)
+    return unobserved(
+        keys, frames, step, redundant_change=redundant_change, holds_ends=holds_ends
+    )

@@ -28,6 +28,7 @@ def unobserved(
     step: float | None = None,
     *,
     redundant_change: float = 0.0,
+    holds_ends: bool = False,
 ) -> NDArray[np.bool_]:
     """Return the frames at which a bone was not captured, shape (n_frames,).
 
@@ -46,6 +47,9 @@ def unobserved(
         even few or widely spaced keys count as captured.
     redundant_change : float
         In the unit of the channels; above 0, one or two missing keys are no gap either.
+    holds_ends : bool
+        Whether frames before the first and after the last key are no gaps: curves of FBX, glTF
+        and USD hold their first and last value there.
     """
     gap = np.ones(len(frames), bool)
     held = np.ones(len(frames), bool)
@@ -53,6 +57,11 @@ def unobserved(
         missing, same = _holes(keys, frames, step, redundant_change)
         gap &= missing
         held &= same
+    if holds_ends:
+        first, last = (
+            limit(limit(keys[:, 0]) for keys in channels if len(keys)) for limit in (min, max)
+        )
+        gap &= (frames > first) & (frames < last)
     return np.asarray(gap & ~held)
 
 

@@ -128,7 +128,7 @@ def _read_clip(
     if is_rigify(armature.data.bones):
         motion = read_source(scene, armature, source, root)
         return _with_conventions(armature, motion, stated), LeftOut()
-    take = read_take(armature, scene, source=source, root=root)
+    take = read_take(armature, scene, source=source, root=root, holds_ends=True)
     motion = take.parts[0].motion
     unit = _unit_ratio(armature, motion)
     motion = with_carriers(scene, armature, source, take.frames, motion, unit)

@@ -12,10 +12,13 @@ from .conventions import (
     conventions_of,
     describe_guessed_axis,
     lacks_floor,
+    level,
     put_on_floor,
     question_of_depth,
     question_of_floor,
+    question_of_lean,
     question_of_size,
+    refuse_single_point,
     reinterpreted,
     with_conventions,
 )
@@ -79,6 +82,9 @@ def open_as(
     bodies = open_format(path, format_, unit, progress)
 
     def settled(recording: Tracked, progress: Progress) -> Tracked:
+        refuse_single_point(path, recording)
+        if floor is not FloorPlacement.NEVER and settings.up.axis is None:
+            recording = level(recording, progress)
         recording = settle(recording, settings, floor)
         for question in questions_of(recording, floor):
             progress(1.0, Remark(question))
@@ -103,12 +109,16 @@ def settle(recording: Recording, settings: ReadingSettings, floor: FloorPlacemen
 
 
 def questions_of(recording: Tracked, floor: FloorPlacement) -> list[str]:
-    """Ask whether size, depth and height of an actor are right, and the axis of markers.
+    """Ask whether size, depth, lean and height of an actor are right, and axes of markers.
 
     Heights are not questioned if the settings keep them.
     """
     conventions = conventions_of(recording)
-    found = [question_of_size(recording), question_of_depth(recording)]
+    found = [
+        question_of_size(recording),
+        question_of_depth(recording),
+        question_of_lean(recording),
+    ]
     if isinstance(recording, Tracks) and not conventions.is_certain:
         found.append(describe_guessed_axis(conventions.up))
     if floor is not FloorPlacement.NEVER:

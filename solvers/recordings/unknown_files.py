@@ -85,7 +85,7 @@ def _describe_table(path: Path | str, titles: Sequence[str]) -> str | None:
     found = {found.name for title in titles if (found := coordinate_of_title(title))}
     if found:
         return (
-            f"{path} has {len(found)} points, too few for a body. Export the skeleton that your"
-            " program makes of them, such as BVH."
+            f"{path} has too few points for a body ({len(found)}). Export the skeleton that"
+            " your program makes of them, such as BVH."
         )
     return None

@@ -33,7 +33,7 @@ from .body_axes import (
     stand_upright,
 )
 from .body_unit import question_of_size, stature, unit_of_skeleton
-from .camera_bodies import is_mirrored, stand_along, up_along
+from .camera_bodies import is_mirrored, level, question_of_lean, stand_along, up_along
 from .camera_paths import path_from_camera
 from .file_axes import (
     conventions_of,
@@ -43,7 +43,7 @@ from .file_axes import (
     with_axes,
     with_conventions,
 )
-from .flat_takes import question_of_depth
+from .flat_takes import question_of_depth, refuse_single_point
 from .floor import (
     describe_placement,
     floor_level,
@@ -146,6 +146,7 @@ __all__ = [
     "joint_recording",
     "keep_on_floor",
     "lacks_floor",
+    "level",
     "longest_bone_path",
     "meters_from_unit_name",
     "mirror_motion",
@@ -158,9 +159,11 @@ __all__ = [
     "put_on_floor",
     "question_of_depth",
     "question_of_floor",
+    "question_of_lean",
     "question_of_size",
     "rate_of_numbers",
     "recorded_seconds",
+    "refuse_single_point",
     "reinterpreted",
     "rotate_to_z_up",
     "rotation_between",

@@ -1,8 +1,11 @@
-"""Question takes without any depth, which programs of 2D poses write."""
+"""Question takes without any depth, and refuse those whose joints are all at one point."""
+
+from pathlib import Path
 
 import numpy as np
 
 from ...arrays import Array
+from ...errors import InvalidFileError
 from ...motion import JointRecording, Motion, Tracks, world_poses
 from .axes import MIN_BODY_JOINTS
 from .body_unit import stature
@@ -29,6 +32,17 @@ def question_of_depth(recording: Motion | Tracks | JointRecording) -> str:
     return (
         "All joints are in one plane, as poses of images are; use the 3D output of the tracker"
     )
+
+
+def refuse_single_point(path: Path | str, recording: Motion | Tracks | JointRecording) -> None:
+    """Raise InvalidFileError if several joints are at one point wherever they are observed."""
+    points = _points(recording)
+    points = points[np.isfinite(points).all(axis=2).sum(axis=1) > 1]
+    if len(points) and np.nanmax(np.nanmax(points, axis=1) - np.nanmin(points, axis=1)) == 0.0:
+        raise InvalidFileError(
+            f"{path} has all joints at one point. Export the positions of joints, or a skeleton"
+            " with bone lengths."
+        )
 
 
 def _points(recording: Motion | Tracks | JointRecording) -> Array:

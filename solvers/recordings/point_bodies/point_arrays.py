@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...errors import InvalidFileError
-from ...motion import AxisName, FileConventions, JointRecording, Sensor, roles_by_name
-from ...motion.humanoid import ADULT_STATURE_M, SIDES
+from ...motion import AxisName, JointRecording, Sensor, roles_by_name
+from ...motion.humanoid import SIDES
 from ...progress import Progress, Remark
 from ..conventions import (
     DEFAULT_FRAME_RATE,
@@ -23,7 +23,6 @@ from ..conventions import (
     is_mirrored,
     joint_recording,
     reinterpreted,
-    stature,
     with_conventions,
     z_up_from_y_up,
 )
@@ -31,6 +30,12 @@ from .depth_of_points import has_depth
 from .mediapipe_landmarks import N_POINTS, is_inside_picture, is_normalized
 from .refuse_angles import refuse_angles
 from .relative_positions import refuse_parent_positions, report_still_hips
+from .unknown_units import (
+    are_scaled_by_frame,
+    has_size_of_person,
+    with_adult_size,
+    with_constant_lengths,
+)
 from .unnamed_joints import NamedJoints, has_layout, name_joints
 
 UP: dict[AxisName, float] = {"Y": 0.2, "Z": 0.2, "-Y": 0.2}
@@ -50,8 +55,6 @@ SENSORS = {
 MIN_PIXELS = 10.0
 """Extent of a person in a picture, pixels; bodies in meters are smaller. It guards scores of
 2D points, 0 to 1, from being read as depth."""
-MAX_STATURE_M, MIN_STATURE_M = 4.0, 0.5
-"""Statures, meters, outside which lengths have no known unit. They guard normalized points."""
 MIN_FLEXION = 0.03
 """Distance of the knee from the line between hip and ankle, relative to the leg, that shows
 where the body faces. It guards straight legs, whose knees are noise."""
@@ -189,6 +192,8 @@ def stand_body(
     refuse_parent_positions(path, positions, roles)
     refuse_angles(path, names, positions)
     report_still_hips(positions, roles, progress)
+    has_unit = not are_scaled_by_frame(positions)
+    positions = positions if has_unit else with_constant_lengths(names, positions)
     if not estimated.is_clear:
         progress(0.8, Remark(describe_guessed_axis(estimated.axis)))
     recording = joint_recording(
@@ -202,28 +207,9 @@ def stand_body(
     standing = _with_sides_corrected(reinterpreted(recording, estimated.axis, None), progress)
     noted = replace(conventions_of(standing), confidence=estimated.confidence)
     standing = with_conventions(standing, noted)
-    return standing if scale is not None else _with_adult_size(standing, noted, progress)
-
-
-def _with_adult_size(
-    recording: JointRecording, noted: FileConventions, progress: Progress
-) -> JointRecording:
-    """Give a body whose lengths have no unit the size of an adult."""
-    tall = stature(recording)
-    if tall is None or MIN_STATURE_M <= tall <= MAX_STATURE_M:
-        return recording
-    factor = ADULT_STATURE_M / tall
-    progress(
-        1.0,
-        Remark(
-            f"Lengths have no known unit; the actor is scaled to {ADULT_STATURE_M:g} m. Set"
-            " Scale if that is wrong"
-        ),
-    )
-    larger = recording.tracks.with_positions(factor * recording.tracks.positions)
-    return with_conventions(
-        recording.with_tracks(larger), replace(noted, unit=noted.unit * factor)
-    )
+    if scale is None and not (has_unit and has_size_of_person(standing)):
+        return with_adult_size(standing, noted, progress)
+    return standing
 
 
 def _with_sides_corrected(recording: JointRecording, progress: Progress) -> JointRecording:

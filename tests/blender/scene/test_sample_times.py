@@ -140,6 +140,23 @@ def test_missing_keys_of_a_recorded_bone_are_a_gap(make_armature, animate, scene
     assert (~motion.observed).sum() == 22
 
 
+def test_curves_of_other_programs_hold_their_ends(make_armature, animate, scene_io, blank):
+    """Of Unity's jump in FBX, hips have keys in a fifth of the take."""
+    armature = make_armature()
+    action = animate(armature)
+    remove_keys(action, "Hips", 1, 20)
+    remove_keys(action, "Hips", 50, 60)
+    remove_keys(action, "RightArm", 30, 40)
+
+    take = scene_io.reading.read_take(armature, blank.context.scene, holds_ends=True)
+
+    motion = take.parts[0].motion
+    assert motion.observed[:, motion.skeleton.index("Hips")].all()
+    gap = ~motion.observed[:, motion.skeleton.index("RightArm")]
+    assert_array_equal(np.flatnonzero(gap) + 1, np.arange(30, 41))
+    assert_allclose(motion.root_positions[:20], motion.root_positions[20:21].repeat(20, axis=0))
+
+
 def test_held_pose_with_removed_keys_is_no_gap(make_armature, animate, scene_io, blank):
     armature = make_armature()
     action = animate(armature)

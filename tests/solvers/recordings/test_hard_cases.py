@@ -250,17 +250,15 @@ def _between(one, other) -> np.ndarray:
     return half / np.linalg.norm(half)
 
 
-def test_an_actor_far_above_the_floor_is_a_question(tmp_path):
+@pytest.mark.parametrize(("up_m", "words"), [(0.7, "0.7 m above"), (-0.2, "0.2 m below")])
+def test_an_actor_off_the_floor_is_a_question(tmp_path, up_m, words):
     """No person comes near the floor: a platform, or a floor that is elsewhere."""
-    take = plain_names(body(hips=(0.0, 0.0, 0.96 + 0.7)))
+    take = plain_names(body(hips=(0.0, 0.0, 0.96 + up_m)))
 
-    for floor, asks in (
-        (FloorPlacement.AUTO, True),
-        (FloorPlacement.NEVER, False),
-        (FloorPlacement.ALWAYS, False),
-    ):
+    for floor in FloorPlacement:
         _, messages = read(take, tmp_path / "a.bvh", floor=floor)
-        assert ("The actor stays 0.7 m above the floor" in messages) == asks
+        asks = floor is FloorPlacement.AUTO
+        assert (f"The actor stays {words} the floor" in messages) == asks
 
 
 def test_an_actor_far_below_the_floor_is_put_on_it(tmp_path):

@@ -9,7 +9,7 @@ from complete_files import COMPLETE, KEYPOINTS, RECORDING, SKELETON, V2
 from exports.complete_exports import EXPORTS
 
 from solvers.errors import InvalidFileError
-from solvers.recordings import read_recording
+from solvers.recordings import read_as, read_recording
 from solvers.recordings.containers import size_limits
 
 ROOT = "ROOT a{}\n{{\nOFFSET 0 1 0\nCHANNELS 3 Xrotation Yrotation Zrotation\n}}\n"
@@ -112,3 +112,20 @@ def test_an_endless_number_of_a_frame_or_joint_is_read(tmp_path, number):
 
     assert points.positions.shape == ((4, 9, 3) if number == "1e300" else (3, 9, 3))
     assert np.isfinite(points.positions).all()
+
+
+def test_joints_at_one_point_are_refused(tmp_path):
+    """They would come in as a body without a size."""
+    joints = [f"{side}{part}" for side in ("Left", "Right")
+              for part in ("Shoulder", "Elbow", "Wrist", "Hip", "Knee", "Ankle")]  # fmt: skip
+    titles = ",".join(f"{joint}_{axis}" for joint in joints for axis in "xyz")
+    rows = [",".join([f"{0.1 * k},1,0"] * len(joints)) for k in range(30)]
+    (tmp_path / "take.csv").write_text("\n".join([titles, *rows]))
+    bone = "{} a{}\n{{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
+    bones = "".join(bone.format("JOINT" if k else "ROOT", k) for k in range(3))
+    motion = "MOTION\nFrames: 2\nFrame Time: 0.1\n" + 2 * (9 * " 0" + "\n")
+    (tmp_path / "take.bvh").write_text("HIERARCHY\n" + bones + 3 * "}\n" + motion)
+
+    for name in ("take.csv", "take.bvh"):
+        with pytest.raises(InvalidFileError, match="has all joints at one point"):
+            read_as(tmp_path / name)

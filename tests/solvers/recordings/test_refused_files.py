@@ -99,7 +99,7 @@ def object_array() -> bytes:
             "time,Waist_PosX,Waist_PosY,Waist_PosZ,Head_PosX,Head_PosY,Head_PosZ\n"
             + ",".join(["1.5"] * 7)
             + "\n",
-            "has 2 points, too few for a body",
+            r"has too few points for a body \(2\)",
         ),
         (
             "Timecode,BlendshapeCount,EyeBlinkLeft,EyeLookDownLeft,JawOpen,MouthSmileLeft\n"

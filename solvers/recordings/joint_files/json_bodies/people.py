@@ -218,17 +218,13 @@ def _keyed_people(body: Mapping[str, Any], identity: str) -> Iterator[JsonPerson
     body = {key: value for key, value in body.items() if not is_no_position(str(key))}
     nested = {key: value for key, value in body.items() if isinstance(value, Mapping)}
     bodies = {key: value for key, value in nested.items() if not has_word(key, PART.fullmatch)}
-    for name, joints in {identity: body, **(bodies or nested)}.items():
+    for name, joints in ((identity, body), *(bodies or nested).items()):
         if any(map(joints.get, POINT_KEYS)):
             yield from (each._replace(identity=name) for each in _person(joints, name))
             continue
-        positions = {str(key): position_of(value) for key, value in joints.items() if value}
+        widths = {key: width_of(position_of(value)) for key, value in joints.items() if value}
         for width in (3, 4):
-            found = {
-                key: position
-                for key, position in positions.items()
-                if width_of(position) == width
-            }
+            found = {key: joints[key] for key in widths if widths[key] == width}
             points = points_of(found) if len(found) >= MIN_JOINTS else None
             if points is not None:
                 root = _root_of(joints) or _root_of(body)

@@ -63,11 +63,12 @@ def points_of(joints: Any, key: str = "") -> Points | None:
     Parameters
     ----------
     joints : list of points, of numbers, or of objects; or an object with a point for each name
+        or number
     key : of the member; MediaPipe's landmarks get their names by it
     """
     names: tuple[str, ...] = ()
     if isinstance(joints, Mapping):
-        names, joints = tuple(map(str, joints)), list(joints.values())
+        names, joints = _names_in_keys(joints), list(joints.values())
     if not isinstance(joints, list):
         return None
     objects = [joint for joint in joints if isinstance(joint, Mapping)]
@@ -85,6 +86,12 @@ def points_of(joints: Any, key: str = "") -> Points | None:
     if not names and len(array) == N_POINTS and (key in LANDMARK_KEYS or has_visibility):
         names = BODY_POINTS
     return Points(array, confidence, names)
+
+
+def _names_in_keys(joints: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the keys of joints, which are no names where they are 0, 1, 2 and so on."""
+    names = tuple(map(str, joints))
+    return () if names == tuple(map(str, range(len(names)))) else names
 
 
 def _positions(joints: list[Any]) -> list[Any]:

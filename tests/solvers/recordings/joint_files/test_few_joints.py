@@ -88,5 +88,5 @@ def test_landmarks_may_have_hands_next_to_them(read_any, walk, rng):
 @pytest.mark.parametrize("names", [{"a": "hips", "b": "head", "c": "leftFoot"},
                                    {"head": "head", "hips": "hips"}])  # fmt: skip
 def test_a_few_points_without_names_of_joints_are_refused(read_any, walk, names):
-    with pytest.raises(InvalidFileError, match="too few for a body"):
+    with pytest.raises(InvalidFileError, match="too few points for a body"):
         read_any(table(names, walk))

@@ -50,6 +50,7 @@ LAYOUTS = {
                                         in zip(BODY_POINTS, objects(k), strict=True)]}]
         for k in range(N)
     ],
+    "by number": [{str(at): point for at, point in enumerate(objects(k))} for k in range(N)],
     "text": [
         {"landmarks": [{axis: str(each[axis]) for axis in each} for each in objects(k)]}
         for k in range(N)

@@ -107,6 +107,43 @@ def test_points_without_a_unit_get_the_size_of_an_adult(tmp_path, walker):
     assert height == pytest.approx(np.ptp(points[..., 2], axis=1).max(), rel=0.1)
 
 
+def test_frames_that_are_fitted_into_a_box_get_one_scale(tmp_path, walker):
+    """As the demos of pose estimators write them: from 0 to 1 in each frame."""
+    points = ordered(walker, "Human3.6M")
+    middle = points[:, :1] * (1.0, 1.0, 0.0)
+    lowest = points[..., 2].min(axis=1)[:, None, None] * (0.0, 0.0, 1.0)
+    placed = points - middle - lowest
+    boxed = placed / placed.max(axis=(1, 2), keepdims=True)
+
+    recording, said = read(tmp_path, boxed)
+
+    assert "scaled to 1.75 m" in said
+    joints = {role: recording.tracks.positions[:, recording.names.index(name)]
+              for role, name in roles_by_name(recording.names).items()}  # fmt: skip
+    found = joints["leftHand"] - joints["hips"]
+    expected = walker["leftHand"] - walker["hips"]
+    size = np.linalg.norm(found, axis=1) / np.linalg.norm(expected, axis=1)
+    assert size == pytest.approx(np.median(size), rel=1e-6)
+    assert np.median(size) == pytest.approx(1.0, rel=0.1)
+
+
+@pytest.mark.parametrize("shape", [(1, 17), (4, 6), (3, 8)])
+def test_a_board_of_points_is_no_body(tmp_path, shape):
+    """Corners of a board for calibration keep their distances, and rows look like limbs."""
+    n_frames = 60
+    angle = 0.4 * np.sin(np.arange(n_frames) / 9.0)
+    corners = 0.08 * np.stack([*np.indices(shape), np.zeros(shape)], axis=-1).reshape(-1, 3)
+    x, y, z = corners.T
+    sine, cosine = np.sin(angle)[:, None], np.cos(angle)[:, None]
+    turned = (cosine * x - sine * y, sine * x + cosine * y, z + angle[:, None])
+    moved = np.stack(turned, axis=-1)[..., [1, 2, 0]] + np.array([0.2, 1.0, 2.0])
+
+    recording, said = read(tmp_path, moved)
+
+    assert not isinstance(recording, JointRecording)
+    assert "form no body in a known order" in said
+
+
 def test_points_in_another_order_are_no_body(tmp_path, walker):
     shuffled = np.random.default_rng(2).permutation(17)
 
