@@ -38,7 +38,7 @@ KINDS = {
     "cut": "Cut",
     "low confidence": "Low Confidence",
 }
-KIND_COLUMN, BONE_COLUMN = 0.36, 0.64  # of the list's width, and of the rest of it
+KIND_COLUMN, BONE_COLUMN = 0.33, 0.65  # of the list's width, and of the rest of it
 AWAITED = "These issues are from before this result, which is being checked."
 STALE = 'Results are for "{action}". Run Check again.'
 MIN_ROWS, MAX_ROWS = 4, 8
@@ -63,7 +63,7 @@ class MOCAP_UL_issues(bpy.types.UIList):
         icon_name = ICONS.get(item.kind, "ERROR") if wide else "NONE"
         _jump(row, index, translated(KINDS.get(item.kind, item.kind)), icon_name)
         row = row.split(factor=BONE_COLUMN)
-        _jump(row, index, item.name, "NONE")
+        _jump(row, index, item.name.rpartition(":")[2], "NONE")  # without its namespace
         first, last = shown_frames(context, item)
         _jump(row, index, frames_text(first, last) if wide else frame_text(first), "NONE")
 
