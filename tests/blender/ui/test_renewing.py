@@ -3,6 +3,8 @@
 from contextlib import nullcontext
 from types import SimpleNamespace
 
+import bpy
+import pytest
 from modal_events import event, nothing_is_left, wait
 
 
@@ -39,12 +41,36 @@ def test_results_are_checked_again_in_a_window_of_their_scene(blank, load, monke
     assert renewing._awaited == {2: False}  # nothing there can be checked yet
 
 
-def test_result_is_checked_once_its_scene_is_shown_again(blank, actor, renewing, monkeypatch):
+@pytest.fixture
+def scene_is_shown(load, renewing, monkeypatch):
+    """What Blender calls after a window shows another scene."""
+    subscribed = []
+    bus = SimpleNamespace(
+        clear_by_owner=lambda _: None, subscribe_rna=lambda **given: subscribed.append(given)
+    )
+    with monkeypatch.context() as patch:
+        patch.setattr(
+            load("mocap_assist.blender.subscriptions"), "bpy", SimpleNamespace(msgbus=bus)
+        )
+        renewing._watch_scenes()
+        renewing._ignore_scenes()
+    (found,) = subscribed
+    assert found["key"] == (bpy.types.Window, "scene")
+    return found["notify"]
+
+
+def test_result_is_checked_once_its_scene_is_shown_again(
+    blank, actor, renewing, scene_is_shown, monkeypatch
+):
     """The animator looked at another scene when the solve ended; the list stayed old."""
     ours = blank.context.scene
     blank.ops.mocap_assist.measure_quality()
-    windows, pressed = [SimpleNamespace(scene=blank.data.scenes.new("Other"))], []
+    other, pressed = blank.data.scenes.new("Other"), []
+    windows = [SimpleNamespace(scene=other)]
     renewing.renew_later(ours)
+    other.mocap_assist.report = "Check was pressed there, too."
+    renewing.renew_later(other)
+    renewing._awaited.pop(other.session_uid)
     renewing.timers.clear()
     view = SimpleNamespace(type="VIEW_3D", regions=[SimpleNamespace(type="WINDOW")])
     context = SimpleNamespace(
@@ -60,7 +86,7 @@ def test_result_is_checked_once_its_scene_is_shown_again(blank, actor, renewing,
     renewing.renew()
     assert not pressed
     windows[0] = SimpleNamespace(scene=ours, screen=SimpleNamespace(areas=[view]))
-    renewing.renew_awaited()
+    scene_is_shown()
     assert renewing.timers == [renewing.renew]
     renewing.renew()
 
