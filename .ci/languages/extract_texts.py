@@ -70,7 +70,6 @@ LABELED = {
     "solvers/recordings/conventions/unit_estimate.py": {"describe_guessed_unit"},
     "solvers/recordings/skeleton_files/segment_recordings.py": {"POINTS_ONLY"},
     "solvers/retargeting/body.py": {"SOURCE", "TARGET", "MOTION"},
-    "solvers/workflows/fix_chains.py": {"SPIKES", "GAPS", "SWAPPED_LABELS"},
     "solvers/workflows/fix_report/take_figures.py": {"_texts"},
 }  # fmt: skip
 """By file: constants, enums and functions with texts that are no full sentences."""

@@ -11,7 +11,7 @@ from ..blender.block_references import (
     BlockReference,
     SourceReference,
     changed_during_solve,
-    removed_on_failure,
+    kept_when_complete,
 )
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
@@ -48,7 +48,7 @@ def write_action(
     """
     here, made = BlockReference.of(armature), compat.new_action(name, armature)
     lasting = SourceReference.of(made)
-    with removed_on_failure(made[0]):
+    with kept_when_complete(made[0]):
         bag = compat.ensure_channelbag(*made)
         for number, (bone, channels) in enumerate(keys.items()):
             _write_bone(armature, bag, bone, frames, channels)

@@ -16,7 +16,7 @@ from ..blender.block_references import (
     BlockReference,
     SourceReference,
     changed_during_solve,
-    removed_on_failure,
+    kept_when_complete,
 )
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, in_thread, should_yield
@@ -84,7 +84,7 @@ def write_take(
     Returns
     -------
     action, slot
-        Named like the source with the suffix, and kept by a fake user.
+        Named like the source with the suffix, and with a fake user.
     """
     here, origin = BlockReference.of(armature), SourceReference.of(source)
     playing = identify_played(armature)
@@ -97,7 +97,7 @@ def write_take(
     action = copy_of(original[0], suffix)
     made = SourceReference.of((action, same_slot(action, original[1])))
     indices = [index for index, name in enumerate(take.rig.bones) if name in bones]
-    with removed_on_failure(action):
+    with kept_when_complete(action):
         armature, curves = here.find(), animated_curves(*made.find())
         for number, bone in enumerate(indices):
             _BoneWriter.of(armature, curves, take, bone, key_types).write(poses, unchanged)
@@ -244,12 +244,11 @@ FIX_CARD = "mocap_assist_fix"
 
 
 def copy_of(original: bpy.types.Action, suffix: str = SUFFIX) -> bpy.types.Action:
-    """Return a copy, named like the original with an ending, and kept by a fake user."""
+    """Return a copy, named like the original with an ending."""
     action = original.copy()
     if FIX_CARD in action:
         del action[FIX_CARD]
     action.name = NUMBERED.sub("", original.name) + suffix
-    action.use_fake_user = True
     return action
 
 

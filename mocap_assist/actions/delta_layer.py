@@ -12,7 +12,7 @@ from ..blender.block_references import (
     BlockReference,
     SourceReference,
     changed_during_solve,
-    removed_on_failure,
+    kept_when_complete,
 )
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
@@ -54,13 +54,12 @@ def write_delta(armature: bpy.types.Object, base: Source, result: Source) -> Ste
         action.
     """
     action = bpy.data.actions.new(NUMBERED.sub("", base[0].name) + SUFFIX)
-    action.use_fake_user = True
     slot = action.slots.new(armature.id_type, result[1].name_display)
     here, made = BlockReference.of(armature), SourceReference.of((action, slot))
     sources = SourceReference.of(base), SourceReference.of(result)
     names, playing = armature.pose.bones.keys(), identify_played(armature)
     before, after = animated_curves(*base), animated_curves(*result)
-    with removed_on_failure(action):
+    with kept_when_complete(action):
         for number, name in enumerate(names):
             bone, bag = here.find().pose.bones.get(name), compat.ensure_channelbag(*made.find())
             if bone is None:

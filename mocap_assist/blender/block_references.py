@@ -73,11 +73,16 @@ class SourceReference(NamedTuple):
 
 
 @contextmanager
-def removed_on_failure(action: bpy.types.Action) -> Iterator[None]:
-    """Remove a new action if its completion fails, or is cancelled between two time slices."""
+def kept_when_complete(action: bpy.types.Action) -> Iterator[None]:
+    """Give a new action a fake user once it is complete; remove it if that fails.
+
+    Without a user it is left out of a file that is saved between two time slices.
+    """
     made = BlockReference.of(action)
+    action.use_fake_user = False
     try:
         yield
+        made.find().use_fake_user = True
     except BaseException:
         with suppress(InvalidMotionError):
             bpy.data.actions.remove(made.find())

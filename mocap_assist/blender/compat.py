@@ -25,6 +25,13 @@ def select_bone(bone: bpy.types.PoseBone, selected: bool = True) -> None:
         bone.select = selected
 
 
+def is_hidden(bone: bpy.types.PoseBone) -> bool:
+    """Whether a bone is not drawn; Blender 5.0 moved the flag to the pose."""
+    collections = bone.bone.collections
+    is_in_view = not collections or any(each.is_visible_effectively for each in collections)
+    return bool((bone.bone if bpy.app.version < (5, 0) else bone).hide) or not is_in_view
+
+
 def stored_properties(group: bpy.types.PropertyGroup) -> Any:
     """Return what a file holds for a group, by name; Blender 5.0 moved it out of the group."""
     return group if bpy.app.version < (5, 0) else group.bl_system_properties_get()

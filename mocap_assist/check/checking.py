@@ -14,6 +14,7 @@ from ..actions.limits import read_limits
 from ..actions.markers.holders import markers_of, point_names
 from ..actions.markers.take import MarkerTake, read_markers
 from ..actions.take import ArmatureTake
+from ..blender.compat import is_hidden
 from ..blender.time_slices import Sliced, Steps
 from ..runtime.selection import (
     played_source,
@@ -110,6 +111,18 @@ def is_stale(checked: bpy.types.Action | None, subject: bpy.types.Object | None)
         return True
 
 
+def why_not_visible(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> str:
+    """Return why the views do not show the bone of an issue, or an empty text."""
+    subject = selected_subject(context)
+    if subject is None or subject.type != "ARMATURE" or issue.name not in subject.pose.bones:
+        return ""
+    if not subject.visible_get():
+        return f"{subject.name} is hidden. Show it in the Outliner."
+    if is_hidden(subject.pose.bones[issue.name]):
+        return f"{issue.name} is hidden. Show its bone collection, or press Alt H in Pose Mode."
+    return ""
+
+
 def jump_to(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> None:
     """Set the current frame to the start of an issue and select only its bone or its marker.
 
@@ -133,7 +146,7 @@ def _select_bone(armature: bpy.types.Object, name: str) -> None:
     if name not in armature.pose.bones:
         return
     select_only_bone(armature, name)
-    if armature.mode == "OBJECT" and armature.library is None:
+    if armature.mode == "OBJECT" and armature.library is None and armature.visible_get():
         bpy.ops.object.mode_set(mode="POSE")
 
 

@@ -5,12 +5,9 @@ Blender: evaluated again, it would have the value of its keys before it can be k
 """
 
 import bpy
-from bpy.app import handlers
 
 from ..actions.delta_layer import delta_strip
-
-_owner = object()
-"""What Blender knows the subscription by."""
+from ..blender.subscriptions import subscription
 
 
 def show_influence() -> None:
@@ -21,22 +18,4 @@ def show_influence() -> None:
             armature.update_tag(refresh={"TIME"})
 
 
-@handlers.persistent
-def _subscribe(*_: object) -> None:
-    """Subscribe to edits of influences; Blender forgets it whenever it loads a file."""
-    bpy.msgbus.clear_by_owner(_owner)
-    bpy.msgbus.subscribe_rna(
-        key=(bpy.types.NlaStrip, "influence"), owner=_owner, args=(), notify=show_influence
-    )
-
-
-def register() -> None:
-    """Subscribe now and after each file."""
-    _subscribe()
-    handlers.load_post.append(_subscribe)
-
-
-def unregister() -> None:
-    """End the subscription."""
-    handlers.load_post.remove(_subscribe)
-    bpy.msgbus.clear_by_owner(_owner)
+register, unregister = subscription((bpy.types.NlaStrip, "influence"), show_influence)

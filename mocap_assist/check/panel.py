@@ -13,9 +13,10 @@ from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, is_wide
 from ..panel_parts.visibility import shows_take
 from ..runtime.selection import played_result, selected_subject, shown_frames
 from ..scene import history
-from .checking import is_stale
+from .checking import is_stale, why_not_visible
 from .issue_markers import has_issue_markers
 from .issue_views import draw_view_switches
+from .renewing import is_awaited
 
 CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_issue"
 MARK = "mocap_assist.mark_issues"
@@ -37,7 +38,8 @@ KINDS = {
     "cut": "Cut",
     "low confidence": "Low Confidence",
 }
-KIND_COLUMN, BONE_COLUMN = 0.36, 0.64  # of the list's width, and of the rest of it
+KIND_COLUMN, BONE_COLUMN = 0.33, 0.65  # of the list's width, and of the rest of it
+AWAITED = "These issues are from before this result, which is being checked."
 STALE = 'Results are for "{action}". Run Check again.'
 MIN_ROWS, MAX_ROWS = 4, 8
 
@@ -61,7 +63,7 @@ class MOCAP_UL_issues(bpy.types.UIList):
         icon_name = ICONS.get(item.kind, "ERROR") if wide else "NONE"
         _jump(row, index, translated(KINDS.get(item.kind, item.kind)), icon_name)
         row = row.split(factor=BONE_COLUMN)
-        _jump(row, index, item.name, "NONE")
+        _jump(row, index, item.name.rpartition(":")[2], "NONE")  # without its namespace
         first, last = shown_frames(context, item)
         _jump(row, index, frames_text(first, last) if wide else frame_text(first), "NONE")
 
@@ -121,10 +123,14 @@ def _draw_issues(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     row.operator(JUMP, text="Next", icon="TRIA_RIGHT").step = 1
     draw_view_switches(row, context)
     if 0 <= shown.active_issue < len(shown.issues):
-        draw_sentence(layout, context, shown.issues[shown.active_issue].sentence)
+        issue = shown.issues[shown.active_issue]
+        draw_sentence(layout, context, issue.sentence)
+        if reason := why_not_visible(context, issue):
+            draw_sentence(layout, context, reason, icon="HIDE_ON")
     subject = selected_subject(context)
     if subject is not None and is_stale(shown.checked_action, subject):
-        draw_sentence(layout, context, _stale_text(shown.checked_action), icon="INFO")
+        text = AWAITED if is_awaited(context) else _stale_text(shown.checked_action)
+        draw_sentence(layout, context, text, icon="INFO")
 
 
 def _stale_text(checked: bpy.types.Action | None) -> str:

@@ -59,8 +59,8 @@ def show_raw(context: bpy.types.Context) -> str:
     message = ""
     for player in animated_objects(selected_subject(context)):
         played = history.played_result(player)
-        raw = played and history.raw_of(*played)
-        if raw:
+        if played and (raw := history.raw_of(*played)):
+            history.hold_result(player, played)
             shown = _remember(player, raw)
             _shown.append(shown._replace(track=_play(player, raw)))
             message = message or f"{raw[0].name} (raw)"
@@ -75,6 +75,7 @@ def is_shown() -> bool:
 @handlers.persistent
 def restore(*_: object) -> None:
     """Assign again what was played before; a second call has no effect."""
+    history.release_results()
     if not _shown:
         return
     while _shown:

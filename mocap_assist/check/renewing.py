@@ -3,15 +3,16 @@
 import bpy
 
 from ...solvers.errors import MocapAssistError
+from ..blender.subscriptions import subscription
 from ..runtime import after_result, watch
 from ..runtime.selection import selected_subject
 from ..runtime.solver_operator import SolverOperator
 from . import raw_view
 from .checking import is_stale
 
-_awaited: dict[str, bool] = {}
-"""Name of the scene that the next quiet check is for, until a check has ended there, and
-whether it is checked even if the list is of the action that is played."""
+_awaited: dict[int, bool] = {}
+"""Number of each scene that a quiet check is for, until a check has ended there, and whether it
+is checked even if the list is of the action that is played."""
 
 
 class CheckOperator(SolverOperator):
@@ -32,7 +33,8 @@ class CheckOperator(SolverOperator):
         return super().modal(context, event)
 
     def _finish(self, message: str) -> set[str]:
-        _awaited.clear()
+        _awaited.pop(self._subject.scene.number, None)
+        renew_awaited()  # in other scenes
         return {"FINISHED"} if self.is_quiet else super()._finish(message)
 
     def _give_up(self, error: MocapAssistError | MemoryError) -> set[str]:
@@ -53,16 +55,21 @@ def _await(scene: bpy.types.Scene, *, always: bool) -> None:
     if not scene.mocap_assist.report or bpy.app.background:
         return
     watch.abandon_quiet(bpy.context)  # a check of what was played before
-    is_forced = always or _awaited.get(scene.name, False)
-    _awaited.clear()
-    _awaited[scene.name] = is_forced
+    _awaited[scene.session_uid] = always or _awaited.get(scene.session_uid, False)
     _renew_when_idle()
 
 
 def renew_awaited() -> None:
-    """Take up a quiet check that was ended by a press, or met the recorded action."""
+    """Take up a quiet check that was ended by a press, or met the recorded action, or whose
+    scene was not shown."""
     if _awaited and not watch.is_quiet_on():
         _renew_when_idle()
+
+
+def is_awaited(context: bpy.types.Context) -> bool:
+    """Whether a quiet check of what the selection plays runs, or will."""
+    is_on = watch.is_quiet_on() or bpy.app.timers.is_registered(renew)
+    return is_on and context.scene.session_uid in _awaited
 
 
 def _renew_when_idle() -> None:
@@ -71,33 +78,38 @@ def _renew_when_idle() -> None:
 
 
 def renew() -> None:
-    """Press Check quietly in a window of the scene.
+    """Press Check quietly in a window of an awaited scene.
 
-    While another solve runs or the recorded action is shown there is no press; `renew_awaited`
-    is called after both.
+    While another solve runs, the recorded action is shown or no window shows the scene there is
+    no press; `renew_awaited` is called after each of them.
     """
     if raw_view.is_shown():
         return
     check = bpy.ops.mocap_assist.measure_quality
-    windows = [
-        each for each in bpy.context.window_manager.windows if each.scene.name in _awaited
-    ]
-    for window in windows[:1]:
+    for window in bpy.context.window_manager.windows:
+        scene = window.scene
+        if scene.session_uid not in _awaited:
+            continue
         area = max(window.screen.areas, key=lambda each: each.type == "VIEW_3D")
         region = next(each for each in area.regions if each.type == "WINDOW")
         with bpy.context.temp_override(window=window, area=area, region=region):
-            if check.poll() and (_awaited[window.scene.name] or _is_outdated(window.scene)):
+            if not check.poll():
+                continue
+            if _awaited[scene.session_uid] or _is_outdated(scene):
                 check("INVOKE_DEFAULT", is_quiet=True)
+                return
+        del _awaited[scene.session_uid]
 
 
 def _is_outdated(scene: bpy.types.Scene) -> bool:
     """Whether the list is of another action than the one that is played.
 
-    A result of Fix brings its list along, and one for another rig changes nothing here. A scene
-    of another file, in which Check was never pressed, may have the name of the awaited one.
+    A result of Fix brings its list along, and one for another rig changes nothing here.
     """
-    shown = scene.mocap_assist
-    return bool(shown.report) and is_stale(shown.checked_action, selected_subject(bpy.context))
+    return is_stale(scene.mocap_assist.checked_action, selected_subject(bpy.context))
+
+
+_watch_scenes, _ignore_scenes = subscription((bpy.types.Window, "scene"), renew_awaited)
 
 
 def register() -> None:
@@ -105,10 +117,12 @@ def register() -> None:
     after_result.listeners.append(renew_later)
     watch.at_end.append(renew_awaited)
     raw_view.at_end.append(renew_awaited)
+    _watch_scenes()
 
 
 def unregister() -> None:
     """Stop checking after results."""
+    _ignore_scenes()
     after_result.listeners.remove(renew_later)
     watch.at_end.remove(renew_awaited)
     raw_view.at_end.remove(renew_awaited)

@@ -21,7 +21,7 @@ from ..actions.delta_layer import lay_delta, write_delta
 from ..actions.limits import read_limits
 from ..actions.take import ArmatureTake
 from ..actions.unchanged_samples import RecordedChannels
-from ..blender.block_references import SourceReference, removed_on_failure
+from ..blender.block_references import SourceReference, kept_when_complete
 from ..blender.compat import Source
 from ..blender.time_slices import Steps, in_thread
 from ..runtime.played import Played
@@ -109,7 +109,7 @@ class ArmatureReading(NamedTuple):
         history.record(action, now.played, entry)
         if choices.result_as is CleanOutput.DELTA_LAYER:
             made = SourceReference.of((action, slot))
-            with removed_on_failure(action):
+            with kept_when_complete(action):
                 delta = yield from write_delta.steps(now.armature, now.recorded, (action, slot))
                 now, (action, slot) = self._resolve(self.references, self.raw), made.find()
             lay_delta(now.armature, now.recorded, delta)

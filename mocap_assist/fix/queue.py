@@ -43,6 +43,10 @@ class QueuedTake(Protocol):
     def discard(self, context: bpy.types.Context) -> None:
         """Remove from the scene what `bring` has added."""
 
+    @property
+    def was_added(self) -> bool:
+        """Whether `bring` has added the take to the scene."""
+
 
 class TakeOfScene:
     """A take that is in the scene."""
@@ -58,6 +62,11 @@ class TakeOfScene:
     def discard(self, context: bpy.types.Context) -> None:
         """Do nothing: it was there before."""
 
+    @property
+    def was_added(self) -> bool:
+        """False: it was there before."""
+        return False
+
 
 class TakeOfFile:
     """A take that is in a file."""
@@ -65,12 +74,15 @@ class TakeOfFile:
     def __init__(self, path: Path) -> None:
         self.name, self._path = path.name, path
         self._file: ImportedFile | None = None
+        self.was_added = False
 
     def bring(self, context: bpy.types.Context) -> Bringing:
         """Import the file."""
         self._file = ImportedFile(context, self._path)
         found = yield from self._file.read(context)
-        return Subject.of(context.scene, self._file.add(context, found))
+        subject = Subject.of(context.scene, self._file.add(context, found))
+        self.was_added = True
+        return subject
 
     def discard(self, context: bpy.types.Context) -> None:
         """Leave the scene as it was before the import."""

@@ -91,7 +91,8 @@ class QueueOperator(WatchedOperator):
                 raise
             except (MocapAssistError, MemoryError) as error:
                 n_failed += 1
-                push_undo(take.name)  # its import stays
+                if take.was_added:
+                    push_undo(take.name)  # its import stays
                 show_status(index, Status.FAILED, str(error) or "Memory ran out.")
             else:
                 show_status(index, Status.DONE, message)

@@ -11,7 +11,7 @@ from ..panel_parts.manual_page import start_page
 from ..panel_parts.panel_layout import draw_job, draw_sentence, exists
 from ..panel_parts.solver_ready import note_drawing
 from ..panel_parts.visibility import ALL_PANELS
-from ..runtime.selection import selected_subject
+from ..runtime.selection import selected_subject, why_not_active
 from ..scene.origin import noted_conventions, origin_of
 from .menu import IMPORT
 
@@ -53,7 +53,10 @@ class ImportPanel(PanelMixin):
         active = context.view_layer.objects.active
         origin = origin_of(active) if active is not None else {}
         if not origin and selected_subject(context) is None:
-            _draw_first_steps(layout, context)
+            if hint := why_not_active(context):
+                draw_sentence(layout, context, hint, icon="INFO")
+            else:
+                _draw_first_steps(layout, context)
         if origin:
             column = layout.column(align=True)
             name = PurePath(str(origin.get("file", ""))).name

@@ -55,6 +55,8 @@ def toggle_kept(choices: LibraryChoices) -> str:
         stop_keeping(problem.library)
         return f"{name} is updated only when you press Build Library."
     keep(problem)
+    if len(problem.sources) == 1:
+        return f"{name} is updated automatically from 1 source."
     return f"{name} is updated automatically from {len(problem.sources)} sources."
 
 

@@ -52,13 +52,9 @@ class Mark(Enum):
     ISSUE = "Issues"
     FILLED = "Filled"
     CORRECTED = "Corrected"
-    LEFT_FOOT = "Left Foot"
-    RIGHT_FOOT = "Right Foot"
-    LEFT_HAND = "Left Hand"
-    RIGHT_HAND = "Right Hand"
-    LEFT_KNEE = "Left Knee"
-    RIGHT_KNEE = "Right Knee"
-    HIPS = "Hips"
+    LEFT = "Left Contact"
+    RIGHT = "Right Contact"
+    HIPS = "Hips Contact"
 
 
 COLORS: Mapping[Mark, Color] = {
@@ -68,12 +64,8 @@ COLORS: Mapping[Mark, Color] = {
     Mark.ISSUE: (1.0, 0.36, 0.18, 0.75),
     Mark.FILLED: (0.70, 0.45, 0.95, 1.0),
     Mark.CORRECTED: (0.95, 0.85, 0.45, 1.0),
-    Mark.LEFT_FOOT: (0.35, 0.80, 0.45, 1.0),
-    Mark.RIGHT_FOOT: (0.20, 0.70, 0.75, 1.0),
-    Mark.LEFT_HAND: (0.35, 0.80, 0.45, 1.0),
-    Mark.RIGHT_HAND: (0.20, 0.70, 0.75, 1.0),
-    Mark.LEFT_KNEE: (0.35, 0.80, 0.45, 1.0),
-    Mark.RIGHT_KNEE: (0.20, 0.70, 0.75, 1.0),
+    Mark.LEFT: (0.35, 0.80, 0.45, 1.0),
+    Mark.RIGHT: (0.20, 0.70, 0.75, 1.0),
     Mark.HIPS: (0.30, 0.75, 0.60, 1.0),
 }
 ISSUE_ROWS: Mapping[str, StripRow] = {
@@ -87,12 +79,12 @@ ISSUE_ROWS: Mapping[str, StripRow] = {
 }
 """By kind of an issue."""
 CONTACT_ROWS = (
-    (StripRow.LEFT_FOOT, Mark.LEFT_FOOT),
-    (StripRow.RIGHT_FOOT, Mark.RIGHT_FOOT),
-    (StripRow.LEFT_HAND, Mark.LEFT_HAND),
-    (StripRow.RIGHT_HAND, Mark.RIGHT_HAND),
-    (StripRow.LEFT_KNEE, Mark.LEFT_KNEE),
-    (StripRow.RIGHT_KNEE, Mark.RIGHT_KNEE),
+    (StripRow.LEFT_FOOT, Mark.LEFT),
+    (StripRow.RIGHT_FOOT, Mark.RIGHT),
+    (StripRow.LEFT_HAND, Mark.LEFT),
+    (StripRow.RIGHT_HAND, Mark.RIGHT),
+    (StripRow.LEFT_KNEE, Mark.LEFT),
+    (StripRow.RIGHT_KNEE, Mark.RIGHT),
     (StripRow.HIPS, Mark.HIPS),
 )
 """In the order of the contact keys."""
@@ -114,10 +106,7 @@ GROUPS: Mapping[StripRow, StripRow] = {
 """For each row, the one that replaces it in an editor without space for all rows."""
 IMPORTANCE = (StripRow.ISSUES, StripRow.CONFIDENCE, StripRow.CHANGED, StripRow.CONTACTS)
 """Of joined rows, the order in which a low editor drops them, the last ones first."""
-LANES: Mapping[Mark, tuple[float, float]] = {
-    **{mark: (0.5, 1.0) for _, mark in CONTACT_ROWS if mark.name.startswith("LEFT")},
-    **{mark: (0.0, 0.5) for _, mark in CONTACT_ROWS if mark.name.startswith("RIGHT")},
-}
+LANES: Mapping[Mark, tuple[float, float]] = {Mark.LEFT: (0.5, 1.0), Mark.RIGHT: (0.0, 0.5)}
 """Lower and upper end of the contacts of both sides in the row that they share."""
 
 

@@ -17,7 +17,7 @@ from ..actions.armature_write import check_writable
 from ..actions.bone_channels import animated_paths, bone_path
 from ..actions.take import ArmatureTake
 from ..blender import compat
-from ..blender.block_references import BlockReference, SourceReference, removed_on_failure
+from ..blender.block_references import BlockReference, SourceReference, kept_when_complete
 from ..blender.compat import Source
 from ..blender.name_lists import split_names
 from ..blender.time_slices import Sliced, Steps
@@ -98,7 +98,7 @@ def write_retargeted(
             action, slot = yield from write_action.steps(
                 lasting.find(), name, take.frames, keys, found.switches
             )
-            incomplete.enter_context(removed_on_failure(action))
+            incomplete.enter_context(kept_when_complete(action))
             history.record(action, made_from.find(), entry, of_another_rig=True)
     target = lasting.find()
     linked = target.library is not None

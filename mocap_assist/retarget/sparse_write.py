@@ -10,7 +10,7 @@ from ..actions.armature_write import same_slot
 from ..actions.bone_channels import Curves, animated_curves, location_curves, rotation_curves
 from ..actions.curves import Channel
 from ..actions.frames import Grid
-from ..blender.block_references import SourceReference, removed_on_failure
+from ..blender.block_references import SourceReference, kept_when_complete
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
 from ..runtime.played import Played
@@ -36,10 +36,9 @@ def write_sparse(read: Played, grid: Grid, keys: Mapping[str, SparseKeys]) -> St
     _, armature, (original, slot) = read.find()
     action = original.copy()
     action.name = NUMBERED.sub("", original.name) + SUFFIX
-    action.use_fake_user = True
     made = SourceReference.of((action, same_slot(action, slot)))
     curves = animated_curves(*made.find())
-    with removed_on_failure(action):
+    with kept_when_complete(action):
         for number, (name, sparse) in enumerate(keys.items()):
             bone = armature.pose.bones[name]
             if sparse.rotations is not None:

@@ -34,11 +34,21 @@ def selected_subject(context: bpy.types.Context) -> bpy.types.Object | None:
     return selected_armature(context) or holder_of(context.view_layer.objects.active)
 
 
+def why_not_active(context: bpy.types.Context) -> str:
+    """Return what to do where an armature or marker is selected, but not active; or nothing."""
+    if selected_subject(context) is not None:
+        return ""
+    selected = context.view_layer.objects.selected
+    if any(each.type == "ARMATURE" or holder_of(each) for each in selected):
+        return "Shift-click the selected armature or marker to make it active."
+    return ""
+
+
 def why_not_read(context: bpy.types.Context) -> str:
     """Return why no motion can be read, or an empty text."""
     subject = selected_subject(context)
     if subject is None:
-        return "Select an animated armature or marker set."
+        return why_not_active(context) or "Select an animated armature or marker set."
     try:
         played_source(subject)
     except InvalidMotionError as error:

@@ -223,7 +223,7 @@ class SolverOperator(SettingsMixin):
     def _finish(self, message: str) -> set[str]:
         note_press(self)
         if "UNDO" in self.bl_options:
-            notify_listeners(bpy.context.scene)
+            notify_listeners(self._subject.scene.find())
         self.report({"INFO"}, translated(message))
         return {"FINISHED"}
 

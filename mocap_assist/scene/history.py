@@ -1,15 +1,18 @@
 """History of an action, stored in the action, and its link to the raw one."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict
 from enum import Enum
 from typing import Any
 
 import bpy
 
+from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Settings
 from ...solvers.version import version
 from ..blender import compat
+from ..blender.block_references import SourceReference
 from ..blender.compat import Source
 from ..blender.stored_json import load_json, store_json
 
@@ -18,6 +21,8 @@ SOURCE = "mocap_assist_source"
 GIVEN_BY = "mocap_assist_given_by"
 DELTA_OF = "mocap_assist_delta_of"
 DELTA_FROM = "mocap_assist_delta_from"
+_held: dict[int, SourceReference] = {}
+"""Results of objects that play the recorded action for a while, by the number of the object."""
 REMADE = ("reconstruct", "simulate", "solve_skeleton", "retarget", "vary", "retrack")
 """Operations whose result counts as raw for Clean."""
 
@@ -91,9 +96,25 @@ def cleaned_from(played: Source) -> Source:
 
 
 def played_result(armature: bpy.types.Object) -> Source | None:
-    """Return the result of ours that an armature plays, as its action or on an NLA track."""
+    """Return the result of ours that an armature plays, as its action or on an NLA track.
+
+    While the recorded action is shown for a while, that is the result that plays again after.
+    """
+    if (held := _held.get(armature.session_uid)) is not None:
+        with suppress(InvalidMotionError):  # deleted meanwhile
+            return held.find()
     player = result_player(armature)
     return None if player is None else source_of(player)
+
+
+def hold_result(armature: bpy.types.Object, result: Source) -> None:
+    """Let a result count as played until `release_results`, whatever is assigned."""
+    _held[armature.session_uid] = SourceReference.of(result)
+
+
+def release_results() -> None:
+    """End all `hold_result`."""
+    _held.clear()
 
 
 def result_player(

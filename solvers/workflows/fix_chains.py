@@ -20,18 +20,13 @@ from ..motion import (
     motion_from_points,
 )
 from ..progress import Progress, within
-from ..signals import find_runs
 from .capture_recording import CapturedMotion
-from .fix_report import MotionFromJoints, Take, TakeOrigin, find_origin, observed_samples
+from .fix_report import MotionFromJoints, Take, TakeOrigin, find_origin
 from .motion_from_markers import MarkerMotion, motion_from_markers
 from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 from .standard_joints import standardize_joint_names
-
-SPIKES = "1 spike", "{number} spikes"
-GAPS = "1 gap", "{number} gaps"
-SWAPPED_LABELS = "1 swapped label", "{number} swapped labels"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -79,7 +74,7 @@ def clean_motion(
         recording=planting_result.motion,
         steps=(
             reason,
-            *_describe_cleaning(motion, denoised),
+            *_describe_cleaning(denoised),
             *_describe_planting(planting_result),
             *low_confidence,
         ),
@@ -98,11 +93,8 @@ def clean_points(tracks: Tracks, progress: Progress) -> ChainResult:
         "The points were cleaned, but a skeleton needs the Plug-in-Gait or CMU markers; missing"
         f" are {missing}."
     )
-    steps = (
-        reason,
-        *_describe_swaps(len(unswapped.swaps)),
-        *_describe_cleaning(tracks, denoised),
-    )
+    swaps = _describe_swaps(len(unswapped.swaps))
+    steps = (reason, *swaps, *_describe_cleaning(denoised))
     return ChainResult(
         recording=denoised.recording,
         steps=steps,
@@ -210,18 +202,10 @@ def take_before(take: Take, chain: ChainResult, progress: Progress) -> Motion | 
             return take
 
 
-def _describe_cleaning(start: Motion | Tracks, denoised: Denoised) -> list[str]:
-    filled = observed_samples(denoised.recording) & ~observed_samples(start)
-    n_gaps = _n_runs(filled) + _n_runs(denoised.held)
-    n_spikes = _n_runs(denoised.outliers)
-    corrected, gaps = _count_as_text(n_spikes, SPIKES), _count_as_text(n_gaps, GAPS)
+def _describe_cleaning(denoised: Denoised) -> list[str]:
     # The first sentence says that there are no examples. No take here has any.
     _, _, remarks = denoised.prior_used.partition(". ")
-    return [
-        f"Clean corrected {corrected} and filled {gaps}.",
-        *[remarks] * bool(remarks),
-        *_describe_convergence(denoised),
-    ]
+    return [*[remarks] * bool(remarks), *_describe_convergence(denoised)]
 
 
 def _describe_convergence(denoised: Denoised) -> list[str]:
@@ -275,12 +259,6 @@ def _describe_planting(planting_result: PlantingResult) -> list[str]:
 
 
 def _describe_swaps(n_swaps: int) -> list[str]:
-    return [f"Corrected {_count_as_text(n_swaps, SWAPPED_LABELS)}."] if n_swaps else []
-
-
-def _n_runs(flags: Flags) -> int:
-    return sum(len(find_runs(column)) for column in flags.T)
-
-
-def _count_as_text(number: int, texts: tuple[str, str]) -> str:
-    return texts[number != 1].format(number=number)
+    if n_swaps == 1:
+        return ["Corrected 1 swapped label."]
+    return [f"Corrected {n_swaps} swapped labels."] if n_swaps else []

@@ -101,7 +101,8 @@ class FixedTake:
         denoised = self.chain.denoised
         poses = denoised.describe_separate_poses(frames) if denoised else ""
         kept = [poses] if poses else []
-        return (*size, *self.chain.steps, *kept, *self.missing, *self._spikes_left)
+        steps = (*self.chain.steps, *self._spikes_and_gaps, *kept)
+        return (*size, *steps, *self.missing, *self._spikes_left)
 
     @property
     def headline(self) -> str:
@@ -109,6 +110,17 @@ class FixedTake:
         size = [self.size_question] if self.size_question else []
         notices = (*size, *self.chain.notices, *self.missing, *self._spikes_left)
         return notices[0] if notices else ""
+
+    @property
+    def _spikes_and_gaps(self) -> list[str]:
+        """Counts of Check, as in the figures: Clean takes other samples for errors."""
+        if self.chain.denoised is None:
+            return []
+        n_spikes, n_gaps = (
+            f"{getattr(self.before, name)} → {getattr(self.after, name)}"
+            for name in ("n_spikes", "n_gaps")
+        )
+        return [f"Spikes {n_spikes}, gaps {n_gaps}."]
 
     @property
     def _spikes_left(self) -> list[str]:

@@ -27,6 +27,7 @@ from driver_scene import (
     settle,
     time_uploads,
     unfold_alone,
+    until_checked,
     until_done,
 )
 
@@ -277,8 +278,8 @@ def steps():
     yield from press("denoise")
     bgui.shot("2-cleaned.png")
     yield from until_done()
+    yield from until_checked("walk.clean")
     yield from settle(2)
-    assert bpy.context.scene.mocap_assist.checked_action.name == "walk.clean", "not renewed"
     bgui.shot("3-checked.png")
     yield from make_the_timeline_higher()
     yield from drag_on_the_strip()

@@ -21,8 +21,8 @@ SHARED = ROOT.parent / "shared"
 TOOL = SHARED / "tools" / "blender-gui.sh"
 FOLDER, FIXTURES = ROOT / "tests" / "gui", ROOT / "tests" / "fixtures"
 PICTURES = ROOT / "build" / "gui"
-PACKAGES = "python3-scipy python3-pil"
-"""Of the tool's Debian: what the plain zip lacks."""
+PACKAGES = "python3-scipy python3-pil python3-xlib"
+"""Of the tool's Debian: what the plain zip lacks, and what drops files."""
 RECORDINGS = {
     "axes": {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",
@@ -39,6 +39,13 @@ RECORDINGS = {
     },
     "export": {},
     "depth": {"walk.npz": "depth/truth/walk_front.npz"},
+    "drop": {
+        "drop_files.py": FOLDER / "window" / "drop_files.py",
+        "walk.bvh": "corpus/bvh/bandai_namco/dataset-1_walk_tired_001.bvh",
+        "Jump.fbx": "corpus/fbx/mixamo_web/Jump.fbx",
+        "actor.asf": "mocap/hdm05/HDM_bd.asf",
+        "kick.amc": "mocap/hdm05/HDM_bd_kickLFront1Reps_002_120.amc",
+    },
     "fix": {},
     "import": {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ....solvers.arrays import Array
 from ....solvers.errors import InvalidMotionError
 from ....solvers.motion import Motion, Tracks
-from ...blender.block_references import BlockReference, SourceReference, removed_on_failure
+from ...blender.block_references import BlockReference, SourceReference, kept_when_complete
 from ...blender.compat import Source
 from ...blender.time_slices import Sliced, Steps, should_yield
 from ...scene import history
@@ -166,7 +166,7 @@ def write_markers(
             action, slot = source.find()
             if source.action not in copies:
                 copy = copy_of(action)
-                cleanup.enter_context(removed_on_failure(copy))
+                cleanup.enter_context(kept_when_complete(copy))
                 copies[source.action] = BlockReference.of(copy)
             copy = copies[source.action].find()
             made = copy, same_slot(copy, slot)

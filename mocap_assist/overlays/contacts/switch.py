@@ -4,10 +4,11 @@ import bpy
 import gpu
 from mathutils import Matrix
 
+from ...actions.contact_keys import PROPERTIES
 from ...blender.redrawing import redraw_views
 from ...panel_parts.preference_values import preferred
 from ..color_icons import draw_marks
-from ..marked_ranges import Mark
+from ..marked_ranges import CONTACT_ROWS
 from ..view_drawing import ViewDrawing, draw_in_front, visible_active
 from .rings import Rings, rings_at
 
@@ -16,10 +17,13 @@ _drawing: list[ViewDrawing] = []
 
 
 def draw_contact_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the switch and, while it is on, the colors of the sides."""
+    """Draw the switch and, while it is on, the colors of the parts that can have a ring."""
     layout.prop(context.window_manager, SWITCH)
-    if getattr(context.window_manager, SWITCH):
-        draw_marks(layout, (Mark.LEFT_FOOT, Mark.RIGHT_FOOT), columns=2)
+    armature = context.view_layer.objects.active
+    if getattr(context.window_manager, SWITCH) and armature is not None:
+        parts = zip(PROPERTIES, CONTACT_ROWS, strict=True)
+        marks = [mark for name, (_, mark) in parts if name in armature]
+        draw_marks(layout, dict.fromkeys(marks), columns=2)
 
 
 def _draw(context: bpy.types.Context) -> None:

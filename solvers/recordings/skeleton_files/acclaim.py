@@ -89,7 +89,7 @@ def read_acclaim(
 
 
 def find_skeleton(amc_path: Path | str) -> Path:
-    """Return the ASF file of a recording, by its name in the same folder.
+    """Return the ASF file of a recording in the same folder, by its name or as the only one.
 
     Raises
     ------
@@ -104,17 +104,15 @@ def find_skeleton(amc_path: Path | str) -> Path:
             f"The folder {amc_path.parent} cannot be searched for the skeleton of"
             f" {amc_path.name} ({error.strerror}). Name the .asf file, or move both."
         ) from None
-    skeletons = [path for path in others if _is_for(path, amc_path)]
+    skeletons = [path for path in others if path.suffix.lower() == ".asf"]
+    if len(skeletons) > 1:
+        skeletons = [path for path in skeletons if amc_path.stem.startswith(path.stem)]
     if not skeletons:
         raise InvalidFileError(
             f"There is no skeleton for {amc_path}. Put the actor's .asf file next to it, under"
-            " the same name or the beginning of it."
+            " the same name or the beginning of it, or as the only one."
         )
     return max(skeletons, key=lambda path: len(path.stem))
-
-
-def _is_for(path: Path, amc_path: Path) -> bool:
-    return path.suffix.lower() == ".asf" and amc_path.stem.startswith(path.stem)
 
 
 class _Mentions(NamedTuple):

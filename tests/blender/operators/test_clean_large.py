@@ -142,6 +142,25 @@ def test_cancelled_writing_leaves_no_action(blank, writing):
     assert list(blank.data.actions) == [raw]
 
 
+def test_file_saved_during_writing_lacks_the_result(blank, writing, tmp_path):
+    work, raw = writing
+    while not len(blank.data.actions) > 1:  # until the copy is made
+        assert not work.run_slice(3)
+
+    blank.ops.wm.save_as_mainfile(filepath=str(tmp_path / "during.blend"), copy=True)
+    while not work.run_slice(10):
+        pass
+    blank.ops.wm.save_as_mainfile(filepath=str(tmp_path / "after.blend"), copy=True)
+
+    assert actions_in(blank, tmp_path / "during.blend") == [raw.name]
+    assert actions_in(blank, tmp_path / "after.blend") == [raw.name, f"{raw.name}.clean"]
+
+
+def actions_in(bpy, path):
+    with bpy.data.libraries.load(str(path)) as (content, _):
+        return sorted(content.actions)
+
+
 def test_answer_of_clean_holds_each_motion_once(load):
     samples, denoising = load("solvers.samples"), load("solvers.denoising")
     solving = load("mocap_assist.clean.solve_cleaning")

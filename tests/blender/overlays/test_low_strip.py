@@ -25,8 +25,8 @@ def test_related_rows_share_one(load, ranges, drawing):
         row.SPIKES: (ranges.Range(2.0, 2.0, mark.ISSUE),),
         row.GAPS: (ranges.Range(3.0, 4.0, mark.ISSUE),),
         row.FILLED: (ranges.Range(3.0, 4.0, mark.FILLED),),
-        row.LEFT_FOOT: (ranges.Range(1.0, 5.0, mark.LEFT_FOOT),),
-        row.RIGHT_FOOT: (ranges.Range(4.0, 9.0, mark.RIGHT_FOOT),),
+        row.LEFT_FOOT: (ranges.Range(1.0, 5.0, mark.LEFT),),
+        row.RIGHT_FOOT: (ranges.Range(4.0, 9.0, mark.RIGHT),),
     }
 
     found = ranges.join_related_rows(rows)

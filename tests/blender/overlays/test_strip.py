@@ -71,7 +71,7 @@ def test_foot_is_down_until_the_frame_before_it_lifts(ranges):
     keys = np.array([[1, 1], [10, 0], [20, 1], [25, 1], [30, 0], [40, 1], [50, 1]])
 
     for end, stop in ((50.0, 50), (60.0, 60), (45.0, 50)):
-        found = ranges.contact_ranges(keys, end, 1.0, ranges.Mark.LEFT_FOOT)
+        found = ranges.contact_ranges(keys, end, 1.0, ranges.Mark.LEFT)
 
         assert [each[:2] for each in found] == [(1, 9), (20, 29), (40, stop)]
 
@@ -231,12 +231,12 @@ def test_panel_names_what_fills_the_strip(draw, actor):
 
 def test_panel_has_the_switch_and_names_the_colors(blank, draw, stepping):
     assert "mocap_assist_strip" in draw("MOCAP_PT_check")
-    assert "Left Foot" in draw("MOCAP_PT_check")
+    assert "Left Contact" in draw("MOCAP_PT_check")
     assert not {"Low", "Issues"} & set(draw("MOCAP_PT_check"))
 
     blank.context.window_manager.mocap_assist_strip = False
     try:
-        assert "Left Foot" not in draw("MOCAP_PT_check")
+        assert "Left Contact" not in draw("MOCAP_PT_check")
     finally:
         blank.context.window_manager.mocap_assist_strip = True
 

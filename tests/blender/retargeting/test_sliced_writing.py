@@ -41,6 +41,17 @@ def test_bones_of_a_new_action_are_written_a_few_at_a_time(blank, writing):
     assert len(action.layers[0].strips[0].channelbags[0].fcurves) == 4 * N_BONES
 
 
+def test_new_action_has_a_fake_user_once_it_is_complete(blank, writing):
+    while not blank.data.actions:
+        assert not writing.run_slice(3)
+    assert not blank.data.actions[0].users  # a file saved now leaves it out
+
+    while not writing.run_slice(10):
+        pass
+
+    assert blank.data.actions[0].use_fake_user
+
+
 def test_cancelled_writing_leaves_no_new_action(blank, writing):
     while not blank.data.actions:
         assert not writing.run_slice(3)

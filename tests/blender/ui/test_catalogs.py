@@ -118,8 +118,7 @@ def test_blender_gets_labels_and_buttons(languages):
          "a: ein Skelett mit 22 Knochen, auf dem Boden, 9 Bilder bei 30 Hz."
          " Z ist oben (Konfidenz 61%), -Y ist vorne, Längen sind in Zoll."
          " Weggelassen, da nie beobachtet: inch.001, x."),
-        ("Clean corrected 1 spike and filled 3 gaps.",
-         "„Bereinigen“ hat 1 Spitze korrigiert und 3 Lücken gefüllt."),
+        ("Spikes 43 → 1, gaps 3 → 0.", "Spitzen 43 → 1, Lücken 3 → 0."),
         ("Frames 1 to 4 of the left arm are separate poses and were kept as recorded.",
          "Bilder 1 bis 4 (linker Arm) sind eigene Posen und blieben wie aufgenommen."),
         ("Feet were not planted. The motion has gaps.",

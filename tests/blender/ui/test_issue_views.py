@@ -129,6 +129,37 @@ def test_jump_shows_the_bone_in_the_scene(blank, switches, issue, actor, load, m
 
 
 @pytest.mark.usefixtures("all_panels")
+def hide_bone(bpy, armature, bone):
+    (bone.bone if bpy.app.version < (5, 0) else bone).hide = True
+
+
+def hide_collection(bpy, armature, bone):
+    collection = armature.data.collections.new("Helpers")
+    collection.assign(bone.bone)
+    collection.is_visible = False
+
+
+def hide_armature(bpy, armature, bone):
+    armature.hide_set(True)
+
+
+@pytest.mark.parametrize(
+    ("hide", "name"),
+    [(hide_bone, "LeftArm"), (hide_collection, "LeftArm"), (hide_armature, None)],
+)
+def test_panel_says_why_the_bone_of_an_issue_is_not_visible(
+    blank, draw, actor, issue, hide, name
+):
+    sentence = f"{name or actor.name} is hidden."
+    assert sentence not in " ".join(draw("MOCAP_PT_check"))
+
+    hide(blank, actor, actor.pose.bones["LeftArm"])
+    assert blank.ops.mocap_assist.jump_to_issue(index=0) == {"FINISHED"}
+
+    assert sentence in " ".join(draw("MOCAP_PT_check"))
+    assert actor.mode == ("POSE" if name else "OBJECT")
+
+
 def test_list_and_strip_name_the_kind_of_an_issue(blank, draw, actor, issue, load):
     blank.context.scene.mocap_assist.checked_action = actor.animation_data.action
 

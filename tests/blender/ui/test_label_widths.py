@@ -52,3 +52,22 @@ def test_labels_are_not_cut(load, blank, width):
             if width(texts.get(english, english)) > room
         ]
         assert not cut, language
+
+
+LIST_PX, PADDING_PX = 226, 18
+"""Width of a row of the list of issues at the sidebar's default width, and what a column of it
+leaves free, as pictures of `make test-gui DRIVERS=clean` show both."""
+
+
+def test_columns_of_the_issues_are_not_cut(load, blank, width):
+    """Arm and leg were cut off of names such as rightUpperArm."""
+    panel = load("mocap_assist.check.panel")
+    kind = panel.KIND_COLUMN * LIST_PX
+    bone = panel.BONE_COLUMN * (LIST_PX - kind)
+    columns = {
+        kind: ("Foot Slide", "Joint Limit", "Jitter"),
+        bone: ("rightUpperArm", "rightLowerLeg", "RightForeArm"),
+        LIST_PX - kind - bone: ("1480",),
+    }
+    for room, texts in columns.items():
+        assert max(map(width, texts)) + PADDING_PX <= room, texts

@@ -50,7 +50,7 @@ def test_undo_keeps_the_list_of_the_action_that_is_still_played(blank, noisy, re
     assert blank.context.scene.frame_current != 9
     assert state_of_list(blank) == before
     assert renewing.timers == [renewing.renew]  # the keys may be others
-    assert renewing._awaited == {blank.context.scene.name: True}
+    assert renewing._awaited == {blank.context.scene.session_uid: True}
 
 
 def test_undo_checks_the_scene_of_the_window_again(blank, noisy, renewing):
@@ -94,7 +94,7 @@ def test_undo_ends_a_check_of_what_was_played_before(blank, noisy, renewing, che
     blank.ops.ed.undo()
 
     assert quiet.modal(window.context, event("TIMER")) == {"CANCELLED"}
-    assert renewing._awaited == {blank.context.scene.name: True}
+    assert renewing._awaited == {blank.context.scene.session_uid: True}
 
 
 def test_revert_is_checked_again(blank, actor, renewing):

@@ -3,7 +3,9 @@
 from contextlib import nullcontext
 from types import SimpleNamespace
 
-from modal_events import event, nothing_is_left
+import bpy
+import pytest
+from modal_events import event, nothing_is_left, wait
 
 
 def test_results_are_checked_again_where_check_was_pressed_before(blank, actor, renewing):
@@ -20,7 +22,7 @@ def test_results_are_checked_again_where_check_was_pressed_before(blank, actor, 
 
 def test_results_are_checked_again_in_a_window_of_their_scene(blank, load, monkeypatch):
     renewing, pressed = load("mocap_assist.check.renewing"), []
-    scenes = [SimpleNamespace(name=name) for name in ("Other", "Ours")]
+    scenes = [SimpleNamespace(session_uid=number) for number in (1, 2)]
     view = SimpleNamespace(type="VIEW_3D", regions=[SimpleNamespace(type="WINDOW")])
     screen = SimpleNamespace(areas=[view])
     windows = [SimpleNamespace(scene=scene, screen=screen) for scene in scenes]
@@ -31,11 +33,91 @@ def test_results_are_checked_again_in_a_window_of_their_scene(blank, load, monke
     check = SimpleNamespace(poll=lambda: False)
     ops = SimpleNamespace(mocap_assist=SimpleNamespace(measure_quality=check))
     monkeypatch.setattr(renewing, "bpy", SimpleNamespace(context=context, ops=ops))
-    monkeypatch.setattr(renewing, "_awaited", {"Ours": False})
+    monkeypatch.setattr(renewing, "_awaited", {2: False})
 
     renewing.renew()
 
     assert pressed == windows[1:]
+    assert renewing._awaited == {2: False}  # nothing there can be checked yet
+
+
+@pytest.fixture
+def scene_is_shown(load, renewing, monkeypatch):
+    """What Blender calls after a window shows another scene."""
+    subscribed = []
+    bus = SimpleNamespace(
+        clear_by_owner=lambda _: None, subscribe_rna=lambda **given: subscribed.append(given)
+    )
+    with monkeypatch.context() as patch:
+        patch.setattr(
+            load("mocap_assist.blender.subscriptions"), "bpy", SimpleNamespace(msgbus=bus)
+        )
+        renewing._watch_scenes()
+        renewing._ignore_scenes()
+    (found,) = subscribed
+    assert found["key"] == (bpy.types.Window, "scene")
+    return found["notify"]
+
+
+def test_result_is_checked_once_its_scene_is_shown_again(
+    blank, actor, renewing, scene_is_shown, monkeypatch
+):
+    """The animator looked at another scene when the solve ended; the list stayed old."""
+    ours = blank.context.scene
+    blank.ops.mocap_assist.measure_quality()
+    other, pressed = blank.data.scenes.new("Other"), []
+    windows = [SimpleNamespace(scene=other)]
+    renewing.renew_later(ours)
+    other.mocap_assist.report = "Check was pressed there, too."
+    renewing.renew_later(other)
+    renewing._awaited.pop(other.session_uid)
+    renewing.timers.clear()
+    view = SimpleNamespace(type="VIEW_3D", regions=[SimpleNamespace(type="WINDOW")])
+    context = SimpleNamespace(
+        window_manager=SimpleNamespace(windows=windows),
+        view_layer=blank.context.view_layer,
+        temp_override=lambda **_: nullcontext(),
+    )
+    ops = SimpleNamespace(mocap_assist=SimpleNamespace(measure_quality=PressedCheck(pressed)))
+    monkeypatch.setattr(renewing.bpy, "context", context)
+    monkeypatch.setattr(renewing.bpy, "ops", ops, raising=False)
+    blank.ops.mocap_assist.denoise(plant_feet=False)
+
+    renewing.renew()
+    assert not pressed
+    windows[0] = SimpleNamespace(scene=ours, screen=SimpleNamespace(areas=[view]))
+    scene_is_shown()
+    assert renewing.timers == [renewing.renew]
+    renewing.renew()
+
+    assert pressed == [{"is_quiet": True}]
+
+
+def test_list_of_before_says_that_the_result_is_being_checked(blank, actor, draw, renewing):
+    blank.ops.mocap_assist.measure_quality()
+    blank.context.scene.mocap_assist.issues.add()
+
+    blank.ops.mocap_assist.denoise(plant_feet=False)
+    assert "which is being checked." in " ".join(draw("MOCAP_PT_check"))
+
+    renewing.timers.clear()  # it was called, and the check has ended
+    assert "Run Check again." in " ".join(draw("MOCAP_PT_check"))
+
+
+def test_result_is_of_the_scene_in_which_its_button_was_pressed(
+    blank, actor, load, check, window, monkeypatch
+):
+    notified, ours = [], blank.context.scene
+    listeners = [lambda scene: notified.append(scene.name)]
+    monkeypatch.setattr(load("mocap_assist.runtime.after_result"), "listeners", listeners)
+    button = check(is_quiet=False)
+    assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+
+    blank.context.window.scene = blank.data.scenes.new("Other")
+    assert wait(button, window) == {"FINISHED"}
+    blank.context.window.scene = ours
+
+    assert notified == [ours.name]
 
 
 def test_a_list_of_what_is_played_is_not_renewed(blank, actor, load, monkeypatch):
@@ -54,7 +136,7 @@ def test_a_list_of_what_is_played_is_not_renewed(blank, actor, load, monkeypatch
     for press in (blank.ops.mocap_assist.measure_quality, blank.ops.mocap_assist.denoise):
         press()
         with monkeypatch.context() as patch:
-            patch.setattr(renewing, "_awaited", {scene.name: False})
+            patch.setattr(renewing, "_awaited", {scene.session_uid: False})
             patch.setattr(renewing, "bpy", SimpleNamespace(context=context, ops=ops))
             renewing.renew()
 
@@ -159,3 +241,22 @@ def test_a_list_whose_action_was_deleted_is_renewed(actor, blank, renewing):
     blank.ops.mocap_assist.denoise(plant_feet=False)
 
     assert renewing.timers == [renewing.renew]
+
+
+def test_panels_keep_what_they_say_of_a_result_while_the_recorded_action_is_shown(
+    blank, actor, draw, load
+):
+    """They said that nothing was checked, and were another size, while the key was held."""
+    assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
+    assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
+    names = "MOCAP_PT_check", "MOCAP_PT_compare", "MOCAP_PT_fix"
+    before = [draw(name) for name in names]
+    raw_view = load("mocap_assist.check.raw_view")
+
+    raw_view.show_raw(blank.context)
+    assert actor.animation_data.action.name == "walk"
+    assert [draw(name) for name in names] == before
+    raw_view.restore()
+
+    actor.animation_data.action = blank.data.actions["walk"]
+    assert draw("MOCAP_PT_check") != before[0]

@@ -47,6 +47,20 @@ def test_other_objects_change_nothing(blank, shown):
     assert shown() == ["import"]
 
 
+def test_selected_armature_that_is_not_active_gets_a_hint(blank, actor, shown, draw):
+    blank.context.view_layer.objects.active = None
+    actor.select_set(True)
+
+    assert shown() == ["import"]
+    drawn = " ".join(draw("MOCAP_PT_import"))
+    assert "Shift-click the selected armature" in drawn and "load_sample" not in drawn
+    with pytest.raises(RuntimeError, match="Shift-click the selected armature"):
+        blank.ops.mocap_assist.denoise()
+
+    actor.select_set(False)
+    assert "mocap_assist.load_sample" in draw("MOCAP_PT_import")
+
+
 def test_armature_has_its_panels_in_the_order_of_the_work(actor, shown, draw):
     assert shown() == FOR_ARMATURES
     assert "mocap_assist.load_sample" not in draw("MOCAP_PT_import")

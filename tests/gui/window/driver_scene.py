@@ -73,6 +73,15 @@ def until_done():
     raise AssertionError(f"{job.message} {job.fraction}")
 
 
+def until_checked(action):
+    """Wait until the result is checked again; that has a process of its own."""
+    for _ in range(UNTIL_DONE):
+        if bpy.context.scene.mocap_assist.checked_action.name == action:
+            return
+        yield 0.1
+    raise AssertionError(f"{action} is not checked again")
+
+
 def open_preferences():
     """Show those of the extension in a window of their own."""
     bpy.ops.screen.userpref_show("INVOKE_DEFAULT")

@@ -108,9 +108,15 @@ def test_longest_slide_is_that_of_one_contact():
 
 
 def test_steps_report_what_was_done(fixed):
-    text = " ".join(fixed.steps)
+    assert any("Plant Feet" in step for step in fixed.steps)
 
-    assert "filled 3 gaps" in text and "Plant Feet" in text
+
+def test_steps_count_spikes_and_gaps_as_the_figures_do(fixed):
+    before, after = fixed.figures()["before"], fixed.figures()["after"]
+    spikes, gaps = (f"{before[name]} → {after[name]}" for name in ("spikes", "gaps"))
+
+    assert before["spikes"] > after["spikes"] and before["gaps"] == 3
+    assert f"Spikes {spikes}, gaps {gaps}." in fixed.steps
 
 
 def test_feet_stay_as_they_are_on_request(noisy, clean):

@@ -156,6 +156,20 @@ def test_missing_skeleton_is_reported_with_a_remedy(tmp_path):
         read_acclaim(tmp_path / "13_29.amc")
 
 
+def test_only_skeleton_of_a_folder_needs_no_name(tmp_path):
+    """An animator drops both files, whatever their names are."""
+    take, actor = tmp_path / "hop.amc", tmp_path / "Actor.ASF"
+    for path in (take, actor):
+        path.touch()
+    assert find_skeleton(take) == actor
+
+    (tmp_path / "other.asf").touch()
+    with pytest.raises(InvalidFileError, match=r"or as the only one\."):
+        find_skeleton(take)
+    (tmp_path / "ho.asf").touch()
+    assert find_skeleton(take) == tmp_path / "ho.asf"
+
+
 def test_a_missing_folder_is_one_sentence(tmp_path):
     with pytest.raises(InvalidFileError, match=r"gone cannot be searched .* of 13_29\.amc"):
         find_skeleton(tmp_path / "gone" / "13_29.amc")
