@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import Array
+from ..feet import find_foot_contact, find_legs
 from ..motion import Motion
 from ..motion.humanoid import SIDES, UP
 from ..motion_fitting import FittedMotion, Goal, fit_in_windows, fit_motion
@@ -21,7 +22,7 @@ from ..progress import Progress
 from ..rotations import inverse, multiply, rotation_vector_from_quaternion
 from .body import PhysicsBody
 from .body_surface import find_leg_chain, joints_of_ends, lowest_points, select_foot_ends
-from .foot_support import distribute_load
+from .foot_support import humanoid_of
 
 BLEND_S = 0.35
 """Seconds over which a released foot blends to its own motion, and a simulated body to the take
@@ -61,9 +62,10 @@ def plant_target_feet(
 ) -> Motion:
     """Return the motion with feet that do not move over the ground while they are held.
 
-    The loaded part of the sole (heel, ball or toes) keeps its position, the foot its heading,
-    and all parts of the sole their height, so that no foot sinks or rises. The least smooth
-    change of the legs and of the root with that is found for all frames at once.
+    The point that stands (heel, ball, toes or ankle: the lowest and slowest, as in
+    `find_foot_contact`) keeps its position, the foot its heading, and all parts of the sole
+    their height, so that no foot sinks or rises. The least smooth change of the legs and of the
+    root with that is found for all frames at once.
 
     Parameters
     ----------
@@ -101,7 +103,7 @@ def plant_target_feet(
             )
         ]
         for side, chain in held.items():
-            goals += _foot_goals(body, fitted, side, weights[:, SIDES.index(side)], ground)
+            goals += _foot_goals(body, fitted, side, weights[:, SIDES.index(side)])
             goals.append(knee_limit(fitted, *chain[1:], 0.0))
         goals += _ground_goals(body, fitted, tuple(held), ground)
         return fit_motion(fitted, goals, progress).motion
@@ -110,18 +112,20 @@ def plant_target_feet(
 
 
 def _foot_goals(
-    body: PhysicsBody, fitted: FittedMotion, side: str, hold_weights: Array, ground: float
+    body: PhysicsBody, fitted: FittedMotion, side: str, hold_weights: Array
 ) -> list[Goal]:
     """Return what the sole of a foot has to meet; weights of shape (n_frames - 1,)."""
     motion, poses, ends = fitted.motion, fitted.poses, select_foot_ends(body, side)
-    ankle = next(joint for joint, role in body.roles.items() if role == f"{side}Foot")
-    offsets = np.concatenate([each.ends for each in body.ground_capsules])[ends]
+    leg = next(
+        each for each in find_legs(body.skeleton, humanoid_of(body)) if each.side == side
+    )
+    held = np.concatenate([hold_weights, [0.0]]) + np.concatenate([[0.0], hold_weights]) > 0.0
+    standing = find_foot_contact(motion, poses, leg, held)
+    ankle, offsets = leg.ankle, np.concatenate([each.ends for each in body.ground_capsules])
     points = [
         BonePoint(int(joint), offset)
-        for joint, offset in zip(joints_of_ends(body)[ends], offsets, strict=True)
+        for joint, offset in zip(joints_of_ends(body)[ends], offsets[ends], strict=True)
     ]
-    heights = lowest_points(body, motion)[:, ends, 2] - ground
-    load = distribute_load(heights, motion.frame_rate, body.size)
     rotations = rotation_vector_from_quaternion(
         multiply(poses.rotations[1:, ankle], inverse(poses.rotations[:-1, ankle]))
     )
@@ -131,7 +135,7 @@ def _foot_goals(
     still = np.sqrt(hold_weights * slow)[:, None] * UP
     one_point, all_frames = np.ones((motion.n_frames, 1)), np.ones(motion.n_frames)
     return [
-        StayInPlace(points, 0.5 * (load[1:] + load[:-1]), in_place, CREEP_M_S * body.size),
+        StayInPlace(standing.points, standing.step_load, in_place, CREEP_M_S * body.size),
         StayStill(ankle, still, FOOT_ROTATION_RAD_S),
         *(
             StayAtHeight(

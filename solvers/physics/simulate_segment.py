@@ -141,7 +141,7 @@ def _plant_segment(
 ) -> SimulatedSegment:
     """Return the segment with planted feet."""
     support = compute_support_weights(
-        body, segment.motion, segment.loads, segment.stance_weights, ground
+        body, segment.motion, segment.loads, segment.stance_weights
     )
     support *= segment.followed[:, None]
     motion = plant_target_feet(body, segment.motion, weights_between_frames(support), ground)
