@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..feet import find_foot_contact, find_legs
-from ..motion import Motion
+from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import SIDES, UP
 from ..motion_fitting import FittedMotion, Goal, fit_in_windows, fit_motion
 from ..motion_fitting.goals import (
@@ -57,8 +57,29 @@ NEAR_M = 0.1
 sink. It bounds the run time."""
 
 
+def weigh_headings(body: PhysicsBody, motion: Motion) -> Array:
+    """Return 1 for steps in which a foot keeps its heading, toward 0 where it turns.
+
+    The shape is (n_frames - 1, 2).
+    """
+    weights, poses = np.zeros((motion.n_frames - 1, len(SIDES))), forward_kinematics(motion)
+    for column, side in enumerate(SIDES):
+        if chain := find_leg_chain(body, side):
+            rotations = poses.rotations[:, chain[-1]]
+            changes = rotation_vector_from_quaternion(
+                multiply(rotations[1:], inverse(rotations[:-1]))
+            )
+            rates = np.abs(changes[:, 2]) * motion.frame_rate
+            weights[:, column] = np.clip(2.0 - 2.0 * rates / MAX_ROTATION_RATE_RAD_S, 0.0, 1.0)
+    return weights
+
+
 def plant_target_feet(
-    body: PhysicsBody, motion: Motion, hold_weights: Array, ground: float
+    body: PhysicsBody,
+    motion: Motion,
+    hold_weights: Array,
+    heading_weights: Array,
+    ground: float,
 ) -> Motion:
     """Return the motion with feet that do not move over the ground while they are held.
 
@@ -73,6 +94,8 @@ def plant_target_feet(
     motion : Motion
     hold_weights : shape (n_frames - 1, 2), 0 to 1
         How firmly each foot is held from each frame to the next.
+    heading_weights : shape (n_frames - 1, 2), 0 to 1
+        How firmly the heading of a foot is held that is held.
     ground : float, meters
     """
     chains = {side: find_leg_chain(body, side) for side in SIDES}
@@ -87,7 +110,7 @@ def plant_target_feet(
 
     def plant_window(start: int, stop: int, progress: Progress) -> Motion:
         window = motion.slice(start, stop)
-        fitted, weights = FittedMotion(window, window, joints), hold_weights[start : stop - 1]
+        fitted, steps = FittedMotion(window, window, joints), slice(start, stop - 1)
         goals: list[Goal] = [
             FollowSource.of_joints(
                 fitted,
@@ -103,7 +126,10 @@ def plant_target_feet(
             )
         ]
         for side, chain in held.items():
-            goals += _foot_goals(body, fitted, side, weights[:, SIDES.index(side)])
+            column = SIDES.index(side)
+            goals += _foot_goals(
+                body, fitted, side, hold_weights[steps, column], heading_weights[steps, column]
+            )
             goals.append(knee_limit(fitted, *chain[1:], 0.0))
         goals += _ground_goals(body, fitted, tuple(held), ground)
         return fit_motion(fitted, goals, progress).motion
@@ -112,7 +138,11 @@ def plant_target_feet(
 
 
 def _foot_goals(
-    body: PhysicsBody, fitted: FittedMotion, side: str, hold_weights: Array
+    body: PhysicsBody,
+    fitted: FittedMotion,
+    side: str,
+    hold_weights: Array,
+    heading_weights: Array,
 ) -> list[Goal]:
     """Return what the sole of a foot has to meet; weights of shape (n_frames - 1,)."""
     motion, poses, ends = fitted.motion, fitted.poses, select_foot_ends(body, side)
@@ -121,22 +151,17 @@ def _foot_goals(
     )
     held = np.concatenate([hold_weights, [0.0]]) + np.concatenate([[0.0], hold_weights]) > 0.0
     standing = find_foot_contact(motion, poses, leg, held)
-    ankle, offsets = leg.ankle, np.concatenate([each.ends for each in body.ground_capsules])
+    offsets = np.concatenate([each.ends for each in body.ground_capsules])
     points = [
         BonePoint(int(joint), offset)
         for joint, offset in zip(joints_of_ends(body)[ends], offsets[ends], strict=True)
     ]
-    rotations = rotation_vector_from_quaternion(
-        multiply(poses.rotations[1:, ankle], inverse(poses.rotations[:-1, ankle]))
-    )
-    rates = np.abs(rotations[:, 2]) * motion.frame_rate
-    slow = np.clip(2.0 - 2.0 * rates / MAX_ROTATION_RATE_RAD_S, 0.0, 1.0)
     in_place = np.sqrt(hold_weights)[:, None] * (1.0 - UP)
-    still = np.sqrt(hold_weights * slow)[:, None] * UP
+    still = np.sqrt(hold_weights * heading_weights)[:, None] * UP
     one_point, all_frames = np.ones((motion.n_frames, 1)), np.ones(motion.n_frames)
     return [
         StayInPlace(standing.points, standing.step_load, in_place, CREEP_M_S * body.size),
-        StayStill(ankle, still, FOOT_ROTATION_RAD_S),
+        StayStill(leg.ankle, still, FOOT_ROTATION_RAD_S),
         *(
             StayAtHeight(
                 [point],

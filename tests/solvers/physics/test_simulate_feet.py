@@ -16,7 +16,7 @@ from solvers.physics.foot_placement import (
     place_feet_on_ground,
 )
 from solvers.physics.foot_support import detect_target_contacts
-from solvers.physics.plant_target import plant_target_feet
+from solvers.physics.plant_target import plant_target_feet, weigh_headings
 from solvers.physics.soles_and_ground import add_soles, has_long_contact
 from solvers.rotations.representations import (
     multiply,
@@ -167,7 +167,9 @@ def test_planted_feet_do_not_move(walk, body, rng):
     in_contact = detect_target_contacts(body, walk)
     held = in_contact[1:] & in_contact[:-1]
 
-    result = plant_target_feet(body, swaying, held.astype(np.float64), 0.0)
+    result = plant_target_feet(
+        body, swaying, held.astype(np.float64), weigh_headings(body, swaying), 0.0
+    )
 
     assert loaded_steps(swaying, in_contact)[held].mean() > 0.5 * MILLIMETER
     assert np.percentile(loaded_steps(result, in_contact)[held], 99) < 0.1 * MILLIMETER
@@ -178,7 +180,9 @@ def test_planted_feet_do_not_move(walk, body, rng):
 
 
 def test_planting_changes_nothing_without_planted_feet(walk, body):
-    result = plant_target_feet(body, walk, np.zeros((walk.n_frames - 1, 2)), 0.0)
+    nothing = np.zeros((walk.n_frames - 1, 2))
+
+    result = plant_target_feet(body, walk, nothing, nothing, 0.0)
 
     assert result is walk
 

@@ -23,6 +23,7 @@ from solvers.physics.control import ARM_REGULARIZATION, _ground_forces
 from solvers.physics.engine import load_engine
 from solvers.physics.foot_support import compute_support_weights
 from solvers.physics.plant_target import plant_target_feet
+from solvers.physics.simulate_segment import SimulatedSegment, _plant_segment
 from solvers.physics.soles_and_ground import add_soles
 from solvers.physics.world import build_world
 from solvers.rotations import multiply, quaternion_from_rotation_vector, rotate
@@ -82,18 +83,40 @@ def test_foot_without_load_stands_where_the_target_does():
 def test_foot_that_swivels_about_a_corner_of_its_sole_is_held():
     """The corner rests, so no part of the sole slides where it may touch the ground."""
     body, standing = standing_body()
-    n_frames = standing.n_frames
-    ends = lowest_points(body, standing)[0, select_foot_ends(body, "left")]
-    corner = ends[-1] * (1.0, 1.0, 0.0)
-    turns = quaternion_from_rotation_vector(np.linspace(0, 0.3, n_frames)[:, None] * UP)
-    rotations = standing.rotations.copy()
-    rotations[:, 0] = multiply(turns, rotations[:, 0])
-    roots = corner + rotate(turns, standing.root_positions - corner)
-    swiveling = standing.with_poses(rotations, roots)
+    swiveling = swiveled(body, standing)
+    left = np.ones((standing.n_frames - 1, 2)) * [1, 0]
 
-    result = plant_target_feet(body, swiveling, np.ones((n_frames - 1, 2)) * [1, 0], 0.0)
+    result = plant_target_feet(body, swiveling, left, 0 * left, 0.0)
 
     assert slower_joint(result) < 0.4 * slower_joint(swiveling)
+
+
+def test_foot_that_stands_turns_only_where_it_turns_in_the_take():
+    body, standing = standing_body()
+    swiveling = swiveled(body, standing)
+    stands = np.ones((standing.n_frames, 2)) * [1, 0]
+    loads = np.zeros((standing.n_frames, 2 * len(body.ground_capsules)))
+    segment = SimulatedSegment(
+        swiveling, stands[:, 0] > 0, stands > 0, stands[:, 0], loads, stands, 0, 0.02
+    )
+
+    held, turns = (
+        _plant_segment(body, segment, take, 0.0).motion for take in (standing, swiveling)
+    )
+
+    assert slower_joint(held) < 0.1 * slower_joint(swiveling) < slower_joint(turns)
+
+
+def swiveled(body: PhysicsBody, motion: Motion) -> Motion:
+    """Return the motion, turned about a corner of the left sole."""
+    ends = lowest_points(body, motion)[0, select_foot_ends(body, "left")]
+    corner = ends[-1] * (1.0, 1.0, 0.0)
+    turns = quaternion_from_rotation_vector(
+        np.linspace(0.0, 0.3, motion.n_frames)[:, None] * UP
+    )
+    rotations = motion.rotations.copy()
+    rotations[:, 0] = multiply(turns, rotations[:, 0])
+    return motion.with_poses(rotations, corner + rotate(turns, motion.root_positions - corner))
 
 
 def slower_joint(motion: Motion) -> float:
