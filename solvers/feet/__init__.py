@@ -11,14 +11,17 @@ if TYPE_CHECKING:
     from .plant_feet import Planted, plant_feet
     from .plant_settings import PlantSettings
     from .sole import HEEL_FRACTION, sole_points
+    from .sole_contact import FootContact, find_foot_contact
 
 __all__ = [
     "HEEL_FRACTION",
+    "FootContact",
     "LegJoints",
     "LivePlanting",
     "PlantSettings",
     "Planted",
     "PlantedPose",
+    "find_foot_contact",
     "find_foot_joints",
     "find_foot_points",
     "find_legs",

@@ -1,4 +1,4 @@
-"""Estimate when the feet of a simulated body stand, and on which part of their soles."""
+"""Estimate when the feet of a simulated body stand."""
 
 import numpy as np
 
@@ -7,10 +7,10 @@ from ..motion import HumanoidMap, Motion, detect_contacts
 from ..motion.humanoid import SIDES
 from ..signals import smooth_gaussian
 from .body import PhysicsBody
-from .body_surface import lowest_points, measure_sole_speeds, select_foot_ends
+from .body_surface import measure_sole_speeds, select_foot_ends
 
 LOAD_SMOOTHING_S = 0.02
-"""Standard deviation in seconds of the Gaussian that smooths loads, heights and speeds. Chosen
+"""Standard deviation in seconds of the Gaussian that smooths loads and speeds. Chosen
 by hand; `make sensitivity` varies it."""
 
 MIN_LOAD = 0.05
@@ -25,38 +25,28 @@ HOLD_SPEED_M_S, RELEASE_SPEED_M_S = 0.3, 0.5
 """Meters per second, for legs of 0.9 m: a loaded sole is held below the first speed and slips
 above the second. Chosen by hand; `make sensitivity` varies them."""
 
-HOLD_HEIGHT_M, RELEASE_HEIGHT_M = 0.02, 0.03
-"""Meters above the ground, for legs of 0.9 m: a foot that stands in the target is held below
-the first height and free above the second. Chosen by hand; `make sensitivity` varies them."""
 
-LOAD_DECAY_M = 0.002
-"""Meters, for legs of 0.9 m: a part of the sole higher by this bears 1/e of the load. Chosen by
-hand; `make sensitivity` varies it."""
+def humanoid_of(body: PhysicsBody) -> HumanoidMap:
+    """Return the humanoid roles of the joints of a body."""
+    return HumanoidMap({role: body.skeleton.names[joint] for joint, role in body.roles.items()})
 
 
 def detect_target_contacts(body: PhysicsBody, motion: Motion) -> Flags:
     """Return the contacts of a motion's feet, shape (n_frames, 2); none for a body without
     feet."""
-    humanoid = HumanoidMap({
-        role: body.skeleton.names[joint] for joint, role in body.roles.items()
-    })
+    humanoid = humanoid_of(body)
     if not humanoid.has(*(f"{side}Foot" for side in SIDES)):
         return np.zeros((motion.n_frames, len(SIDES)), dtype=np.bool_)
     return detect_contacts(motion, humanoid)
 
 
 def compute_support_weights(
-    body: PhysicsBody,
-    motion: Motion,
-    loads: Array,
-    target_weights: Array,
-    ground: float,
+    body: PhysicsBody, motion: Motion, loads: Array, target_weights: Array
 ) -> Array:
     """Return weights, 0 to 1, that hold each simulated foot in position.
 
-    A foot stands if it carries weight and hardly moves in the simulation; no height threshold
-    is needed for that. It also stands where the target's does, if it is near the ground,
-    although the other foot may bear all the weight here.
+    A foot stands where the target's does, although the other foot may bear all the weight
+    here. It also stands if it carries weight and hardly moves in the simulation.
 
     Parameters
     ----------
@@ -68,58 +58,24 @@ def compute_support_weights(
         weight.
     target_weights : shape (n_frames, 2), 0 to 1
         1 where a foot of the target stands.
-    ground : float, meters
 
     Returns
     -------
     Array
         Shape (n_frames, 2), left and right.
     """
-    points = lowest_points(body, motion)
     speeds = _smooth(measure_sole_speeds(body, motion), motion.frame_rate) / body.size
     slow = np.clip(
         (RELEASE_SPEED_M_S - speeds) / (RELEASE_SPEED_M_S - HOLD_SPEED_M_S), 0.0, 1.0
     )
-    weights = np.zeros((motion.n_frames, 2))
-    for column, side in enumerate(SIDES):
-        ends = select_foot_ends(body, side)
-        if ends.any():
-            load = _smooth(loads[:, ends].sum(axis=1), motion.frame_rate)
-            carries = np.clip((load - MIN_LOAD) / (FULL_LOAD - MIN_LOAD), 0.0, 1.0)
-            height = (points[:, ends, 2].min(axis=1) - ground) / body.size
-            near = np.clip(
-                (RELEASE_HEIGHT_M - height) / (RELEASE_HEIGHT_M - HOLD_HEIGHT_M), 0.0, 1.0
-            )
-            weights[:, column] = np.maximum(
-                carries * slow[:, column], target_weights[:, column] * near
-            )
-    return weights
+    load = _smooth(sum_foot_loads(body, loads), motion.frame_rate)
+    carries = np.clip((load - MIN_LOAD) / (FULL_LOAD - MIN_LOAD), 0.0, 1.0)
+    return np.maximum(carries * slow, target_weights)
 
 
 def weights_between_frames(weights: Array) -> Array:
     """Return the weights that hold feet between frames, shape (n_frames - 1, 2)."""
     return np.minimum(weights[1:], weights[:-1])
-
-
-def distribute_load(heights: Array, frame_rate: float, size: float) -> Array:
-    """Return the fraction of the load on each point of a sole; fractions sum to 1.
-
-    The lowest points bear most. As a foot rolls, the load passes from the heel to the ball and
-    on to the toes.
-
-    Parameters
-    ----------
-    heights : shape (n_frames, n_points), meters
-        Above the ground; points below it bear no more than points on it.
-    frame_rate : float, hertz
-    size : float
-        Of the body: its legs over 0.9 m.
-    """
-    heights_above = _smooth(np.maximum(heights, 0.0), frame_rate)
-    fractions = np.exp(
-        (heights_above.min(axis=1, keepdims=True) - heights_above) / (LOAD_DECAY_M * size)
-    )
-    return np.asarray(fractions / fractions.sum(axis=1, keepdims=True))
 
 
 def sum_foot_loads(body: PhysicsBody, loads: Array) -> Array:

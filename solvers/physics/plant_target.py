@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..motion import Motion
+from ..feet import find_foot_contact, find_legs
+from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import SIDES, UP
 from ..motion_fitting import FittedMotion, Goal, fit_in_windows, fit_motion
 from ..motion_fitting.goals import (
@@ -21,7 +22,7 @@ from ..progress import Progress
 from ..rotations import inverse, multiply, rotation_vector_from_quaternion
 from .body import PhysicsBody
 from .body_surface import find_leg_chain, joints_of_ends, lowest_points, select_foot_ends
-from .foot_support import distribute_load
+from .foot_support import humanoid_of
 
 BLEND_S = 0.35
 """Seconds over which a released foot blends to its own motion, and a simulated body to the take
@@ -56,14 +57,36 @@ NEAR_M = 0.1
 sink. It bounds the run time."""
 
 
+def weigh_headings(body: PhysicsBody, motion: Motion) -> Array:
+    """Return 1 for steps in which a foot keeps its heading, toward 0 where it turns.
+
+    The shape is (n_frames - 1, 2).
+    """
+    weights, poses = np.zeros((motion.n_frames - 1, len(SIDES))), forward_kinematics(motion)
+    for column, side in enumerate(SIDES):
+        if chain := find_leg_chain(body, side):
+            rotations = poses.rotations[:, chain[-1]]
+            changes = rotation_vector_from_quaternion(
+                multiply(rotations[1:], inverse(rotations[:-1]))
+            )
+            rates = np.abs(changes[:, 2]) * motion.frame_rate
+            weights[:, column] = np.clip(2.0 - 2.0 * rates / MAX_ROTATION_RATE_RAD_S, 0.0, 1.0)
+    return weights
+
+
 def plant_target_feet(
-    body: PhysicsBody, motion: Motion, hold_weights: Array, ground: float
+    body: PhysicsBody,
+    motion: Motion,
+    hold_weights: Array,
+    heading_weights: Array,
+    ground: float,
 ) -> Motion:
     """Return the motion with feet that do not move over the ground while they are held.
 
-    The loaded part of the sole (heel, ball or toes) keeps its position, the foot its heading,
-    and all parts of the sole their height, so that no foot sinks or rises. The least smooth
-    change of the legs and of the root with that is found for all frames at once.
+    The point that stands (heel, ball, toes or ankle: the lowest and slowest, as in
+    `find_foot_contact`) keeps its position, the foot its heading, and all parts of the sole
+    their height, so that no foot sinks or rises. The least smooth change of the legs and of the
+    root with that is found for all frames at once.
 
     Parameters
     ----------
@@ -71,6 +94,8 @@ def plant_target_feet(
     motion : Motion
     hold_weights : shape (n_frames - 1, 2), 0 to 1
         How firmly each foot is held from each frame to the next.
+    heading_weights : shape (n_frames - 1, 2), 0 to 1
+        How firmly the heading of a foot is held that is held.
     ground : float, meters
     """
     chains = {side: find_leg_chain(body, side) for side in SIDES}
@@ -85,7 +110,7 @@ def plant_target_feet(
 
     def plant_window(start: int, stop: int, progress: Progress) -> Motion:
         window = motion.slice(start, stop)
-        fitted, weights = FittedMotion(window, window, joints), hold_weights[start : stop - 1]
+        fitted, steps = FittedMotion(window, window, joints), slice(start, stop - 1)
         goals: list[Goal] = [
             FollowSource.of_joints(
                 fitted,
@@ -101,7 +126,10 @@ def plant_target_feet(
             )
         ]
         for side, chain in held.items():
-            goals += _foot_goals(body, fitted, side, weights[:, SIDES.index(side)], ground)
+            column = SIDES.index(side)
+            goals += _foot_goals(
+                body, fitted, side, hold_weights[steps, column], heading_weights[steps, column]
+            )
             goals.append(knee_limit(fitted, *chain[1:], 0.0))
         goals += _ground_goals(body, fitted, tuple(held), ground)
         return fit_motion(fitted, goals, progress).motion
@@ -110,29 +138,30 @@ def plant_target_feet(
 
 
 def _foot_goals(
-    body: PhysicsBody, fitted: FittedMotion, side: str, hold_weights: Array, ground: float
+    body: PhysicsBody,
+    fitted: FittedMotion,
+    side: str,
+    hold_weights: Array,
+    heading_weights: Array,
 ) -> list[Goal]:
     """Return what the sole of a foot has to meet; weights of shape (n_frames - 1,)."""
     motion, poses, ends = fitted.motion, fitted.poses, select_foot_ends(body, side)
-    ankle = next(joint for joint, role in body.roles.items() if role == f"{side}Foot")
-    offsets = np.concatenate([each.ends for each in body.ground_capsules])[ends]
+    leg = next(
+        each for each in find_legs(body.skeleton, humanoid_of(body)) if each.side == side
+    )
+    held = np.concatenate([hold_weights, [0.0]]) + np.concatenate([[0.0], hold_weights]) > 0.0
+    standing = find_foot_contact(motion, poses, leg, held)
+    offsets = np.concatenate([each.ends for each in body.ground_capsules])
     points = [
         BonePoint(int(joint), offset)
-        for joint, offset in zip(joints_of_ends(body)[ends], offsets, strict=True)
+        for joint, offset in zip(joints_of_ends(body)[ends], offsets[ends], strict=True)
     ]
-    heights = lowest_points(body, motion)[:, ends, 2] - ground
-    load = distribute_load(heights, motion.frame_rate, body.size)
-    rotations = rotation_vector_from_quaternion(
-        multiply(poses.rotations[1:, ankle], inverse(poses.rotations[:-1, ankle]))
-    )
-    rates = np.abs(rotations[:, 2]) * motion.frame_rate
-    slow = np.clip(2.0 - 2.0 * rates / MAX_ROTATION_RATE_RAD_S, 0.0, 1.0)
     in_place = np.sqrt(hold_weights)[:, None] * (1.0 - UP)
-    still = np.sqrt(hold_weights * slow)[:, None] * UP
+    still = np.sqrt(hold_weights * heading_weights)[:, None] * UP
     one_point, all_frames = np.ones((motion.n_frames, 1)), np.ones(motion.n_frames)
     return [
-        StayInPlace(points, 0.5 * (load[1:] + load[:-1]), in_place, CREEP_M_S * body.size),
-        StayStill(ankle, still, FOOT_ROTATION_RAD_S),
+        StayInPlace(standing.points, standing.step_load, in_place, CREEP_M_S * body.size),
+        StayStill(leg.ankle, still, FOOT_ROTATION_RAD_S),
         *(
             StayAtHeight(
                 [point],

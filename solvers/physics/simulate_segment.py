@@ -28,7 +28,7 @@ from .foot_support import (
     detect_target_contacts,
     weights_between_frames,
 )
-from .plant_target import plant_target_feet
+from .plant_target import plant_target_feet, weigh_headings
 from .target import smooth_target
 from .world import build_world
 
@@ -128,7 +128,7 @@ def simulate_segment(
             break
         start = stop
     assert best is not None
-    return _plant_segment(body, best, conditions.ground) if conditions.plant else best
+    return _plant_segment(body, best, motion, conditions.ground) if conditions.plant else best
 
 
 def _retry_smoothings(requested: float) -> list[float]:
@@ -137,14 +137,23 @@ def _retry_smoothings(requested: float) -> list[float]:
 
 
 def _plant_segment(
-    body: PhysicsBody, segment: SimulatedSegment, ground: float
+    body: PhysicsBody, segment: SimulatedSegment, take: Motion, ground: float
 ) -> SimulatedSegment:
-    """Return the segment with planted feet."""
-    support = compute_support_weights(
-        body, segment.motion, segment.loads, segment.stance_weights, ground
+    """Return the segment with planted feet.
+
+    A foot that stands in the take turns only where it turns there.
+    """
+    weights = compute_support_weights(
+        body, segment.motion, segment.loads, segment.stance_weights
     )
-    support *= segment.followed[:, None]
-    motion = plant_target_feet(body, segment.motion, weights_between_frames(support), ground)
+    weights *= segment.followed[:, None]
+    heading_weights = np.maximum(
+        weigh_headings(body, segment.motion),
+        weigh_headings(body, take) * weights_between_frames(segment.stance_weights),
+    )
+    motion = plant_target_feet(
+        body, segment.motion, weights_between_frames(weights), heading_weights, ground
+    )
     return replace(segment, motion=motion, contacts=detect_touching_feet(body, motion, ground))
 
 

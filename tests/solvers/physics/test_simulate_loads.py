@@ -7,15 +7,26 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map
+from solvers.feet import find_foot_joints
+from solvers.motion import (
+    HumanoidMap,
+    Motion,
+    Skeleton,
+    find_humanoid_map,
+    forward_kinematics,
+)
+from solvers.motion.humanoid import UP
 from solvers.physics.body import Capsule, PhysicsBody, build_physics_body
 from solvers.physics.body_surface import lowest_points, select_foot_ends
 from solvers.physics.contact_loads import add_loads
 from solvers.physics.control import ARM_REGULARIZATION, _ground_forces
 from solvers.physics.engine import load_engine
 from solvers.physics.foot_support import compute_support_weights
+from solvers.physics.plant_target import plant_target_feet
+from solvers.physics.simulate_segment import SimulatedSegment, _plant_segment
 from solvers.physics.soles_and_ground import add_soles
 from solvers.physics.world import build_world
+from solvers.rotations import multiply, quaternion_from_rotation_vector, rotate
 from solvers.samples import GaitSettings, walking_gait
 
 STEP = 1.0 / 240.0
@@ -53,24 +64,66 @@ def test_foot_of_the_free_leg_stands_and_one_that_touches_moves(load, least, mos
     ends = select_foot_ends(body, "left")
     loads = np.tile(load * ends / ends.sum(), (20, 1))
 
-    weights = compute_support_weights(body, standing, loads, np.zeros((20, 2)), 0.0)
+    weights = compute_support_weights(body, standing, loads, np.zeros((20, 2)))
 
     assert (weights[:, 0] >= least - 1e-9).all()
     assert (weights[:, 0] <= most).all()
 
 
-@pytest.mark.parametrize(("height", "weight"), [(0.01, 1.0), (0.025, 0.5), (0.04, 0.0)])
-def test_foot_without_load_stands_where_the_target_does_near_the_ground(height, weight):
-    """Halfway between the heights at which it is held and free; of an adult, in meters."""
+def test_foot_without_load_stands_where_the_target_does():
     body, standing = standing_body()
-    target_weights = np.tile([1.0, 0.0], (20, 1))
-    lowest = lowest_points(body, standing)[0, select_foot_ends(body, "left"), 2].min()
-    ground = lowest - height * body.size
+    target_weights = np.tile([0.7, 0.0], (20, 1))
     loads = np.zeros((20, len(select_foot_ends(body, "left"))))
 
-    weights = compute_support_weights(body, standing, loads, target_weights, ground)
+    weights = compute_support_weights(body, standing, loads, target_weights)
 
-    assert_allclose(weights, weight * target_weights, atol=1e-9)
+    assert_allclose(weights, target_weights, atol=1e-9)
+
+
+def test_foot_that_swivels_about_a_corner_of_its_sole_is_held():
+    """The corner rests, so no part of the sole slides where it may touch the ground."""
+    body, standing = standing_body()
+    swiveling = swiveled(body, standing)
+    left = np.ones((standing.n_frames - 1, 2)) * [1, 0]
+
+    result = plant_target_feet(body, swiveling, left, 0 * left, 0.0)
+
+    assert slower_joint(result) < 0.4 * slower_joint(swiveling)
+
+
+def test_foot_that_stands_turns_only_where_it_turns_in_the_take():
+    body, standing = standing_body()
+    swiveling = swiveled(body, standing)
+    stands = np.ones((standing.n_frames, 2)) * [1, 0]
+    loads = np.zeros((standing.n_frames, 2 * len(body.ground_capsules)))
+    segment = SimulatedSegment(
+        swiveling, stands[:, 0] > 0, stands > 0, stands[:, 0], loads, stands, 0, 0.02
+    )
+
+    held, turns = (
+        _plant_segment(body, segment, take, 0.0).motion for take in (standing, swiveling)
+    )
+
+    assert slower_joint(held) < 0.1 * slower_joint(swiveling) < slower_joint(turns)
+
+
+def swiveled(body: PhysicsBody, motion: Motion) -> Motion:
+    """Return the motion, turned about a corner of the left sole."""
+    ends = lowest_points(body, motion)[0, select_foot_ends(body, "left")]
+    corner = ends[-1] * (1.0, 1.0, 0.0)
+    turns = quaternion_from_rotation_vector(
+        np.linspace(0.0, 0.3, motion.n_frames)[:, None] * UP
+    )
+    rotations = motion.rotations.copy()
+    rotations[:, 0] = multiply(turns, rotations[:, 0])
+    return motion.with_poses(rotations, corner + rotate(turns, motion.root_positions - corner))
+
+
+def slower_joint(motion: Motion) -> float:
+    """Return the mean step of the slower of ankle and toes of the left foot, meters."""
+    feet = find_foot_joints(motion.skeleton)
+    steps = np.diff(forward_kinematics(motion).positions[:, feet[0], :2], axis=0)
+    return float(np.linalg.norm(steps, axis=-1).min(axis=-1).mean())
 
 
 def standing_body() -> tuple[PhysicsBody, Motion]:
