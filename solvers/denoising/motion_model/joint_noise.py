@@ -50,8 +50,8 @@ def estimate_joint_noise(
     """Estimate the noise of each joint along its own axes.
 
     It is equal along the axes about which the joint can turn, unless it is much larger along
-    one of them, and along those of a position, unless it is larger along one of them. Axes about
-    which a joint cannot turn, as those of a knee that only bends, are fixed and do not count.
+    one of them, and along those of a position, unless it is larger along one of them. Axes that
+    a joint cannot turn about, as those of a knee that only bends, are fixed and do not count.
     Joints that stand still do not count for the others; they get the others' noise.
 
     Parameters
