@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array, Flags
-from ..progress import Progress, unwatched, within
+from ..progress import Progress, within
 from .averaging import (
     MIN_NOISE,
     average_estimates,
@@ -70,18 +70,17 @@ def apply_default_method(
     noise = estimate_joint_noise(
         np.where(outliers, np.nan, noisy), MIN_NOISE, channels.n_rotations
     )
-    exponent = 0.0
+    averaged, smoothing = _smooth(channels, complete, estimate, noise, is_good, frame_rate)
+    exponent, columns = 0.0, slice(0)
     if len(noisy) >= window_length(bases, frame_rate):
-        exponent = _noise_exponent(channels, complete, noise, is_good, frame_rate)
+        exponent, columns = _colored_noise(channels, complete, noise, is_good, frame_rate)
     if exponent:
-        estimate, prior_used = _estimate_with_colored_noise(
-            channels, complete, estimate, is_good, frame_rate, bases, exponent
-        )
-        length = round(mixture.window * frame_rate / mixture.frame_rate)
-        noise = noise.multiplied(deviation_ratio(length, exponent))
-    averaged, smoothing = _smooth(
-        channels, complete, estimate, noise, is_good, frame_rate, exponent
-    )
+        colored, prior_used = _smooth_colored_noise(
+            channels, complete, estimate, noise, is_good, frame_rate, bases, exponent,
+            within(progress, 0.9, 0.95),
+        )  # fmt: skip
+        averaged = _with_columns(averaged, colored, columns)
+        smoothing = "The jitter lasts several frames, so slower movement was smoothed, too."
     filling = ""
     if bases is None:
         averaged, n_predicted = predict_limbs(
@@ -92,38 +91,63 @@ def apply_default_method(
     return averaged, " ".join(filter(None, (prior_used, smoothing, filling)))
 
 
-def _noise_exponent(
+def _colored_noise(
     channels: Channels, complete: Array, noise: JointNoise, is_good: Flags, frame_rate: float
-) -> float:
-    """Return the exponent of the rotations' noise; 0 for white noise."""
+) -> tuple[float, slice]:
+    """Return the exponent of the rotations' noise, 0 for white noise, and the columns that
+    have it: with those of the position, if its noise is not white either."""
     if not channels.n_rotations:
-        return 0.0
-    shape = len(complete), -1, N_CHANNELS
-    rotations = complete.reshape(shape)[:, :-1]
-    observed = is_good.reshape(shape)[:, :-1].all(axis=2)
-    return noise_exponent(rotations, noise, observed, frame_rate, load_motion_mixture())
+        return 0.0, slice(0)
+    shape, mixture = (len(complete), -1, N_CHANNELS), load_motion_mixture()
+    samples, observed = complete.reshape(shape), is_good.reshape(shape).all(axis=2)
+    exponents = []
+    for joints in (slice(None, -1), slice(-1, None)):
+        own = noise._replace(
+            covariances=noise.covariances[joints], is_free=noise.is_free[joints]
+        )
+        exponents.append(
+            noise_exponent(samples[:, joints], own, observed[:, joints], frame_rate, mixture)
+        )
+    return exponents[0], slice(None) if exponents[1] else slice(channels.n_rotations)
 
 
-def _estimate_with_colored_noise(
+def _smooth_colored_noise(
     channels: Channels,
     complete: Array,
-    first: Estimate,
+    estimate: Estimate,
+    noise: JointNoise,
     is_good: Flags,
     frame_rate: float,
     bases: FilterBases | None,
     exponent: float,
+    progress: Progress,
 ) -> tuple[Estimate, str]:
-    """Return the estimate of a complete take whose noise is not white.
+    """Return the estimate of a take whose noise is not white, and what it was made with.
 
-    What is known of outliers and gaps is that of the first estimate.
+    Outliers and gaps, and how uncertain these are, stay those of the first estimate: the second
+    one takes what fills them for observed, except where it measures the noise.
     """
     complete_channels = replace(channels, values=complete.reshape(channels.values.shape))
     no_errors = np.zeros(complete.shape, dtype=np.bool_)
-    estimate, prior_used = estimate_in_groups(
-        complete_channels, no_errors, frame_rate, bases, unwatched, exponent
+    again, prior_used = estimate_in_groups(
+        complete_channels, no_errors, frame_rate, bases, progress, exponent, is_good
     )
-    deviation = np.where(is_good, estimate.deviation, first.deviation)
-    return replace(estimate, inliers=first.inliers, deviation=deviation), prior_used
+    deviation = np.where(is_good, again.deviation, estimate.deviation)
+    again = replace(again, inliers=estimate.inliers, deviation=deviation)
+    mixture = load_motion_mixture()
+    length = round(mixture.window * frame_rate / mixture.frame_rate)
+    noise = noise.multiplied(deviation_ratio(length, exponent))
+    colored, _ = _smooth(channels, complete, again, noise, is_good, frame_rate, exponent)
+    return colored, prior_used
+
+
+def _with_columns(estimate: Estimate, other: Estimate, columns: slice) -> Estimate:
+    """Return an estimate with these columns of another one."""
+    arrays = {}
+    for name in ("values", "deviation", "leave_one_out_error"):
+        arrays[name] = getattr(estimate, name).copy()
+        arrays[name][:, columns] = getattr(other, name)[:, columns]
+    return replace(estimate, **arrays)
 
 
 def _smooth(
@@ -133,7 +157,7 @@ def _smooth(
     noise: JointNoise,
     is_good: Flags,
     frame_rate: float,
-    exponent: float,
+    exponent: float = 0.0,
 ) -> tuple[Estimate, str]:
     """Return the mean of the estimate and of two smoothers, and a sentence on the smoothing.
 
@@ -150,11 +174,6 @@ def _smooth(
         smoothed.append(by_mixtures)
     deviations = np.maximum(noise.deviation, MIN_NOISE)
     averaged, weights = average_estimates(complete, estimate, smoothed, is_good, deviations)
-    if exponent:
-        return (
-            averaged,
-            "The jitter lasts several frames, so slower movement was smoothed, too.",
-        )
     n_smoothed = int(np.count_nonzero(weights[:, 0] < 0.5))
     if not n_smoothed:
         return averaged, ""

@@ -38,7 +38,7 @@ class _Transform(NamedTuple):
     to_frames: Array
     """Shape (n_coefficients, length)."""
     deviations: Array
-    """Of the noise, relative to white noise, shape (n_coefficients,)."""
+    """Of the noise, relative to that of a sample, shape (n_coefficients,)."""
 
 
 class _GroupFilters(NamedTuple):

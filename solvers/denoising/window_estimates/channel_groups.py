@@ -43,12 +43,14 @@ def estimate_in_groups(
     bases: FilterBases | None,
     progress: Progress,
     noise_exponent: float = 0.0,
+    measured: NDArray[np.bool_] | None = None,
 ) -> tuple[Estimate, str]:
     """Estimate all channels; return them with a sentence on the prior.
 
     Samples known to be errors, shape (n_frames, n_channels), are outliers from the start. The
     noise has this exponent (`noise_spectrum`); if it is not 0, the take must be complete and
-    at least as long as a window.
+    at least as long as a window. Its size is measured by the samples that are `measured`, of
+    the same shape, or else by all that are observed.
     """
     n_frames, n_channels = channels.flat.shape
     window, pattern_rate = _window_of(bases)
@@ -56,7 +58,7 @@ def estimate_in_groups(
     windows = Windows(
         max(n_frames, length), length, length / window, noise_exponent=noise_exponent
     )
-    take = _estimate_roughly(channels.flat, is_error, windows)
+    take = _estimate_roughly(channels.flat, is_error, windows, measured)
     is_unknown = np.isnan(take.noisy) & (take.n_observed == 0)
     parts = (
         take.values.copy(),
@@ -127,21 +129,27 @@ def _build_examples_prior(
     )  # fmt: skip
 
 
-def _estimate_roughly(noisy: Array, is_error: NDArray[np.bool_], windows: Windows) -> RoughTake:
+def _estimate_roughly(
+    noisy: Array,
+    is_error: NDArray[np.bool_],
+    windows: Windows,
+    measured: NDArray[np.bool_] | None,
+) -> RoughTake:
     padded = np.full((windows.n_frames, noisy.shape[1]), np.nan)
     padded[: len(noisy)] = noisy
     padded_errors = np.zeros(padded.shape, dtype=np.bool_)
     padded_errors[: len(noisy)] = is_error
     despiked = np.where(padded_errors, np.nan, padded)
     despiked = remove_outliers(despiked, SPIKE_HALF_WIDTH)
+    samples = despiked if measured is None else np.where(measured, despiked, np.nan)
     ratio = deviation_ratio(windows.length, windows.noise_exponent)
-    noise = np.maximum(ratio * estimate_noise(despiked), MIN_NOISE)
+    noise = np.maximum(ratio * estimate_noise(samples), MIN_NOISE)
     return RoughTake(
         padded,
         padded_errors,
         fill_channel_gaps(despiked),
         noise,
-        np.isfinite(despiked).sum(axis=0),
+        np.isfinite(samples).sum(axis=0),
         windows,
     )
 

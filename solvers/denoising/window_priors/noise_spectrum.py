@@ -42,4 +42,4 @@ def deviation_ratio(length: int, exponent: float) -> float:
     spectrum = noise_spectrum(length, exponent)
     half_angles = np.pi * np.arange(length) / (2 * length)
     response = np.sin(half_angles) ** (2 * DIFFERENCE_ORDER)
-    return float(np.sqrt(response.sum() / (response @ spectrum)))
+    return float(np.sqrt((response @ np.ones(length)) / (response @ spectrum)))

@@ -30,7 +30,8 @@ class Windows:
 
     A window is a sum of cosines (the orthonormal discrete cosine transform, divided by the root
     of `density`, so that the same movement has the same coefficients at any frame rate). If the
-    noise is not white, a coefficient is in units of the noise at its frequency, in which it is.
+    noise is not white, coefficients are divided by `noise_deviations`, so that their noise is.
+    Then the transform is not orthonormal, which long gaps need: the take must be complete.
     """
 
     n_frames: int
@@ -104,7 +105,8 @@ class Windows:
 
     @cached_property
     def noise_deviations(self) -> Array:
-        """Unit of each coefficient, shape (length,): 1 for white noise."""
+        """Deviation of the noise of each coefficient, relative to that of a sample: 1 for white
+        noise. Shape (length,)."""
         return np.sqrt(noise_spectrum(self.length, self.noise_exponent))
 
     @cached_property

@@ -91,6 +91,22 @@ def test_examples_help_with_colored_noise(walk):
     assert error < 0.9 * mean_error(alone.recording, walk)
 
 
+@pytest.mark.parametrize(("exponent", "is_colored"), [(0.0, False), (1.0, True)])
+def test_path_is_judged_separately(walk, exponent, is_colored, monkeypatch):
+    noise = 0.04 * power_law_noise((walk.n_frames, 3), exponent, seed=7)
+    noisy = with_noise(walk, 3.0, 1.0).with_poses(root_positions=walk.root_positions + noise)
+
+    cleaned = denoise(noisy)
+    monkeypatch.setattr("solvers.denoising.default_method.noise_exponent", lambda *_: 0.0)
+    as_white = denoise(noisy)
+
+    assert COLORED in cleaned.prior_used
+    assert isinstance(cleaned.recording, Motion)
+    assert isinstance(as_white.recording, Motion)
+    difference = cleaned.recording.root_positions - as_white.recording.root_positions
+    assert (np.abs(difference).max() > 1e-3) == is_colored
+
+
 def test_gaps_and_outliers_keep_what_the_first_estimate_knows_of_them(walk):
     noisy = with_noise(walk, 3.0, 1.0)
     joint = noisy.skeleton.names.index("LeftForeArm")
