@@ -35,7 +35,7 @@ NEEDED = {
     "reconstruct": {"denoising", "feet", "motion_fitting", "reconstruction"},
     "learn-residuals": {"motion_fitting", "reconstruction"},
     "learn-postures": {"motion_fitting", "reconstruction"},
-    "simulate": {"motion_fitting", "physics"},
+    "simulate": {"feet", "motion_fitting", "physics"},
     "index": {"retrieval"},
     "find": {"retrieval"},
     "vary": {"denoising", "feet", "motion_fitting", "pictures", "variation"},

@@ -59,7 +59,8 @@ def test_fix_makes_a_skeleton_of_markers_among_other_files(call, walk_file, walk
 
 def test_fix_refuses_points_of_no_marker_set_in_one_sentence(call, tmp_path):
     path = np.linspace(0.0, 1.0, 90).reshape(30, 1, 3)
-    write_trc(Tracks(("a", "b"), np.repeat(path, 2, axis=1), 30.0), tmp_path / "points.trc")
+    points = np.concatenate([path, path + 0.2], axis=1)
+    write_trc(Tracks(("a", "b"), points, 30.0), tmp_path / "points.trc")
 
     status, _, err = call("fix", tmp_path / "points.trc", tmp_path / "points.bvh")
 

@@ -61,7 +61,7 @@ def test_simulate_counts_frames_from_one(call, tmp_path):
 
 
 def test_simulate_refuses_points(call, tmp_path):
-    points = Tracks(("a", "b"), np.ones((3, 2, 3)), 30.0)
+    points = Tracks(("a", "b"), np.arange(18.0).reshape(3, 2, 3), 30.0)
     write_trc(points, tmp_path / "points.trc")
 
     status, _, err = call("simulate", tmp_path / "points.trc", tmp_path / "out.bvh")
