@@ -123,7 +123,9 @@ def test_invalid_options_are_reported(call, wave, options, words):
 
 
 def test_more_points_than_a_stream_holds_are_refused(call, tmp_path):
-    markers = Tracks(tuple(f"m{number}" for number in range(70)), np.arange(1050.0).reshape(5, 70, 3), 30.0)
+    markers = Tracks(
+        tuple(f"m{number}" for number in range(70)), np.arange(1050.0).reshape(5, 70, 3), 30.0
+    )
     write_trc(markers, tmp_path / "many.trc")
 
     status, _, err = call("replay", tmp_path / "many.trc", "--speed", 100)
