@@ -62,7 +62,7 @@ def test_undo_checks_the_scene_of_the_window_again(blank, noisy, renewing):
 
     blank.ops.ed.undo()
 
-    assert renewing._awaited == {blank.context.scene.name: True}
+    assert renewing._awaited == {blank.context.scene.session_uid: True}
 
 
 def test_list_of_a_result_is_not_shown_for_the_recorded_action(blank, noisy, renewing):
