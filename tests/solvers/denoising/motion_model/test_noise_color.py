@@ -92,7 +92,7 @@ def test_examples_help_with_colored_noise(walk):
 
 
 @pytest.mark.parametrize(("exponent", "is_colored"), [(0.0, False), (1.0, True)])
-def test_path_is_judged_separately(walk, exponent, is_colored, monkeypatch):
+def test_path_has_an_exponent_of_its_own(walk, exponent, is_colored, monkeypatch):
     noise = 0.04 * power_law_noise((walk.n_frames, 3), exponent, seed=7)
     noisy = with_noise(walk, 3.0, 1.0).with_poses(root_positions=walk.root_positions + noise)
 
