@@ -18,7 +18,7 @@ from ..motion.humanoid import (
 )
 from ..motion.skeletons import ground_level
 from ..motion_fitting.goals import BonePoint
-from ..signals import smooth_gaussian, two_state_probabilities
+from ..signals import two_state_probabilities
 from .legs import LegJoints
 from .pelvis import pelvis_points
 from .standing_feet import MIN_CONTACT_S, rests_on_hips, without_short_contacts
@@ -50,10 +50,6 @@ MIN_SEAT_HEIGHT = 0.12
 below which it bears the body. Chosen by hand: x0.5 holds hands of bodies that lie down and
 turns their arms twice as far, x2 lets go of hands while an actor gets down.
 `test_hands_of_a_body_that_lies_are_free` fails without it."""
-HIPS_SMOOTHING_S = 0.1
-"""Seconds over which the path of the pelvis is smoothed before contact is estimated. Chosen by
-hand on HDM05 lieDownFloor at 120 Hz: without it 1 % of the contact is lost where the root
-jitters by 1 cm, with it nothing. `make sensitivity` varies it."""
 
 
 @dataclass(frozen=True)
@@ -129,8 +125,6 @@ def support_probabilities(motion: Motion, humanoid: HumanoidMap) -> Array:
     probability = np.zeros((motion.n_frames, len(SUPPORTS)))
     for support in find_supports(motion.skeleton, humanoid):
         path = np.stack([point.position(poses) for point in support.points], axis=1) / size
-        if not support.chain:
-            path = smooth_gaussian(path, HIPS_SMOOTHING_S * motion.frame_rate)
         evidence = measure_feet(path[:, None], motion.frame_rate, ground).evidence(LEARNED)
         rates = motion.frame_rate, LEARNED.landing_rate, LEARNED.lift_rate
         column = SUPPORTS.index(support.name)
