@@ -100,15 +100,16 @@ def _colored_noise(
         return 0.0, slice(0)
     shape, mixture = (len(complete), -1, N_CHANNELS), load_motion_mixture()
     samples, observed = complete.reshape(shape), is_good.reshape(shape).all(axis=2)
-    exponents = []
-    for joints in (slice(None, -1), slice(-1, None)):
+
+    def exponent_of(joints: slice) -> float:
         own = noise._replace(
             covariances=noise.covariances[joints], is_free=noise.is_free[joints]
         )
-        exponents.append(
-            noise_exponent(samples[:, joints], own, observed[:, joints], frame_rate, mixture)
-        )
-    return exponents[0], slice(None) if exponents[1] else slice(channels.n_rotations)
+        return noise_exponent(samples[:, joints], own, observed[:, joints], frame_rate, mixture)
+
+    exponent = exponent_of(slice(None, -1))
+    has_path = bool(exponent) and bool(exponent_of(slice(-1, None)))
+    return exponent, slice(None) if has_path else slice(channels.n_rotations)
 
 
 def _smooth_colored_noise(
