@@ -1,6 +1,7 @@
 """The default method of `denoise`: find outliers, estimate, average with two smoothers."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,6 +30,19 @@ from .window_priors import FilterBases, deviation_ratio
 
 OUTLIER_THRESHOLD = 0.5
 """Probability of being an inlier below which a sample is an outlier. By definition."""
+
+
+class _CompleteTake(NamedTuple):
+    """A take whose gaps and outliers are replaced by their estimate."""
+
+    channels: Channels
+    """As they were recorded."""
+    values: Array
+    """Without NaN, shape (n_frames, n_channels)."""
+    is_good: Flags
+    """Samples that were recorded and are no outliers, same shape."""
+    noise: JointNoise
+    frame_rate: float
 
 
 def apply_default_method(
@@ -70,15 +84,15 @@ def apply_default_method(
     noise = estimate_joint_noise(
         np.where(outliers, np.nan, noisy), MIN_NOISE, channels.n_rotations
     )
-    averaged, smoothing = _smooth(channels, complete, estimate, noise, is_good, frame_rate)
+    take = _CompleteTake(channels, complete, is_good, noise, frame_rate)
+    averaged, smoothing = _smooth(take, estimate)
     exponent, columns = 0.0, slice(0)
     if len(noisy) >= window_length(bases, frame_rate):
-        exponent, columns = _colored_noise(channels, complete, noise, is_good, frame_rate)
+        exponent, columns = _colored_noise(take)
     if exponent:
         colored, prior_used = _smooth_colored_noise(
-            channels, complete, estimate, noise, is_good, frame_rate, bases, exponent,
-            within(progress, 0.9, 0.95),
-        )  # fmt: skip
+            take, estimate, bases, exponent, within(progress, 0.9, 0.95)
+        )
         averaged = _with_columns(averaged, colored, columns)
         smoothing = "The jitter lasts several frames, so slower movement was smoothed, too."
     filling = ""
@@ -91,34 +105,30 @@ def apply_default_method(
     return averaged, " ".join(filter(None, (prior_used, smoothing, filling)))
 
 
-def _colored_noise(
-    channels: Channels, complete: Array, noise: JointNoise, is_good: Flags, frame_rate: float
-) -> tuple[float, slice]:
+def _colored_noise(take: _CompleteTake) -> tuple[float, slice]:
     """Return the exponent of the rotations' noise, 0 for white noise, and the columns that
     have it: with those of the position, if its noise is not white either."""
-    if not channels.n_rotations:
+    if not take.channels.n_rotations:
         return 0.0, slice(0)
-    shape, mixture = (len(complete), -1, N_CHANNELS), load_motion_mixture()
-    samples, observed = complete.reshape(shape), is_good.reshape(shape).all(axis=2)
+    shape = len(take.values), -1, N_CHANNELS
+    samples, observed = take.values.reshape(shape), take.is_good.reshape(shape).all(axis=2)
 
     def exponent_of(joints: slice) -> float:
-        own = noise._replace(
-            covariances=noise.covariances[joints], is_free=noise.is_free[joints]
+        own = take.noise._replace(
+            covariances=take.noise.covariances[joints], is_free=take.noise.is_free[joints]
         )
-        return noise_exponent(samples[:, joints], own, observed[:, joints], frame_rate, mixture)
+        return noise_exponent(
+            samples[:, joints], own, observed[:, joints], take.frame_rate, load_motion_mixture()
+        )
 
     exponent = exponent_of(slice(None, -1))
     has_path = bool(exponent) and bool(exponent_of(slice(-1, None)))
-    return exponent, slice(None) if has_path else slice(channels.n_rotations)
+    return exponent, slice(None) if has_path else slice(take.channels.n_rotations)
 
 
 def _smooth_colored_noise(
-    channels: Channels,
-    complete: Array,
-    estimate: Estimate,
-    noise: JointNoise,
-    is_good: Flags,
-    frame_rate: float,
+    take: _CompleteTake,
+    first: Estimate,
     bases: FilterBases | None,
     exponent: float,
     progress: Progress,
@@ -128,17 +138,17 @@ def _smooth_colored_noise(
     Outliers and gaps, and how uncertain these are, stay those of the first estimate: the second
     one takes what fills them for observed, except where it measures the noise.
     """
-    complete_channels = replace(channels, values=complete.reshape(channels.values.shape))
-    no_errors = np.zeros(complete.shape, dtype=np.bool_)
+    complete = replace(take.channels, values=take.values.reshape(take.channels.values.shape))
+    no_errors = np.zeros(take.values.shape, dtype=np.bool_)
     again, prior_used = estimate_in_groups(
-        complete_channels, no_errors, frame_rate, bases, progress, exponent, is_good
+        complete, no_errors, take.frame_rate, bases, progress, exponent, take.is_good
     )
-    deviation = np.where(is_good, again.deviation, estimate.deviation)
-    again = replace(again, inliers=estimate.inliers, deviation=deviation)
+    deviation = np.where(take.is_good, again.deviation, first.deviation)
+    again = replace(again, inliers=first.inliers, deviation=deviation)
     mixture = load_motion_mixture()
-    length = round(mixture.window * frame_rate / mixture.frame_rate)
-    noise = noise.multiplied(deviation_ratio(length, exponent))
-    colored, _ = _smooth(channels, complete, again, noise, is_good, frame_rate, exponent)
+    length = round(mixture.window * take.frame_rate / mixture.frame_rate)
+    noise = take.noise.multiplied(deviation_ratio(length, exponent))
+    colored, _ = _smooth(take._replace(noise=noise), again, exponent)
     return colored, prior_used
 
 
@@ -152,24 +162,19 @@ def _with_columns(estimate: Estimate, other: Estimate, columns: slice) -> Estima
 
 
 def _smooth(
-    channels: Channels,
-    complete: Array,
-    estimate: Estimate,
-    noise: JointNoise,
-    is_good: Flags,
-    frame_rate: float,
-    exponent: float = 0.0,
+    take: _CompleteTake, estimate: Estimate, exponent: float = 0.0
 ) -> tuple[Estimate, str]:
     """Return the mean of the estimate and of two smoothers, and a sentence on the smoothing.
 
     The spline takes noise that is not white for movement, so it is not used then.
     """
+    complete, is_good = take.values, take.is_good
     smoothed = [] if exponent else [smooth_by_spline(complete)]
-    factors = noise_factors(noise.deviation, complete, [estimate, *smoothed], is_good)
-    noise = noise.multiplied(factors)
+    factors = noise_factors(take.noise.deviation, complete, [estimate, *smoothed], is_good)
+    noise = take.noise.multiplied(factors)
     mixtures = load_motion_mixture(), load_motion_mixture(SHIPPED_PAIRS, 2)
     smooth_by_mixtures = MixtureSmoother(
-        noise.covariances, frame_rate, mixtures, channels.parents, exponent
+        noise.covariances, take.frame_rate, mixtures, take.channels.parents, exponent
     )
     if (by_mixtures := smooth_by_mixtures(complete)) is not None:
         smoothed.append(by_mixtures)
