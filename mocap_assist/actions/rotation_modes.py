@@ -71,7 +71,7 @@ def _axis_angles(rotations: Array, reference: Array) -> Array:
     norms = np.linalg.norm(axes, axis=-1, keepdims=True)
     axes = np.where(norms > MIN_SINE, axes / np.maximum(norms, MIN_SINE), (0.0, 1.0, 0.0))
     sides = np.cumprod(np.where((axes[1:] * axes[:-1]).sum(-1) < 0.0, -1.0, 1.0))
-    half = np.arctan2(sides * sines, rotations[:, 0])
+    half = np.arctan2(sides * sines, rotations[:, 0].copy())
     angles = 2.0 * np.unwrap(half)
     angles += 2.0 * np.pi * np.round((reference[0] - angles[0]) / (2.0 * np.pi))
     return np.column_stack([angles, sides[:, None] * axes[1:]])

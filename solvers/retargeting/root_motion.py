@@ -123,5 +123,5 @@ def _yaw(rotations: Array) -> Array:
     tilt = np.arccos(np.clip(rotate(rotations, UP)[:, 2], -1.0, 1.0))
     upright = np.flatnonzero(tilt <= max(MAX_TILT_RAD, tilt.min()))
     twist = twist_about(rotations[upright], UP)
-    angles = np.unwrap(2.0 * np.arctan2(twist[:, 3], twist[:, 0]))
+    angles = np.unwrap(2.0 * np.arctan2(twist[:, 3].copy(), twist[:, 0].copy()))
     return np.interp(np.arange(len(rotations)), upright, angles)

@@ -78,7 +78,7 @@ def rotation_vector_from_quaternion(rotations: Array) -> Array:
     """Return rotation vectors (logarithm), shape (..., 3), radians, of length at most pi."""
     rotations = np.asarray(rotations)
     rotations = np.where(rotations[..., :1] < 0.0, -rotations, rotations)
-    w, axis = rotations[..., :1], rotations[..., 1:]
+    w, axis = rotations[..., :1].copy(), rotations[..., 1:]
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
     small = sine < SMALL_ANGLE_RAD
     # 2 atan2(s, w) / s tends to 2/w as s tends to 0, and w is near 1 there.
@@ -118,7 +118,7 @@ def quaternion_from_euler(angles: ArrayLike, order: str) -> Array:
         Such as "ZYX" for Rz Ry Rx: the order of BVH channels, and the reverse of Blender's
         name ("XYZ").
     """
-    halves = np.moveaxis(np.asarray(angles, dtype=np.float64), -1, 0) / 2
+    halves = np.moveaxis(np.asarray(angles, dtype=np.float64), -1, 0).copy() / 2
     result: Components = IDENTITY
     for axis, half in zip(order, halves, strict=True):
         rotation = np.zeros((4, *half.shape))
@@ -135,7 +135,7 @@ def euler_from_quaternion(rotations: Array, order: str) -> Array:
     """
     i, j, k = ("XYZ".index(axis) for axis in order)
     sign = 1.0 if (j - i) % 3 == 1 else -1.0
-    matrix = np.moveaxis(matrix_from_quaternion(rotations), (-2, -1), (0, 1))
+    matrix = np.moveaxis(matrix_from_quaternion(rotations), (-2, -1), (0, 1)).copy()
     # R = R_i(a) R_j(b) R_k(c): row i is (cos b cos c, -+cos b sin c, +-sin b) in i, j, k.
     cosine = np.hypot(matrix[i, i], matrix[i, j])
     locked = cosine < GIMBAL_LOCK_COSINE

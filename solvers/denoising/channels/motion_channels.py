@@ -171,4 +171,4 @@ def _conversion_between_rigs(rig: EncodedJoints, references_used: Array) -> tupl
 
 def _headings(rotations: Array) -> Array:
     """Return the twist about Z of world rotations (n_frames, 4), radians, not unwrapped."""
-    return np.asarray(2.0 * np.arctan2(rotations[:, 3], rotations[:, 0]))
+    return np.asarray(2.0 * np.arctan2(rotations[:, 3].copy(), rotations[:, 0].copy()))

@@ -71,7 +71,7 @@ def _unwrapped(
     if np.linalg.norm(near, axis=-1).max() <= 2.0 * MAX_ANGLE_RAD:
         return nearest_equivalents(vectors, near), np.tile(IDENTITY, (len(rotations), 1))
     axis = _turning_axis(smooth)
-    twists = 2.0 * np.arctan2(rotations[:, 1:] @ axis, rotations[:, 0])
+    twists = 2.0 * np.arctan2(rotations[:, 1:] @ axis, rotations[:, 0].copy())
     angles = smooth_angles(unwrap_angles(twists, UNWRAP_S * frame_rate), frame_rate)
     references = quaternion_from_rotation_vector(angles[:, None] * axis)
     references = multiply(references, mean_rotation(multiply(inverse(references), rotations)))

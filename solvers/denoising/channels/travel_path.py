@@ -94,7 +94,7 @@ def unwrap_angles(angles: Array, width: float) -> Array:
     Gaussian weights of this width in frames. Spikes therefore do not add up to full turns.
     """
     unit_vectors = fill_channel_gaps(np.column_stack([np.cos(angles), np.sin(angles)]))
-    x, y = smooth_gaussian(unit_vectors, width).T
+    x, y = smooth_gaussian(unit_vectors, width).T.copy()
     smooth = np.unwrap(np.arctan2(y, x))
     return np.asarray(angles + FULL_TURN_RAD * np.round((smooth - angles) / FULL_TURN_RAD))
 

@@ -138,7 +138,7 @@ def _covariances(windows: Array, responsibility: Array) -> Array:
 def _responsibilities(windows: Array, weights: Array, covariances: Array) -> Array:
     """Return the probability of each component, shape (n_windows, n_components)."""
     factors = np.linalg.cholesky(covariances)
-    log_scale = np.log(np.einsum("kaii->kai", factors)).sum(axis=(1, 2))
+    log_scale = np.log(np.einsum("kaii->kai", factors).copy()).sum(axis=(1, 2))
     log_density = np.tile(np.log(weights) - log_scale, (len(windows), 1))
     for component, inverses in enumerate(np.linalg.inv(factors)):
         whitened = windows.transpose(1, 0, 2) @ inverses.transpose(0, 2, 1)

@@ -93,7 +93,7 @@ class WindowDensity:
         factored[:, last, last] += 1.0  # not below 0 by rounding
         factors = np.linalg.cholesky(factored)
         exponents = 0.5 * factors[:, last, :last] ** 2
-        exponents -= np.log(np.einsum("kss->ks", factors)[:, :last])
+        exponents -= np.log(np.einsum("kss->ks", factors)[:, :last].copy())
         without = log_density - 0.5 * square + exponents[:, :n_unknown].sum(axis=1)
         # An infinite deviation is a density of 1 everywhere, without the factors of a Gaussian.
         scale = np.log(deviation) if np.isfinite(deviation) else -0.5 * np.log(2.0 * np.pi)
@@ -149,7 +149,7 @@ class WindowDensity:
             weighted = np.kron(precision, self._basis)
             inverted = np.linalg.inv(factors).transpose(2, 0, 1).reshape(weighted.shape[1], -1)
             roots = weighted @ inverted
-            log_scale = np.log(np.einsum("kss->ks", factors)).sum(axis=1)
+            log_scale = np.log(np.einsum("kss->ks", factors).copy()).sum(axis=1)
             log_scale += 0.5 * len(self._basis) * np.log(2.0 * np.pi / np.diag(precision)).sum()
             roots = roots.reshape(len(weighted), *factors.shape[:2])
             self._roots[channels] = roots, log_weights - log_scale

@@ -142,7 +142,7 @@ def _without_heading(
     positions: Array, hip_positions: Array, lateral: Array
 ) -> NormalizedPostures:
     """Remove the heading, given by directions to the left, and the position of the hips."""
-    headings = np.arctan2(lateral[:, 1], lateral[:, 0])
+    headings = np.arctan2(lateral[:, 1].copy(), lateral[:, 0].copy())
     return NormalizedPostures(
         rotate_about_vertical(positions - hip_positions[:, None], -headings),
         hip_positions,

@@ -128,7 +128,7 @@ def _negative_log_likelihood(
         covariance += shape * strength
     factor = scipy.linalg.cho_factor(covariance, lower=True, check_finite=False)
     solved = scipy.linalg.cho_solve(factor, errors, check_finite=False)
-    value = 0.5 * (errors * solved).sum() + n_axes * np.log(np.diag(factor[0])).sum()
+    value = 0.5 * (errors * solved).sum() + n_axes * np.log(np.diag(factor[0]).copy()).sum()
     inverse = scipy.linalg.cho_solve(factor, np.eye(n), check_finite=False)
     slope = -0.5 * (solved @ solved.T - n_axes * inverse)
     weighted = [slope * shape for shape in shapes]
