@@ -21,12 +21,12 @@ from .motion_model import (
     JointNoise,
     MixtureSmoother,
     estimate_joint_noise,
+    find_noise_spectrum,
     load_motion_mixture,
-    noise_exponent,
 )
 from .outliers import confirm_outliers, find_bursts
 from .window_estimates import estimate_in_groups, window_length
-from .window_priors import FilterBases, deviation_ratio
+from .window_priors import WHITE, FilterBases, NoiseSpectrum
 
 OUTLIER_THRESHOLD = 0.5
 """Probability of being an inlier below which a sample is an outlier. By definition."""
@@ -86,12 +86,12 @@ def apply_default_method(
     )
     take = _CompleteTake(channels, complete, is_good, noise, frame_rate)
     averaged, smoothing = _smooth(take, estimate)
-    exponent, columns = 0.0, slice(0)
+    spectrum, columns = WHITE, slice(0)
     if len(noisy) >= window_length(bases, frame_rate):
-        exponent, columns = _colored_noise(take)
-    if exponent:
+        spectrum, columns = _colored_noise(take)
+    if not spectrum.is_white:
         colored, prior_used = _smooth_colored_noise(
-            take, estimate, bases, exponent, within(progress, 0.9, 0.95)
+            take, estimate, bases, spectrum, within(progress, 0.9, 0.95)
         )
         averaged = _with_columns(averaged, colored, columns)
         smoothing = "The jitter lasts several frames, so slower movement was smoothed, too."
@@ -105,32 +105,32 @@ def apply_default_method(
     return averaged, " ".join(filter(None, (prior_used, smoothing, filling)))
 
 
-def _colored_noise(take: _CompleteTake) -> tuple[float, slice]:
-    """Return the exponent of the rotations' noise, 0 for white noise, and the columns that
-    have it: with those of the position, if its noise is not white either."""
+def _colored_noise(take: _CompleteTake) -> tuple[NoiseSpectrum, slice]:
+    """Return the spectrum of the rotations' noise, and the columns that have it if not white:
+    with those of the position, if its noise is not white either."""
     if not take.channels.n_rotations:
-        return 0.0, slice(0)
+        return WHITE, slice(0)
     shape = len(take.values), -1, N_CHANNELS
     samples, observed = take.values.reshape(shape), take.is_good.reshape(shape).all(axis=2)
 
-    def exponent_of(joints: slice) -> float:
+    def spectrum_of(joints: slice) -> NoiseSpectrum:
         own = take.noise._replace(
             covariances=take.noise.covariances[joints], is_free=take.noise.is_free[joints]
         )
-        return noise_exponent(
+        return find_noise_spectrum(
             samples[:, joints], own, observed[:, joints], take.frame_rate, load_motion_mixture()
         )
 
-    exponent = exponent_of(slice(None, -1))
-    has_path = bool(exponent) and bool(exponent_of(slice(-1, None)))
-    return exponent, slice(None) if has_path else slice(take.channels.n_rotations)
+    spectrum = spectrum_of(slice(None, -1))
+    has_path = not (spectrum.is_white or spectrum_of(slice(-1, None)).is_white)
+    return spectrum, slice(None) if has_path else slice(take.channels.n_rotations)
 
 
 def _smooth_colored_noise(
     take: _CompleteTake,
     first: Estimate,
     bases: FilterBases | None,
-    exponent: float,
+    spectrum: NoiseSpectrum,
     progress: Progress,
 ) -> tuple[Estimate, str]:
     """Return the estimate of a take whose noise is not white, and what it was made with.
@@ -141,14 +141,14 @@ def _smooth_colored_noise(
     complete = replace(take.channels, values=take.values.reshape(take.channels.values.shape))
     no_errors = np.zeros(take.values.shape, dtype=np.bool_)
     again, prior_used = estimate_in_groups(
-        complete, no_errors, take.frame_rate, bases, progress, exponent, take.is_good
+        complete, no_errors, take.frame_rate, bases, progress, spectrum, take.is_good
     )
     deviation = np.where(take.is_good, again.deviation, first.deviation)
     again = replace(again, inliers=first.inliers, deviation=deviation)
     mixture = load_motion_mixture()
     length = round(mixture.window * take.frame_rate / mixture.frame_rate)
-    noise = take.noise.multiplied(deviation_ratio(length, exponent))
-    colored, _ = _smooth(take._replace(noise=noise), again, exponent)
+    noise = take.noise.multiplied(spectrum.deviation_ratio(length))
+    colored, _ = _smooth(take._replace(noise=noise), again, spectrum)
     return colored, prior_used
 
 
@@ -162,19 +162,19 @@ def _with_columns(estimate: Estimate, other: Estimate, columns: slice) -> Estima
 
 
 def _smooth(
-    take: _CompleteTake, estimate: Estimate, exponent: float = 0.0
+    take: _CompleteTake, estimate: Estimate, spectrum: NoiseSpectrum = WHITE
 ) -> tuple[Estimate, str]:
     """Return the mean of the estimate and of two smoothers, and a sentence on the smoothing.
 
     The spline takes noise that is not white for movement, so it is not used then.
     """
     complete, is_good = take.values, take.is_good
-    smoothed = [] if exponent else [smooth_by_spline(complete)]
+    smoothed = [smooth_by_spline(complete)] if spectrum.is_white else []
     factors = noise_factors(take.noise.deviation, complete, [estimate, *smoothed], is_good)
     noise = take.noise.multiplied(factors)
     mixtures = load_motion_mixture(), load_motion_mixture(SHIPPED_PAIRS, 2)
     smooth_by_mixtures = MixtureSmoother(
-        noise.covariances, take.frame_rate, mixtures, take.channels.parents, exponent
+        noise.covariances, take.frame_rate, mixtures, take.channels.parents, spectrum
     )
     if (by_mixtures := smooth_by_mixtures(complete)) is not None:
         smoothed.append(by_mixtures)

@@ -9,7 +9,7 @@ from .motion_mixture import (
     MotionMixture,
     load_motion_mixture,
 )
-from .noise_color import noise_exponent
+from .noise_color import find_noise_spectrum
 from .noise_levels import noise_levels
 from .principal_axes import principal_axes, robust_axes
 from .smooth_joints import MAX_LEVERAGE, MixtureSmoother
@@ -24,9 +24,9 @@ __all__ = [
     "MixtureSmoother",
     "MotionMixture",
     "estimate_joint_noise",
+    "find_noise_spectrum",
     "learn_motion_mixture",
     "load_motion_mixture",
-    "noise_exponent",
     "noise_levels",
     "principal_axes",
     "robust_axes",

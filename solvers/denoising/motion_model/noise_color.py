@@ -1,44 +1,56 @@
 """Find whether the noise of a take is white, or its jitter lasts several frames."""
 
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array, Flags
-from ..window_priors import deviation_ratio
+from ..window_priors import WHITE, NoiseSpectrum, Windows
 from .joint_noise import JointNoise
 from .motion_mixture import N_CHANNELS, MotionMixture
 from .noise_levels import MIN_MOVEMENT_DEG, MIN_OBSERVED, N_OVERLAPS
 from .smooth_groups import GroupSmoother
 
 EXPONENTS = (0.5, 1.0, 1.5)
-"""Exponents of colored noise that are compared with white noise: ratios of the logarithms of
-power and frequency (`noise_spectrum`). By definition: from a little more than white noise over
-1/f noise to a little less than a random walk, which is movement."""
-FACTORS = 2.0 ** -np.arange(-0.5, 2.1, 0.5)
+"""Exponents of power laws that are compared with white noise: ratios of the logarithms of the
+power and the frequency. By definition: from a little more than white noise over 1/f noise to a
+little less than a random walk, which is movement."""
+CUTOFFS_HZ = (6.0, 9.0)
+"""Frequencies, Hz, of the filters that are compared. By definition: the 6 Hz of biomechanics,
+and half as much again. Jitter slower than 6 Hz cannot be distinguished from movement."""
+FACTORS = 2.0 ** -np.arange(-1.0, 3.1)
 """Factors of the deviation of the noise that are compared: third differences take fast movement
-for noise, so that most often it is less. By definition: a step is the root of 2."""
+for noise, so that most often it is less. By definition: a step is the factor 2."""
 N_IGNORED = 2
 """Number of the slowest coefficients of a window that do not count: they hold movement. Chosen
 by hand on the development takes of the first press: with all, 1/f noise looks whiter."""
-MIN_EVIDENCE = 0.5
+MIN_EVIDENCE = 0.65
 """Mean logarithm, over joints and windows, of the likelihood relative to that of white noise,
 from which noise is colored. Chosen by hand on the development takes of the first press: clean
-and white ones have 0.1 at most, those with 1/f noise 0.75 at least."""
+and white ones have 0.5 at most, those with 1/f noise 0.8 at least."""
+MIN_FILTERED_EVIDENCE = 1.5
+"""Lower quartile of the same mean logarithm over joints, from which noise was filtered. In a
+smooth take, fast movement of a few joints looks like filtered noise, that of others does not.
+Chosen by hand on the development takes: clean ones, filtered or not, have 1.0 at most."""
 MIN_NOISE_DEG = 0.7
-"""Standard deviation of white noise with the same third differences, degrees, from which noise
-may be colored. Chosen by hand: below it noise costs little, and short errors may look like
-it."""
+"""Standard deviation of noise, degrees, from which it may be colored: for power laws, of white
+noise with the same third differences. Chosen by hand: below it noise costs little, and short
+errors may look like it."""
 MAX_JOINTS = 12
 """Joints that are compared. It bounds the run time."""
 
 
-def noise_exponent(
+def find_noise_spectrum(
     samples: Array,
     noise: JointNoise,
     observed: Flags,
     frame_rate: float,
     mixture: MotionMixture,
-) -> float:
-    """Return the likeliest exponent of the noise of a take; 0 for white noise.
+) -> NoiseSpectrum:
+    """Return the likeliest spectrum of the noise of a take: white, a power law, or filtered.
 
     All joints have the same: it depends on how they were tracked. It is judged by joints that
     turn about all of their axes. Below the frame rate of the mixture, fast movement and noise
@@ -59,24 +71,87 @@ def noise_exponent(
     free = np.flatnonzero(moves & noise.is_free[: len(moves)])
     n_chosen = min(len(free), MAX_JOINTS)
     joints = free[np.linspace(0, len(free) - 1, n_chosen).round().astype(int)]
-    covariances = noise.covariances[joints]
-    white = GroupSmoother(covariances, frame_rate, mixture, n_ignored=N_IGNORED)
-    if not len(joints) or not mixture.window <= white.length <= len(samples):
-        return 0.0
-    windows = white.windows(len(samples), N_OVERLAPS)
-    known = windows.extract(observed[:, joints].astype(float), windows.starts)
-    is_known = known.mean(axis=1) >= MIN_OBSERVED
-    deviations = np.sqrt(np.einsum("jcc->j", covariances) / N_CHANNELS)
-    if not is_known.any() or np.median(deviations) < MIN_NOISE_DEG:
-        return 0.0
-    chosen = samples[:, joints] - samples[:, joints].mean(axis=0)
-    evidence = {}
-    for exponent in (0.0, *EXPONENTS):
-        squared_ratio = deviation_ratio(white.length, exponent) ** 2
-        smoother = GroupSmoother(
-            covariances * squared_ratio, frame_rate, mixture, exponent, N_IGNORED
+    evidence = _Evidence(
+        samples[:, joints] - samples[:, joints].mean(axis=0), noise.covariances[joints],
+        observed[:, joints], frame_rate, mixture,
+    )  # fmt: skip
+    length = evidence.smoother(WHITE).length
+    if not len(joints) or not mixture.window <= length <= len(samples):
+        return WHITE
+    if not evidence.is_known.any():
+        return WHITE
+    found: dict[NoiseSpectrum, float] = {}
+    if evidence.deviation >= MIN_NOISE_DEG:
+        laws = (NoiseSpectrum(exponent) for exponent in EXPONENTS)
+        found = {law: mean for law, mean, _ in evidence.of(laws) if mean > MIN_EVIDENCE}
+    for filtered, mean, quartile in evidence.of(_filters(frame_rate)):
+        deviation = evidence.deviation * filtered.deviation_ratio(length)
+        if quartile > MIN_FILTERED_EVIDENCE and deviation >= MIN_NOISE_DEG:
+            found[filtered] = mean
+    return max(found, key=found.__getitem__, default=WHITE)
+
+
+def _filters(frame_rate: float) -> Iterable[NoiseSpectrum]:
+    for cutoff in CUTOFFS_HZ:
+        for n_runs in (1, 2):
+            yield NoiseSpectrum(cutoff=cutoff / frame_rate, n_runs=n_runs)
+
+
+@dataclass(frozen=True, eq=False)
+class _Evidence:
+    """How likely a take is with noise of different spectra."""
+
+    samples: Array
+    """Of the joints that are compared, about their mean, shape (n_frames, n_joints, 3)."""
+    covariances: Array
+    """Of their noise if it is white, shape (n_joints, 3, 3)."""
+    observed: Flags
+    frame_rate: float
+    mixture: MotionMixture
+
+    @cached_property
+    def deviation(self) -> float:
+        """Deviation of white noise in the median of the joints, degrees."""
+        variances = np.einsum("jcc->j", self.covariances) / N_CHANNELS
+        return float(np.sqrt(np.median(variances)))
+
+    def smoother(self, spectrum: NoiseSpectrum) -> GroupSmoother:
+        """Return the smoother for noise of a spectrum."""
+        white = GroupSmoother(
+            self.covariances, self.frame_rate, self.mixture, spectrum, N_IGNORED
         )
-        likelihoods = smoother.log_likelihoods(chosen, windows, FACTORS)
-        evidence[exponent] = float(likelihoods[is_known].mean(axis=0).max())
-    best = max(evidence, key=evidence.__getitem__)
-    return best if evidence[best] > evidence[0.0] + MIN_EVIDENCE else 0.0
+        ratio = spectrum.deviation_ratio(white.length)
+        return replace(white, noise=self.covariances * ratio**2)
+
+    def of(
+        self, spectra: Iterable[NoiseSpectrum]
+    ) -> Iterable[tuple[NoiseSpectrum, float, float]]:
+        """Yield spectra with their scale, the mean log-likelihood relative to white noise, and
+        its lower quartile over the joints."""
+        for spectrum in spectra:
+            likelihoods, factor = self._by_joint(spectrum)
+            gains = likelihoods - self._white
+            mean = float(gains.sum() / self.is_known.sum())
+            gains /= np.maximum(self.is_known.sum(axis=0), 1)
+            yield replace(spectrum, scale=factor), mean, float(np.quantile(gains, 0.25))
+
+    def _by_joint(self, spectrum: NoiseSpectrum) -> tuple[Array, float]:
+        """Return the log-likelihood of each joint with the best factor of the noise."""
+        found = self.smoother(spectrum).log_likelihoods(self.samples, self._windows, FACTORS)
+        of_joints = np.where(self.is_known[..., None], found, 0.0).sum(axis=0)
+        best = int(of_joints.sum(axis=0).argmax())
+        return of_joints[:, best], float(FACTORS[best])
+
+    @cached_property
+    def _white(self) -> Array:
+        return self._by_joint(WHITE)[0]
+
+    @cached_property
+    def is_known(self) -> NDArray[np.bool_]:
+        """Whether enough of a joint was observed in a window, shape (n_windows, n_joints)."""
+        known = self._windows.extract(self.observed.astype(float), self._windows.starts)
+        return np.asarray(known.mean(axis=1) >= MIN_OBSERVED)
+
+    @cached_property
+    def _windows(self) -> Windows:
+        return self.smoother(WHITE).windows(len(self.samples), N_OVERLAPS)

@@ -6,9 +6,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import logsumexp
 
 from ...arrays import Array
-from ..window_priors import Windows
+from ..window_priors import WHITE, NoiseSpectrum, Windows
 from .motion_mixture import MotionMixture
 from .principal_axes import principal_axes
 
@@ -73,8 +74,7 @@ class GroupSmoother:
         Covariances, square degrees or centimeters.
     frame_rate : float, Hz
     mixture : MotionMixture
-    noise_exponent : float
-        Of the noise's power over the frequency (`noise_spectrum`); 0 for white noise.
+    noise_spectrum : NoiseSpectrum
     n_ignored : int
         Number of the slowest coefficients that do not count.
 
@@ -87,7 +87,7 @@ class GroupSmoother:
     noise: Array
     frame_rate: float
     mixture: MotionMixture
-    noise_exponent: float = 0.0
+    noise_spectrum: NoiseSpectrum = WHITE
     n_ignored: int = 0
 
     def __call__(self, samples: Array) -> tuple[Array, Array]:
@@ -139,16 +139,16 @@ class GroupSmoother:
                 projected = coefficients[:, group].transpose(1, 0, 2) @ basis.vectors
                 squares = np.square(projected)
                 squares = squares.reshape(*projected.shape[:2], *basis.variances.shape[1:])
-                for index, factor in enumerate(factors):
-                    total = basis.variances + factor**2 * variance[:, None, None]
-                    log_density = _log_density(squares, total, self._density_at_zero(total))
-                    found[block, group, index] = np.logaddexp.reduce(log_density, axis=1)
+                noise = np.square(factors)[:, None] * variance
+                total = basis.variances + noise[..., None, None]
+                log_density = _log_density(squares, total, self._density_at_zero(total))
+                found[block, group] = logsumexp(log_density, axis=0)
         return np.asarray(found - of_units)
 
     def windows(self, n_frames: int, n_overlaps: int = N_OVERLAPS) -> Windows:
         """Return the windows of a take."""
         return Windows(
-            n_frames, self.length, self._density, n_overlaps, noise_exponent=self.noise_exponent
+            n_frames, self.length, self._density, n_overlaps, noise_spectrum=self.noise_spectrum
         )
 
     def _average_windows(
@@ -225,7 +225,7 @@ class GroupSmoother:
 
     def _density_at_zero(self, total: Array) -> Array:
         """Return the log-density of each component at zero: `_GroupFilters.log_density`."""
-        return np.asarray(np.log(self.mixture.weights) - 0.5 * np.log(total).sum(axis=(0, 2)))
+        return np.asarray(np.log(self.mixture.weights) - 0.5 * np.log(total).sum(axis=(-3, -1)))
 
     def _smooth(
         self, coefficients: Array, filters: _GroupFilters
@@ -279,9 +279,17 @@ def _log_density(squares: Array, total: Array, density_at_zero: Array) -> Array:
     ----------
     squares : shape (n_axes, n_windows, n_components, n_coefficients)
         Of the coefficients along the eigenvectors.
-    total : shape (n_axes, n_components, n_coefficients)
-        Variance along them.
-    density_at_zero : shape (n_components,)
+    total : shape (n_factors, n_axes, n_components, n_coefficients)
+        Variance along them, for each factor of the noise.
+    density_at_zero : shape (n_factors, n_components)
+
+    Returns
+    -------
+    shape (n_components, n_windows, n_factors)
     """
-    exponents = np.einsum("awkn,akn->wk", squares, 1.0 / total)
-    return np.asarray(density_at_zero - 0.5 * exponents)
+    n_axes, _, n_components, n_coefficients = squares.shape
+    shape = n_components, -1, n_axes * n_coefficients
+    of_windows = squares.transpose(2, 1, 0, 3).reshape(shape)
+    inverses = (1.0 / total).transpose(2, 0, 1, 3).reshape(shape)
+    exponents = of_windows @ inverses.transpose(0, 2, 1)
+    return np.asarray(density_at_zero.T[:, None] - 0.5 * exponents)

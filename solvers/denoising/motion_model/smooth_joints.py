@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ..channels import Smoothed
+from ..window_priors import WHITE, NoiseSpectrum
 from .joint_groups import find_joint_groups
 from .joint_noise import MAX_CONSTANT_RANGE
 from .motion_mixture import N_CHANNELS, MotionMixture
@@ -36,15 +37,14 @@ class MixtureSmoother:
         The first one is of joints.
     parents : shape (n_joints,), optional
         -1 where there is none. Points have none.
-    noise_exponent : float
-        Of the noise's power over the frequency (`noise_spectrum`); 0 for white noise.
+    noise_spectrum : NoiseSpectrum
     """
 
     noise: Array
     frame_rate: float
     mixtures: Sequence[MotionMixture]
     parents: NDArray[np.intp] | None = None
-    noise_exponent: float = 0.0
+    noise_spectrum: NoiseSpectrum = WHITE
 
     def __call__(self, samples: Array) -> Smoothed | None:
         """Return the smoothed take; None if it is shorter than a window.
@@ -64,7 +64,7 @@ class MixtureSmoother:
             n_joints, size = mixture.n_joints, N_CHANNELS * mixture.n_joints
             groups = find_joint_groups(parents, moves, n_joints)
             noise = self._noise_of(groups).reshape(len(groups), size, size)
-            smooth = GroupSmoother(noise, self.frame_rate, mixture, self.noise_exponent)
+            smooth = GroupSmoother(noise, self.frame_rate, mixture, self.noise_spectrum)
             if len(samples) < smooth.length:
                 return None
             found = smooth(joints[:, groups].reshape(len(samples), len(groups), size))

@@ -11,11 +11,12 @@ from ..channels import Channels, Estimate
 from ..motion_model import MAX_CONSTANT_RANGE
 from ..outliers import OFFSET_DEVIATION
 from ..window_priors import (
+    WHITE,
     FilterBases,
     FilterBasesSettings,
+    NoiseSpectrum,
     WindowPrior,
     Windows,
-    deviation_ratio,
 )
 from .estimate_channels import estimate_channels
 from .prior_selection import build_examples_prior, build_take_prior, select_prior
@@ -42,21 +43,21 @@ def estimate_in_groups(
     frame_rate: float,
     bases: FilterBases | None,
     progress: Progress,
-    noise_exponent: float = 0.0,
+    noise_spectrum: NoiseSpectrum = WHITE,
     measured: NDArray[np.bool_] | None = None,
 ) -> tuple[Estimate, str]:
     """Estimate all channels; return them with a sentence on the prior.
 
     Samples known to be errors, shape (n_frames, n_channels), are outliers from the start. The
-    noise has this exponent (`noise_spectrum`); if it is not 0, the take must be complete and
-    at least as long as a window. Its size is measured by the samples that are `measured`, of
-    the same shape, or else by all that are observed.
+    noise has this spectrum; if it is not white, the take must be complete and at least as long
+    as a window. Its size is measured by the samples that are `measured`, of the same shape, or
+    else by all that are observed.
     """
     n_frames, n_channels = channels.flat.shape
     window, pattern_rate = _window_of(bases)
     length = window_length(bases, frame_rate)
     windows = Windows(
-        max(n_frames, length), length, length / window, noise_exponent=noise_exponent
+        max(n_frames, length), length, length / window, noise_spectrum=noise_spectrum
     )
     take = _estimate_roughly(channels.flat, is_error, windows, measured)
     is_unknown = np.isnan(take.noisy) & (take.n_observed == 0)
@@ -142,7 +143,7 @@ def _estimate_roughly(
     despiked = np.where(padded_errors, np.nan, padded)
     despiked = remove_outliers(despiked, SPIKE_HALF_WIDTH)
     samples = despiked if measured is None else np.where(measured, despiked, np.nan)
-    ratio = deviation_ratio(windows.length, windows.noise_exponent)
+    ratio = windows.noise_spectrum.deviation_ratio(windows.length)
     noise = np.maximum(ratio * estimate_noise(samples), MIN_NOISE)
     return RoughTake(
         padded,

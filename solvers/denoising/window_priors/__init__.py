@@ -7,20 +7,21 @@ from .filter_bases import (
     load_filter_bases,
 )
 from .lag_covariance import LagProducts, find_leading_eigenpairs
-from .noise_spectrum import deviation_ratio
+from .noise_spectrum import WHITE, NoiseSpectrum
 from .window_prior import SmoothPrior, WindowPrior, build_smooth_prior, mix_priors
 from .windows import N_OVERLAPS, Windows
 
 __all__ = [
     "N_OVERLAPS",
+    "WHITE",
     "FilterBases",
     "FilterBasesSettings",
     "LagProducts",
+    "NoiseSpectrum",
     "SmoothPrior",
     "WindowPrior",
     "Windows",
     "build_smooth_prior",
-    "deviation_ratio",
     "find_leading_eigenpairs",
     "learn_filter_bases",
     "load_filter_bases",

@@ -8,7 +8,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from .noise_spectrum import noise_spectrum
+from .noise_spectrum import WHITE, NoiseSpectrum
 
 N_OVERLAPS = 6
 """Number of windows, and of trial gaps of a limb, that start within the length of one. Chosen
@@ -42,8 +42,7 @@ class Windows:
     """Number of windows that start within the length of one, as far as frames allow."""
     solve_gaps: bool = True
     """Solve long gaps exactly; otherwise fill them iteratively, like short ones."""
-    noise_exponent: float = 0.0
-    """Of the noise's power over the frequency, see `noise_spectrum`; 0 for white noise."""
+    noise_spectrum: NoiseSpectrum = WHITE
 
     @property
     def with_less_overlap(self) -> "Windows":
@@ -107,7 +106,7 @@ class Windows:
     def noise_deviations(self) -> Array:
         """Deviation of the noise of each coefficient, relative to that of a sample: 1 for white
         noise. Shape (length,)."""
-        return np.sqrt(noise_spectrum(self.length, self.noise_exponent))
+        return np.sqrt(self.noise_spectrum.variances(self.length))
 
     @cached_property
     def _cosines(self) -> Array:

@@ -17,6 +17,7 @@ from ..shared.noise import (
     corrupt,
     corrupt_in_bursts,
     learn_channels,
+    low_passed,
     one_over_f,
     seeded,
 )
@@ -42,6 +43,8 @@ class Condition:
     """Factor of the noise of the second half."""
     drift: float = 0.0
     """Standard deviation of 1/f noise, degrees."""
+    filtered: float = 0.0
+    """Standard deviation of noise, degrees, after a filter of 8 Hz."""
     limb: str = ""
     """Which limb is missing for a second."""
     is_held: bool = False
@@ -56,7 +59,7 @@ class Condition:
     @property
     def is_clean(self) -> bool:
         """Whether the take is given as it is."""
-        noise = self.sigma, self.outliers, self.bursts, self.drift
+        noise = self.sigma, self.outliers, self.bursts, self.drift, self.filtered
         return not any(noise) and not (self.limb or self.dropped or self.t_pose_frames)
 
     def __str__(self) -> str:
@@ -71,6 +74,7 @@ CONDITIONS = (
     Condition("sigma 3, then 0.3", sigma=3.0, quiet=0.1),
     Condition("bursts", sigma=0.3, bursts=0.02),
     Condition("1/f drift", drift=3.0),
+    Condition("2, filtered at 8 Hz", filtered=2.0),
     Condition("arm lost 1 s", limb="arm"),
     Condition("leg lost 1 s", limb="leg"),
     Condition("arm held 1 s", sigma=0.3, limb="arm", is_held=True),
@@ -118,6 +122,8 @@ class Case:
         result[half:] = self.clean[half:] + condition.quiet * (result - self.clean)[half:]
         if condition.drift:
             result += condition.drift * one_over_f(result.shape, rng)
+        if condition.filtered:
+            result += condition.filtered * low_passed(result.shape, self.truth.frame_rate, rng)
         for joints, frames in self._repeats:
             columns = self.channels.of_joints(joints)
             if 0 in joints:
@@ -138,7 +144,8 @@ class Case:
     def is_good(self) -> NDArray[np.bool_]:
         """Where a joint is observed and no outlier, shape (n_frames, n_joints)."""
         error = np.abs(self.corrupted - self.clean)
-        limit = 5.0 * self.condition.sigma + 3.0 * self.condition.drift + 1e-6
+        lasting = self.condition.drift + self.condition.filtered
+        limit = 5.0 * self.condition.sigma + 3.0 * lasting + 1e-6
         good = np.ones(self.truth.rotations.shape[:2], dtype=np.bool_)
         for joint in range(self.truth.n_joints):
             columns = self.channels.of_joints([joint])

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from zlib import crc32
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from solvers.arrays import Array
@@ -28,6 +29,7 @@ STILL = 0.3
 METERS_PER_DEGREE = 0.005
 OUTLIERS = (20.0, 60.0)
 """Degrees; outliers lie this far from the truth, to either side."""
+FILTER_HZ = 8.0
 BURSTS = (2, 8)
 """Frames, shortest and longest."""
 
@@ -105,6 +107,13 @@ def corrupt_in_bursts(
             direction = rng.normal(size=len(group))
             noisy[run, group] += rng.uniform(*OUTLIERS) * direction / np.linalg.norm(direction)
     return noisy
+
+
+def low_passed(shape: tuple[int, int], rate: float, rng: np.random.Generator) -> Array:
+    """Return noise of deviation 1 after a filter of 8 Hz, forward and backward: no lag."""
+    coefficients = scipy.signal.butter(2, FILTER_HZ, fs=rate)
+    noise = scipy.signal.filtfilt(*coefficients, rng.normal(size=shape), axis=0)
+    return np.asarray(noise / noise.std())
 
 
 def one_over_f(shape: tuple[int, int], rng: np.random.Generator) -> Array:

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.fft import dct
+from scipy.signal import butter, filtfilt, lfilter
 
 from solvers.denoising import denoise, learn_filter_bases
-from solvers.denoising.window_priors.noise_spectrum import deviation_ratio, noise_spectrum
+from solvers.denoising.window_priors import WHITE, NoiseSpectrum
 from solvers.motion import Motion
 from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
@@ -15,17 +16,36 @@ RATE = 30.0
 COLORED = "The jitter lasts several frames"
 
 
-def power_law_noise(shape: tuple[int, ...], exponent: float, seed: int = 5) -> np.ndarray:
-    """Noise of deviation 1, whose power falls with this exponent of the frequency."""
-    spectrum = np.fft.rfft(np.random.default_rng(seed).normal(size=shape), axis=0)
-    frequencies = np.maximum(np.arange(len(spectrum)), 1.0)
-    spectrum *= frequencies.reshape(-1, *[1] * (len(shape) - 1)) ** (-0.5 * exponent)
-    noise = np.fft.irfft(spectrum, n=shape[0], axis=0)
+def shaped_noise(shape: tuple[int, ...], spectrum: NoiseSpectrum, seed: int = 5) -> np.ndarray:
+    """Noise of deviation 1 with this power over the frequency of a long take."""
+    noise = np.fft.rfft(np.random.default_rng(seed).normal(size=shape), axis=0)
+    frequencies = np.maximum(np.arange(len(noise)), 1.0) / shape[0]
+    gains = frequencies ** (-0.5 * spectrum.exponent)
+    gains *= (1.0 + (frequencies / spectrum.cutoff) ** 4) ** (-0.5 * spectrum.n_runs)
+    noise = np.fft.irfft(noise * gains.reshape(-1, *[1] * (len(shape) - 1)), n=shape[0], axis=0)
     return np.asarray(noise / noise.std())
 
 
+def power_law_noise(shape: tuple[int, ...], exponent: float, seed: int = 5) -> np.ndarray:
+    return shaped_noise(shape, NoiseSpectrum(exponent), seed)
+
+
+def filtered_noise(shape: tuple[int, ...], cutoff: float, n_runs: int) -> np.ndarray:
+    """White noise of deviation 1 after a filter of second order, cutoff in cycles per frame."""
+    b, a = butter(2, 2.0 * cutoff)
+    noise = np.random.default_rng(6).normal(size=shape)
+    return np.asarray((lfilter if n_runs == 1 else filtfilt)(b, a, noise, axis=0))
+
+
 def with_noise(motion: Motion, degrees: float, exponent: float) -> Motion:
-    vectors = degrees * power_law_noise((*motion.rotations.shape[:2], 3), exponent)
+    return with_vectors(motion, degrees * power_law_noise(vectors_shape(motion), exponent))
+
+
+def vectors_shape(motion: Motion) -> tuple[int, int, int]:
+    return *motion.rotations.shape[:2], 3
+
+
+def with_vectors(motion: Motion, vectors: np.ndarray) -> Motion:
     vectors[:, [motion.skeleton.is_end_site(joint) for joint in range(motion.n_joints)]] = 0.0
     noise = quaternion_from_rotation_vector(np.radians(vectors))
     return motion.with_poses(multiply(motion.rotations, noise))
@@ -40,24 +60,77 @@ def walk() -> Motion:
     return walking_gait(GaitSettings(duration=6.0, frame_rate=RATE))
 
 
-@pytest.mark.parametrize("exponent", [0.5, 1.0])
+SPECTRA = [
+    NoiseSpectrum(0.5),
+    NoiseSpectrum(1.0),
+    NoiseSpectrum(cutoff=0.2),
+    NoiseSpectrum(cutoff=0.2, n_runs=2),
+]
+
+
+@pytest.mark.parametrize("spectrum", SPECTRA)
 @pytest.mark.parametrize("length", [16, 40])
-def test_spectrum_is_that_of_windows_of_a_long_take(length, exponent):
-    noise = power_law_noise((64 * length, 300), exponent)
+def test_spectrum_is_that_of_windows_of_a_long_take(length, spectrum):
+    noise = shaped_noise((64 * length, 300), spectrum)
     windows = noise.reshape(64, length, 300)
     measured = np.square(dct(windows, axis=1, norm="ortho")).mean(axis=(0, 2))
     differences = np.sqrt(np.square(np.diff(noise, 3, axis=0)).mean() / 20.0)
 
-    relative = noise_spectrum(length, exponent) * deviation_ratio(length, exponent) ** 2
+    relative = spectrum.variances(length) * spectrum.deviation_ratio(length) ** 2
 
-    assert_allclose(measured[1:] / differences**2, relative[1:], rtol=0.3)
-    assert_allclose(measured[4:] / differences**2, relative[4:], rtol=0.12)
+    slow = slice(1, round(2 * min(spectrum.cutoff, 0.5) * length))
+    assert_allclose(measured[slow] / differences**2, relative[slow], rtol=0.3)
+    assert_allclose(measured[slow][3:] / differences**2, relative[slow][3:], rtol=0.12)
 
 
 def test_white_noise_has_the_same_variance_at_all_frequencies():
-    assert_allclose(noise_spectrum(15, 0.0), 1.0)
-    assert deviation_ratio(15, 0.0) == pytest.approx(1.0)
-    assert noise_spectrum(15, 1.5).mean() == pytest.approx(1.0)
+    assert_allclose(WHITE.variances(15), 1.0)
+    assert WHITE.deviation_ratio(15) == pytest.approx(1.0)
+    assert NoiseSpectrum(1.5).variances(15).mean() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("n_runs", [1, 2])
+def test_each_run_of_the_filter_leaves_half_of_the_power_at_its_cutoff(n_runs):
+    variances = NoiseSpectrum(cutoff=0.25, n_runs=n_runs).variances(400)
+
+    assert variances[200] / variances[1] == pytest.approx(0.5**n_runs, rel=1e-4)
+
+
+@pytest.mark.parametrize(("rate", "n_runs"), [(30.0, 1), (30.0, 2), (60.0, 2), (120.0, 1)])
+def test_filtered_noise_is_found_and_more_of_it_removed(rate, n_runs, monkeypatch):
+    walk = walking_gait(GaitSettings(duration=6.0, frame_rate=rate))
+    degrees = 3.0 * np.sqrt(rate / 30.0)
+    noise = degrees * filtered_noise(vectors_shape(walk), 8.0 / rate, n_runs)
+    noisy = with_vectors(walk, noise)
+
+    cleaned = denoise(noisy)
+    set_white(monkeypatch)
+    as_white = denoise(noisy)
+
+    assert COLORED in cleaned.prior_used
+    assert isinstance(cleaned.recording, Motion)
+    assert isinstance(as_white.recording, Motion)
+    error = mean_error(cleaned.recording, walk)
+    assert error < 0.85 * mean_error(as_white.recording, walk)
+
+
+def set_white(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "solvers.denoising.default_method.find_noise_spectrum", lambda *_: WHITE
+    )
+
+
+@pytest.mark.parametrize("cutoff", [4.0, 6.0, 9.0])
+def test_smooth_takes_without_noise_stay_as_they_are(walk, cutoff):
+    b, a = butter(2, 2.0 * cutoff / RATE)
+    rotations = filtfilt(b, a, walk.rotations, axis=0)
+    smooth = walk.with_poses(rotations / np.linalg.norm(rotations, axis=-1, keepdims=True))
+
+    cleaned = denoise(smooth)
+
+    assert COLORED not in cleaned.prior_used
+    assert isinstance(cleaned.recording, Motion)
+    assert mean_error(cleaned.recording, smooth) < 0.05
 
 
 @pytest.mark.parametrize("degrees", [2.0, 4.0])
@@ -65,7 +138,7 @@ def test_colored_noise_is_found_and_more_of_it_removed(walk, degrees, monkeypatc
     noisy = with_noise(walk, degrees, 1.0)
 
     cleaned = denoise(noisy)
-    monkeypatch.setattr("solvers.denoising.default_method.noise_exponent", lambda *_: 0.0)
+    set_white(monkeypatch)
     as_white = denoise(noisy)
 
     assert COLORED in cleaned.prior_used
@@ -97,7 +170,7 @@ def test_path_has_an_exponent_of_its_own(walk, exponent, is_colored, monkeypatch
     noisy = with_noise(walk, 3.0, 1.0).with_poses(root_positions=walk.root_positions + noise)
 
     cleaned = denoise(noisy)
-    monkeypatch.setattr("solvers.denoising.default_method.noise_exponent", lambda *_: 0.0)
+    set_white(monkeypatch)
     as_white = denoise(noisy)
 
     assert COLORED in cleaned.prior_used
