@@ -1,7 +1,5 @@
 """Contacts of feet, hands, knees and hips, keyed on properties that the animator can edit."""
 
-import hashlib
-
 import bpy
 import numpy as np
 from bpy.app import handlers
@@ -13,7 +11,8 @@ from ..blender.compat import Source
 from ..scene import history
 from ..scene.played_time import played_time
 from .bone_channels import animated_curves
-from .curves import CONSTANT, GENERATED, Channel, write_values
+from .curves import CONSTANT, GENERATED, MEASURED, ON_FRAME, Channel, write_values
+from .detected_contacts import find_detected, store_detected
 
 FOOT_PROPERTIES = ("mocap_contact_left", "mocap_contact_right")
 SUPPORT_PROPERTIES = (
@@ -26,8 +25,6 @@ SUPPORT_PROPERTIES = (
 """In the order of `SUPPORTS` of the solvers."""
 PROPERTIES = FOOT_PROPERTIES + SUPPORT_PROPERTIES
 GROUP = "Contacts"
-DETECTED = "mocap_assist_detected_contacts"
-"""Property of an action: a digest of its contact keys, if they were detected."""
 
 
 def read_contacts(
@@ -70,9 +67,26 @@ def contact_keys(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> list[A
     return [np.empty((0, 2)) if each is None else each.keys for each in channels]
 
 
-def animators_contacts(source: Source, frames: NDArray[np.float64]) -> Flags | None:
-    """Return the contacts, but only if the animator keyed them or edited those detected."""
-    return None if _are_keys_unchanged(*source) else read_contacts(*source, frames)
+def animators_contacts(source: Source, frames: NDArray[np.float64]) -> Array | None:
+    """Return the contacts that the animator keyed, and those detected whose keys were edited.
+
+    Shape (n_frames, 7), in the order of `PROPERTIES`: 1 in contact, 0 not, NaN where contacts
+    are to be detected. None if that is everywhere. The contacts at both sides of a key that was
+    moved or added are the animator's, and so is the time in which a deleted contact was. Feet
+    are to be detected outside their keys; the last key of another part holds to the end.
+    """
+    keys = _keys_by_name(*source)
+    detected = find_detected(*source, keys)
+    contacts = np.full((len(frames), len(PROPERTIES)), np.nan)
+    for column, (name, rows) in zip(contacts.T, keys.items(), strict=True):
+        if not len(rows):
+            continue
+        key = np.searchsorted(rows[:, 0], frames + ON_FRAME, side="right") - 1
+        is_animators = (key >= 0) & ~detected[name][key]
+        if name in FOOT_PROPERTIES:
+            is_animators &= frames <= rows[-1, 0] + ON_FRAME
+        column[is_animators] = rows[key[is_animators], 1] > 0.5
+    return None if np.isnan(contacts).all() else contacts
 
 
 def write_contacts(
@@ -83,6 +97,7 @@ def write_contacts(
     contacts: Flags,
     *,
     detected: bool = False,
+    edited: Array | None = None,
 ) -> None:
     """Key custom properties of the armature wherever a foot comes down or lifts off.
 
@@ -93,28 +108,47 @@ def write_contacts(
     they are moved, added and removed like any others in the Dope Sheet. The first and the last
     frame are keyed too, and so mark which frames have contacts.
 
-    Keys that were `detected` have the type GENERATED, and the action remembers them: unless
-    one of them is edited, contacts are detected again next time.
+    Keys that were `detected` have the type GENERATED, and the action remembers them: contacts
+    are detected again next time, but for those whose keys are edited. Those that are `edited`
+    already, as `animators_contacts` returns them, are keyed as they are.
     """
     bag = compat.ensure_channelbag(action, slot)
-    keys = contact_keys(action, slot)
-    detected &= _are_keys_unchanged(action, slot) or not any(map(len, keys))
-    n_feet = len(FOOT_PROPERTIES)
-    are_rare = not contacts[:, n_feet:].any() and not any(map(len, keys[n_feet:]))
-    for name, standing in zip(PROPERTIES, contacts.T, strict=False):
+    keys = _keys_by_name(action, slot)
+    were_detected = find_detected(action, slot, keys)
+    n_feet, n_parts = len(FOOT_PROPERTIES), contacts.shape[1]
+    is_detected = np.full(contacts.shape, detected)
+    if edited is not None:
+        is_detected &= np.isnan(edited[:, :n_parts])
+        contacts = np.where(np.isnan(edited[:, :n_parts]), contacts, edited[:, :n_parts] == 1.0)
+    had_others = any(len(keys[name]) for name in SUPPORT_PROPERTIES)
+    are_rare = not contacts[:, n_feet:].any() and not had_others
+    for name, standing, found in zip(PROPERTIES, contacts.T, is_detected.T, strict=False):
         _declare(armature, name, int(standing[0]))
         if name in SUPPORT_PROPERTIES and are_rare:
             continue
         curve = bag.fcurves.find(_path(name), index=0)
         if curve is None:
             curve = compat.new_curve(bag, _path(name), 0, GROUP)
-        changes = np.flatnonzero(np.diff(standing)) + 1
+        changes = np.flatnonzero(np.diff(standing) | np.diff(found)) + 1
         keyed = np.unique([0, *changes, len(frames) - 1])
         values = standing[keyed].astype(np.float64)
-        types = np.full(len(keyed), GENERATED, np.uint8) if detected else None
+        types = np.where(found[keyed], GENERATED, MEASURED).astype(np.uint8)
         write_values(curve, frames[keyed], values, types, interpolation=CONSTANT)
-    if detected:
-        action[DETECTED] = _digest(action, slot)
+    written = _keys_by_name(action, slot)
+    flags = {
+        name: np.isin(rows[:, 0], keys[name][were_detected[name], 0])
+        for name, rows in written.items()
+    }
+    for name, found in zip(PROPERTIES, is_detected.T, strict=False):
+        times = written[name][:, 0]
+        index = np.searchsorted(frames, times - ON_FRAME).clip(max=len(frames) - 1)
+        is_new = np.abs(frames[index] - times) <= ON_FRAME
+        flags[name][is_new] = found[index[is_new]]
+    store_detected(action, slot, written, flags)
+
+
+def _keys_by_name(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> dict[str, Array]:
+    return dict(zip(PROPERTIES, contact_keys(action, slot), strict=True))
 
 
 def register() -> None:
@@ -154,19 +188,6 @@ def _declare(armature: bpy.types.Object, name: str, value: int) -> None:
         max=1,
         description="1 while this part of the body bears on the floor, 0 while it moves",
     )
-
-
-def _are_keys_unchanged(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> bool:
-    """Whether the contact keys are as they were detected."""
-    return bool(action.get(DETECTED) == _digest(action, slot))
-
-
-def _digest(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> str:
-    keys = [each.ravel().tolist() for each in contact_keys(action, slot)]
-    n_feet = len(FOOT_PROPERTIES)
-    known = keys if keys[-1] else keys[:-1]  # Without hips it is as before they had keys,
-    text = repr(known if any(keys[n_feet:]) else keys[:n_feet])  # and of feet alone, too.
-    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _path(name: str) -> str:

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import JointLimits
 from ..actions.armature_read import read_take
 from ..actions.armature_write import (
@@ -66,8 +67,8 @@ class ArmatureReading(NamedTuple):
             return None
         return read_limits(self.armature, self.raw, chosen)
 
-    def contacts(self) -> NDArray[np.bool_] | None:
-        """Return the contacts of each foot as keyed by the animator."""
+    def contacts(self) -> Array | None:
+        """Return the contacts that the animator keyed or edited, as `animators_contacts`."""
         return animators_contacts(self.played, self.raw.frames)
 
     def present(self, chosen: frozenset[str]) -> Steps[Recordings | None]:
@@ -104,8 +105,15 @@ class ArmatureReading(NamedTuple):
         )
         now = self._resolve(self.references, self.raw)
         if cleaned.planted is not None:
-            contacts, detected = cleaned.planted.all_contacts, now.contacts() is None
-            write_contacts(now.armature, action, slot, take.frames, contacts, detected=detected)
+            write_contacts(
+                now.armature,
+                action,
+                slot,
+                take.frames,
+                cleaned.planted.all_contacts,
+                detected=True,
+                edited=now.contacts(),
+            )
         history.record(action, now.played, entry)
         if choices.result_as is CleanOutput.DELTA_LAYER:
             made = SourceReference.of((action, slot))

@@ -56,8 +56,8 @@ def write_planted(
     _, armature, played = read.find()
     action, slot = yield from write_take.steps(armature, played, take, result.moved, {})
     _, armature, played = read.find()
-    detected = animators_contacts(played, take.frames) is None
-    write_contacts(armature, action, slot, take.frames, planted.all_contacts, detected=detected)
+    edited, contacts = animators_contacts(played, take.frames), planted.all_contacts
+    write_contacts(armature, action, slot, take.frames, contacts, detected=True, edited=edited)
     entry = {
         "operation": "plant_feet",
         "settings": history.json_ready(*settings),

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...solvers.arrays import Array
 from ...solvers.denoising import (
@@ -79,8 +78,8 @@ class Finish:
     """Of the rig."""
     planting: PlantSettings | None = None
     """None leaves the feet alone."""
-    contacts: NDArray[np.bool_] | None = None
-    """Contacts of the feet, shape (n_frames, 2), as keyed by the animator."""
+    contacts: Array | None = None
+    """Contacts that the animator keyed, shape (n_frames, 7); NaN where they are detected."""
 
 
 @dataclass(frozen=True, eq=False)

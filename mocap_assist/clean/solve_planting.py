@@ -2,9 +2,7 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...solvers.arrays import Array
 from ...solvers.denoising import Planted, PlantSettings, plant_feet
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
@@ -21,7 +19,7 @@ class Replanted:
 
 def plant(
     body: Motion,
-    contacts: NDArray[np.bool_] | None,
+    contacts: Array | None,
     settings: PlantSettings,
     *,
     progress: Progress = unwatched,

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from ...solvers.arrays import Flags
+from ...solvers.arrays import Array, Flags
 from ...solvers.denoising import Denoised, denoise
 from ...solvers.depth_scene import DepthRecording
 from ...solvers.motion import JointLimits, Motion, Tracks
@@ -46,7 +46,7 @@ def fix(
     problem: Problem | RebuildProblem | Tracks | DepthRecording,
     settings: FixSettings,
     *,
-    contacts: Flags | None = None,
+    contacts: Flags | Array | None = None,
     limits: JointLimits | None = None,
     show: Show = no_preview,
     progress: Progress = unwatched,

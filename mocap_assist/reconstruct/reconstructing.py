@@ -121,9 +121,10 @@ def write_reconstructed(
         reliability = dict(zip(names, values.T, strict=True))
         write_reliability(armature, action, slot, take.frames, reliability, term)
     if rebuilt.planted is not None:
-        detected = animators_contacts(played, take.frames) is None
-        contacts = rebuilt.planted.all_contacts
-        write_contacts(armature, action, slot, take.frames, contacts, detected=detected)
+        edited, contacts = animators_contacts(played, take.frames), rebuilt.planted.all_contacts
+        write_contacts(
+            armature, action, slot, take.frames, contacts, detected=True, edited=edited
+        )
     recorded = history.raw_of(played[0]) or played
     history.record(action, recorded, _entry(settings, rebuilt))
     assign_result(armature, action, slot, settings.choices.result_as)

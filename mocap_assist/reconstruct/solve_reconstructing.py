@@ -63,8 +63,8 @@ class RebuildFinish:
     """Blend weights, shape (n_frames,): below 1 only next to unchanged frames."""
     planting: PlantSettings | None
     """None leaves the feet alone."""
-    contacts: NDArray[np.bool_] | None
-    """Contacts of the feet, shape (n_frames, 2), as keyed by the animator."""
+    contacts: Array | None
+    """Contacts that the animator keyed, shape (n_frames, 7); NaN where they are detected."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,7 @@ from ..motion.skeletons import (
 )
 from ..motion_fitting import fit_in_windows
 from ..progress import Progress, Remark, collect_remarks, unwatched, within
+from ..signals import find_runs
 from .body_supports import SUPPORTS, detect_supports
 from .legs import LegJoints, find_legs
 from .limb_goals import find_limb_contacts
@@ -65,7 +66,7 @@ class Planted:
 
 def plant_feet(
     motion: Motion,
-    contacts: Flags | None = None,
+    contacts: Flags | Array | None = None,
     *,
     humanoid_map: HumanoidMap | None = None,
     settings: PlantSettings = DEFAULT_SETTINGS,
@@ -91,9 +92,10 @@ def plant_feet(
     ----------
     motion : Motion
         Without gaps.
-    contacts : bool, shape (n_frames, 2) or (n_frames, 7)
+    contacts : bool or float, shape (n_frames, 2) or (n_frames, 7)
         When the left and the right foot, and each of `SUPPORTS`, are in contact; detected if
-        not given. All False changes nothing.
+        not given, and where NaN. All False changes nothing. A contact that is given in any of
+        its frames is held as given.
     humanoid_map : HumanoidMap
         Identifies the legs; found by name and structure if not given.
     settings : PlantSettings
@@ -121,7 +123,7 @@ def plant_feet(
     """
     humanoid_map = humanoid_map or find_humanoid_map(motion.skeleton)
     legs = _require_legs(motion, humanoid_map)
-    contacts = None if contacts is None else _check_contacts(contacts, motion)
+    given = _check_contacts(contacts, motion)
     if ankle_weights is None:
         ankle_weights = np.ones((motion.n_frames, len(SIDES)))
     remarks: list[Remark] = []
@@ -131,19 +133,16 @@ def plant_feet(
     motion = move_root(motion, -offsets)
     for start, stop in shot_ranges(motion, cuts):
         segment = motion.slice(start, stop) if cuts else motion
-        given = None if contacts is None else contacts[start:stop]
         if bool(cuts) and is_short_shot(stop - start, motion.frame_rate):
-            kept = np.zeros((stop - start, N_FEET + len(SUPPORTS)), dtype=np.bool_)
-            if given is not None:
-                kept[:, : given.shape[1]] = given
-            results.append(_planted(segment, kept, settings))
+            results.append(_planted(segment, given[start:stop] == 1.0, settings))
             continue
-        found = _find_contacts(segment, given, humanoid_map, legs, settings)
+        found = _find_contacts(segment, given[start:stop], humanoid_map, legs, settings)
+        may_yield = _find_yielding(found[:, :N_FEET], given[start:stop, :N_FEET])
         step = within(progress, start / motion.n_frames, stop / motion.n_frames)
         weights = ankle_weights[start:stop]
         results.append(
             _plant_segment(
-                segment, humanoid_map, legs, found, weights, settings, given is None, step
+                segment, humanoid_map, legs, found, weights, settings, may_yield, step
             )
         )
     progress(1.0, "Planted the feet")
@@ -153,29 +152,43 @@ def plant_feet(
 
 def _find_contacts(
     motion: Motion,
-    given: Flags | None,
+    given: Array,
     humanoid_map: HumanoidMap,
     legs: Sequence[LegJoints],
     settings: PlantSettings,
 ) -> Flags:
-    """Return the contacts of all parts, as given or detected, (n_frames, 7).
+    """Return the contacts of all parts, (n_frames, 7), as given, or detected where NaN.
 
     Hips are held only where contacts are given, such as those that an animator keyed: hips of
     real actors who lie shift by some centimeters, and to hold all that is detected moves clean
     takes by 1.8 cm (docs/benchmarks/contacts.md). They must be free to move, as nothing else
     could hold them.
     """
-    feet = detect_standing_feet(motion, humanoid_map, legs) if given is None else given
+    is_missing, hips = np.isnan(given), N_FEET + SUPPORTS.index("hips")
+    contacts = np.asarray(given == 1.0)
+    if is_missing[:, :N_FEET].any():
+        feet = detect_standing_feet(motion, humanoid_map, legs)
+        contacts[:, :N_FEET] |= is_missing[:, :N_FEET] & feet
     if not settings.hands_and_knees:
-        supports = np.zeros((motion.n_frames, len(SUPPORTS)), dtype=np.bool_)
-    elif feet.shape[1] > N_FEET:
-        supports = feet[:, N_FEET:]
-    else:
-        supports = detect_supports(motion, humanoid_map, legs)
-        supports[:, SUPPORTS.index("hips")] = False
-    contacts = np.hstack([feet[:, :N_FEET], supports])
-    contacts[:, N_FEET + SUPPORTS.index("hips")] &= settings.move_root
+        contacts[:, N_FEET:] = False
+    elif is_missing[:, N_FEET:hips].any():
+        found = detect_supports(motion, humanoid_map, legs)[:, : hips - N_FEET]
+        contacts[:, N_FEET:hips] |= is_missing[:, N_FEET:hips] & found
+    contacts[:, hips] &= settings.move_root
     return contacts
+
+
+def _find_yielding(contacts: Flags, given: Array) -> Flags:
+    """Return the frames in which a foot may be held less, shape (n_frames, 2).
+
+    These are the frames without a given contact, except in a contact that has one.
+    """
+    may_yield = np.isnan(given)
+    for foot in range(N_FEET):
+        for start, stop in find_runs(contacts[:, foot]):
+            if not may_yield[start:stop, foot].all():
+                may_yield[start:stop, foot] = False
+    return may_yield
 
 
 def _plant_segment(
@@ -185,7 +198,7 @@ def _plant_segment(
     contacts: Flags,
     ankle_weights: Array,
     settings: PlantSettings,
-    may_yield: bool,
+    may_yield: Flags,
     progress: Progress,
 ) -> Planted:
     """Plant what bears on the floor of a motion without cuts; contacts are (n_frames, 7)."""
@@ -206,9 +219,8 @@ def _plant_segment(
         on_limbs = [limb.slice(start, stop) for limb in limbs]
         weights = ankle_weights[start:stop]
         window = motion.slice(start, stop)
-        return plant_in_window(
-            window, windows, on_limbs, weights, settings, may_yield, progress
-        )
+        may = may_yield[start:stop]
+        return plant_in_window(window, windows, on_limbs, weights, settings, may, progress)
 
     result = fit_in_windows(motion, plant_window, progress)
     before_and_after = poses, forward_kinematics(result)
@@ -261,12 +273,17 @@ def _require_legs(motion: Motion, humanoid_map: HumanoidMap) -> tuple[LegJoints,
     return legs
 
 
-def _check_contacts(contacts: Flags, motion: Motion) -> Flags:
-    contacts = np.array(contacts, dtype=np.bool_)
+def _check_contacts(contacts: Flags | Array | None, motion: Motion) -> Array:
+    """Return given contacts, shape (n_frames, 7): 1, 0, or NaN where they are detected."""
     n_frames, widths = motion.n_frames, (N_FEET, N_FEET + len(SUPPORTS))
-    if contacts.shape not in [(n_frames, width) for width in widths]:
+    checked = np.full((n_frames, widths[1]), np.nan)
+    if contacts is None:
+        return checked
+    given = np.array(contacts, dtype=np.float64)
+    if given.shape not in [(n_frames, width) for width in widths]:
         raise InvalidMotionError(
             f"Contacts need shape ({n_frames}, 2), left and right, or ({n_frames}, 7) with"
-            f" hands, knees and hips, not {contacts.shape}."
+            f" hands, knees and hips, not {given.shape}."
         )
-    return contacts
+    checked[:, : given.shape[1]] = np.where(np.isnan(given), np.nan, given != 0.0)
+    return checked

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..motion import Motion
 from ..motion.humanoid import SIDES
 from ..motion_fitting import FittedMotion, fit_motion
@@ -42,7 +42,7 @@ def plant_in_window(
     limbs: Sequence[LimbContact],
     ankle_weights: Array,
     settings: PlantSettings,
-    may_yield: bool,
+    may_yield: Flags,
     progress: Progress,
 ) -> Motion:
     """Return a window of a take with all that bears on the floor planted.
@@ -59,8 +59,9 @@ def plant_in_window(
     limbs : sequence of LimbContact
     ankle_weights : shape (n_frames, 2), left and right
     settings : PlantSettings
-    may_yield : bool
-        Whether feet may be held less; not where an animator keyed the contacts.
+    may_yield : bool, shape (n_frames, 2), left and right
+        Where feet may be held less; not in contacts that an animator keyed. The root counts
+        only where no foot is in such a contact.
     progress : Progress
     """
     legs = [foot.leg for foot in feet]
@@ -69,26 +70,35 @@ def plant_in_window(
     start = FittedMotion(motion, motion, tuple(joints), settings.move_root)
     weights = [ankle_weights[:, SIDES.index(leg.side)] for leg in legs]
     yields = [np.ones(motion.n_frames) for _ in feet]
+    may = [may_yield[:, SIDES.index(leg.side)] for leg in legs]
+    keyed = [foot.contact & ~each for foot, each in zip(feet, may, strict=True)]
+    is_root_free = ~np.any(keyed, axis=0)
     for index in range(MAX_FITS):
         held = [foot.held_less(factors) for foot, factors in zip(feet, yields, strict=True)]
         goals = planting_goals(start, held, limbs, settings, weights)
         step = within(progress, 1.0 - 0.5**index, 1.0 - 0.5 ** (index + 1))
         planted = fit_motion(start, goals, step, "Planting the feet").motion
-        changes = [_change(motion, planted, foot) for foot in feet]
-        if not (may_yield and feet) or np.max(changes) <= MAX_EXCESS:
+        changes = [
+            _change(motion, planted, foot, is_root_free) * each
+            for foot, each in zip(feet, may, strict=True)
+        ]
+        if not feet or np.max(changes) <= MAX_EXCESS:
             break
         yields = [
-            _spread(np.maximum(factors * change**2, 1.0), motion.frame_rate)
-            for factors, change in zip(yields, changes, strict=True)
+            np.where(
+                each, _spread(np.maximum(factors * change**2, 1.0), motion.frame_rate), 1.0
+            )
+            for factors, change, each in zip(yields, changes, may, strict=True)
         ]
     progress(1.0, "Planted the feet")
     return planted
 
 
-def _change(before: Motion, after: Motion, foot: FootContact) -> Array:
+def _change(before: Motion, after: Motion, foot: FootContact, is_root_free: Flags) -> Array:
     """Return the change of a foot's leg and of the root, relative to the largest allowed one.
 
-    Shape (n_frames,). Jitter, which planting takes out of a foot, does not count.
+    Shape (n_frames,). Jitter, which planting takes out of a foot, does not count, and the root
+    only in frames in which it `is_root_free`.
     """
     leg, n_frames = list(foot.leg.chain), before.n_frames
     turns = multiply(after.rotations[:, leg], inverse(before.rotations[:, leg]))
@@ -96,7 +106,7 @@ def _change(before: Motion, after: Motion, foot: FootContact) -> Array:
     moves = after.root_positions - before.root_positions
     both = smooth_gaussian(np.hstack([rotations, moves]), SMOOTHING_S * before.frame_rate)
     turned = np.linalg.norm(both[:, :-3].reshape(n_frames, -1, 3), axis=2).max(axis=1)
-    moved = np.linalg.norm(both[:, -3:], axis=1)
+    moved = np.linalg.norm(both[:, -3:], axis=1) * is_root_free
     return np.asarray(
         np.maximum(turned / MAX_CHANGE_RAD, moved / (MAX_ROOT_CHANGE_M * foot.size))
     )

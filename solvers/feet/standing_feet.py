@@ -9,6 +9,7 @@ from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import SIDES, HumanoidMap, detect_contacts, known_foot_points
 from ..motion.skeletons import still_joints
 from ..signals import find_runs
+from .dragged_feet import find_dragged_feet
 from .legs import LegJoints
 
 MIN_HIP_HEIGHT = 0.2
@@ -37,12 +38,13 @@ def detect_standing_feet(
     The leg of a suit that only captures the upper body hangs stiff from the hips. Its foot
     slides as the hips rotate; to plant it would flex the knee for nothing. Nor do the feet of
     a body that sits or lies on the floor bear its weight: they touch the floor and may move.
+    A foot that is dragged over the floor moves, too.
     """
     contacts = detect_contacts(motion, humanoid_map)
     rests = rests_on_hips(motion, humanoid_map, legs, MIN_HIP_HEIGHT)
-    if rests.any():
-        weightless = contacts & ~rests[:, None]
-        contacts = without_short_contacts(weightless, MIN_CONTACT_S * motion.frame_rate)
+    moves = rests[:, None] | find_dragged_feet(motion, legs, contacts)
+    if (contacts & moves).any():
+        contacts = without_short_contacts(contacts & ~moves, MIN_CONTACT_S * motion.frame_rate)
     hips = humanoid_map.indices(motion.skeleton).get("hips", 0)
     is_still = still_joints(motion)
     if is_still[hips]:

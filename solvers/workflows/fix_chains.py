@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Flags
+from ..arrays import Array, Flags
 from ..denoising import Denoised, Planted, PlantSettings, denoise
 from ..depth_scene import DepthRecording
 from ..markers import Unswapped, find_marker_set, solve_skeleton, unswap_markers
@@ -55,7 +55,10 @@ class ChainResult:
 
 
 def clean_motion(
-    motion: Motion, planting: PlantSettings | None, contacts: Flags | None, progress: Progress
+    motion: Motion,
+    planting: PlantSettings | None,
+    contacts: Flags | Array | None,
+    progress: Progress,
 ) -> ChainResult:
     """Clean a motion and plant its feet."""
     denoised = denoise(motion, progress=within(progress, 0.0, 0.8))
@@ -151,7 +154,7 @@ def reconstruct_joints(
 def reconstruct_tracked(
     tracked: MotionFromJoints,
     planting: PlantSettings | None,
-    contacts: Flags | None,
+    contacts: Flags | Array | None,
     progress: Progress,
 ) -> ChainResult:
     """Reconstruct a motion that was solved from the joints of a camera, and plant the feet."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Flags
+from ..arrays import Array, Flags
 from ..denoising import PlantSettings, measure_at_contacts
 from ..depth_scene import DepthRecording
 from ..depth_tracking.tracking import PoseCallback, ignore_pose
@@ -146,7 +146,7 @@ def fix_take(
     recording: Take,
     *,
     settings: FixSettings = FixSettings(),
-    contacts: Flags | None = None,
+    contacts: Flags | Array | None = None,
     limits: JointLimits | None = None,
     on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
@@ -165,8 +165,8 @@ def fix_take(
     recording : Motion, Tracks, JointRecording, MotionFromJoints or DepthRecording
         NaN where nothing was observed.
     settings : FixSettings
-    contacts : bool, shape (n_frames, 2) or (n_frames, 7), as `plant_feet` takes them
-        Contacts of the feet as keyed by an animator, for motions; detected by default.
+    contacts : bool or float, shape (n_frames, 2) or (n_frames, 7)
+        Contacts as keyed by an animator, for motions; detected by default, and where NaN.
     limits : JointLimits
         Joints beyond them count as issues; nothing is clamped.
     on_pose : OnPose
@@ -193,7 +193,7 @@ def fix_take(
     if settings.physics:
         chain = _simulate(chain, within(progress, FIXED / n_steps, FIXED))
     start = take_before(recording, chain, within(progress, FIXED, COMPARED))
-    given = None if contacts is None else contacts[:, : len(SIDES)]
+    given = _complete_contacts(contacts)
     compared = given if chain.planted is None else chain.planted.contacts
     step = within(progress, COMPARED, MEASURED)
     after = measure_take(chain.recording, contacts=compared, limits=limits, progress=step)
@@ -229,10 +229,17 @@ def _size(start: Motion | Tracks) -> str:
     return f"{question}." if question else ""
 
 
+def _complete_contacts(contacts: Flags | Array | None) -> Flags | None:
+    """Return the contacts of both feet, (n_frames, 2), if they are given in all frames."""
+    if contacts is None or np.isnan(contacts[:, : len(SIDES)]).any():
+        return None
+    return np.asarray(contacts[:, : len(SIDES)] != 0.0)
+
+
 def _fix(
     recording: Take,
     planting: PlantSettings | None,
-    contacts: Flags | None,
+    contacts: Flags | Array | None,
     on_pose: PoseCallback,
     progress: Progress,
 ) -> ChainResult:

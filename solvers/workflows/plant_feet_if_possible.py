@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Flags
 from ..denoising import Planted, PlantSettings, plant_feet
 from ..errors import InvalidMotionError
 from ..feet import find_legs
@@ -30,12 +30,14 @@ class PlantingResult(NamedTuple):
 def plant_feet_if_possible(
     motion: Motion,
     settings: PlantSettings | None,
-    contacts: NDArray[np.bool_] | None = None,
+    contacts: Flags | Array | None = None,
     *,
-    reliability: NDArray[np.float64] | None = None,
+    reliability: Array | None = None,
     progress: Progress = unwatched,
 ) -> PlantingResult:
     """Plant feet; without settings or without legs, return the motion unchanged.
+
+    `contacts` are those of `plant_feet`, which detects them where they are NaN.
 
     With the reliability of each joint, shape (n_frames, n_joints), missing toes are flattened
     first, and reliable ankles keep to their path five times as firmly.
@@ -45,8 +47,7 @@ def plant_feet_if_possible(
     try:
         flattened = motion
         if reliability is not None and motion.observed.all():
-            standing_contacts = detect_contacts(motion) if contacts is None else contacts
-            flattened = flatten_toes(motion, reliability, standing_contacts)
+            flattened = flatten_toes(motion, reliability, _foot_contacts(motion, contacts))
         weights = None if reliability is None else _ankle_weights(motion, reliability)
         planted = plant_feet(
             flattened, contacts, settings=settings, ankle_weights=weights, progress=progress
@@ -57,7 +58,17 @@ def plant_feet_if_possible(
     return PlantingResult(planted.motion, planted, remarks)
 
 
-def _ankle_weights(motion: Motion, reliability: NDArray[np.float64]) -> NDArray[np.float64]:
+def _foot_contacts(motion: Motion, contacts: Flags | Array | None) -> Flags:
+    """Return the contacts of both feet, shape (n_frames, 2), detected where not given."""
+    given = np.full((motion.n_frames, len(SIDES)), np.nan)
+    if contacts is not None:
+        given = np.asarray(contacts, dtype=np.float64)[:, : len(SIDES)]
+    is_missing = np.isnan(given)
+    found = detect_contacts(motion) if is_missing.any() else np.zeros_like(is_missing)
+    return np.asarray(np.where(is_missing, found, given != 0.0))
+
+
+def _ankle_weights(motion: Motion, reliability: Array) -> Array:
     """Return how firmly each ankle keeps its path, shape (n_frames, 2)."""
     weights = np.ones((motion.n_frames, len(SIDES)))
     for leg in find_legs(motion.skeleton):

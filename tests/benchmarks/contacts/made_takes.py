@@ -37,7 +37,7 @@ class MadeTake:
 
 
 @dataclass(frozen=True, eq=False)
-class _Plan:
+class Plan:
     """Hips (n_frames, 3); ankles (n_frames, 2, 3); contacts; pitch of both feet, radians."""
 
     hips: Array
@@ -53,7 +53,7 @@ def made_takes(frame_rate: float) -> dict[str, MadeTake]:
         f"walk at {speed:g} m/s": _walk(frame_rate, speed, cadence, seed)
         for seed, (speed, cadence) in enumerate(GAITS)
     }
-    return takes | {name: _pose(plan(time), frame_rate) for name, plan in PLANS.items()}
+    return takes | {name: pose_plan(plan(time), frame_rate) for name, plan in PLANS.items()}
 
 
 def _walk(frame_rate: float, speed: float, cadence: float, seed: int) -> MadeTake:
@@ -66,7 +66,7 @@ def _walk(frame_rate: float, speed: float, cadence: float, seed: int) -> MadeTak
     return MadeTake(motion, np.stack([foot.phase < TOE_OFF for foot in plan.feet], axis=1))
 
 
-def _pose(plan: _Plan, frame_rate: float) -> MadeTake:
+def pose_plan(plan: Plan, frame_rate: float) -> MadeTake:
     """Put the legs of the sample's skeleton onto planned ankles."""
     skeleton = walker_skeleton()
     rotations = np.tile(IDENTITY, (len(plan.hips), skeleton.n_joints, 1))
@@ -83,7 +83,7 @@ def _pose(plan: _Plan, frame_rate: float) -> MadeTake:
     return MadeTake(motion, plan.contacts)
 
 
-def _still(time: Array) -> tuple[Array, Array]:
+def still(time: Array) -> tuple[Array, Array]:
     """Return hips and ankles of a body that stands."""
     hips = np.tile([0.0, 0.0, STANDING_HIPS_M], (len(time), 1))
     ankles = np.zeros((len(time), 2, 3))
@@ -92,18 +92,18 @@ def _still(time: Array) -> tuple[Array, Array]:
     return hips, ankles
 
 
-def _sway(time: Array) -> _Plan:
+def _sway(time: Array) -> Plan:
     """Stand; the hips sway by 3 cm."""
-    hips, ankles = _still(time)
+    hips, ankles = still(time)
     hips[:, 0] += 0.03 * np.sin(2.0 * np.pi * 0.4 * time)
     hips[:, 1] += 0.02 * np.sin(2.0 * np.pi * 0.3 * time)
     hips[:, 2] -= 0.03
-    return _Plan(hips, ankles, np.ones((len(time), 2), np.bool_))
+    return Plan(hips, ankles, np.ones((len(time), 2), np.bool_))
 
 
-def _rise_on_toes(time: Array) -> _Plan:
+def _rise_on_toes(time: Array) -> Plan:
     """Lift both heels by 45 degrees and lower them, about balls that stay."""
-    hips, ankles = _still(time)
+    hips, ankles = still(time)
     pitch = np.radians(45.0) * np.sin(np.pi * time / 2.0) ** 2
     ball = np.array([0.0, -0.14, -0.06])
     lifted = ball - rotate(
@@ -112,23 +112,23 @@ def _rise_on_toes(time: Array) -> _Plan:
     ankles += lifted[:, None]
     hips += lifted
     hips[:, 2] -= 0.03
-    return _Plan(
+    return Plan(
         hips, ankles, np.ones((len(time), 2), np.bool_), np.stack([pitch, pitch], axis=1)
     )
 
 
-def _one_leg(time: Array) -> _Plan:
+def _one_leg(time: Array) -> Plan:
     """Stand on the left leg from 1 to 5 s, the right foot held 30 cm above the floor."""
-    hips, ankles = _still(time)
+    hips, ankles = still(time)
     up = smooth_step((time - 1.0) / 0.6) - smooth_step((time - 4.4) / 0.6)
     ankles[:, 1, 2] += 0.3 * up
     ankles[:, 1, 1] += 0.15 * up
     hips[:, 2] -= 0.03
     down = (time <= 1.0) | (time >= 5.0)
-    return _Plan(hips, ankles, np.stack([np.ones_like(down), down], axis=1))
+    return Plan(hips, ankles, np.stack([np.ones_like(down), down], axis=1))
 
 
-def _hop(time: Array, feet: Sequence[int]) -> _Plan:
+def _hop(time: Array, feet: Sequence[int]) -> Plan:
     """Hop on the given feet: 0.2 s on the floor, 0.3 s in the air."""
     cycle, phase = np.divmod(time, 0.5)
     in_air = phase >= 0.2
@@ -136,7 +136,7 @@ def _hop(time: Array, feet: Sequence[int]) -> _Plan:
     height = 0.5 * GRAVITY * flight * (0.3 - flight)
     # On the floor the hips brake and accelerate like a spring: half a sine.
     push = 0.5 * GRAVITY * 0.3 * 0.2 / np.pi * np.sin(np.pi * phase / 0.2)
-    hips, ankles = _still(time)
+    hips, ankles = still(time)
     hips[:, 2] += -0.05 + height - np.where(in_air, 0.0, push)
     hips[:, 1] -= 0.6 * time
     ankles[:, :, 1] -= 0.3 * (cycle + flight / 0.3)[:, None] + 0.06
@@ -146,12 +146,12 @@ def _hop(time: Array, feet: Sequence[int]) -> _Plan:
         ankles[:, foot] = hips + (ankles[:, foot, :] - hips) * (1.0, 0.0, 0.0)
         ankles[:, foot, 1:] += (0.2, -0.55)
         contacts[:, foot] = False
-    return _Plan(hips, ankles, contacts)
+    return Plan(hips, ankles, contacts)
 
 
-def _run(time: Array) -> _Plan:
+def _run(time: Array) -> Plan:
     """Run at 2.8 m/s: 0.25 s on the floor and 0.45 s in the air for each foot."""
-    hips, ankles = _still(time)
+    hips, ankles = still(time)
     hips[:, 1] -= 2.8 * time
     hips[:, 2] = 0.86 + 0.03 * np.cos(2.0 * np.pi * (time - 0.125) / 0.35 + np.pi)
     contacts = np.zeros((len(time), 2), np.bool_)
@@ -163,12 +163,12 @@ def _run(time: Array) -> _Plan:
         ankles[:, foot, 1] = -2.8 * landed_s
         ankles[:, foot, 2] += 0.3 * np.sin(np.pi * swing) ** 2
         contacts[:, foot] = phase < 0.25
-    return _Plan(hips, ankles, contacts)
+    return Plan(hips, ankles, contacts)
 
 
-def _side_steps(time: Array) -> _Plan:
+def _side_steps(time: Array) -> Plan:
     """Step sideways by 20 cm, each foot lifted by 4 cm for 0.4 s of every 1.2 s."""
-    hips, ankles = _still(time)
+    hips, ankles = still(time)
     contacts = np.zeros((len(time), 2), np.bool_)
     hips[:, 0] += 0.2 * time / 1.2
     hips[:, 2] -= 0.06
@@ -178,12 +178,12 @@ def _side_steps(time: Array) -> _Plan:
         ankles[:, foot, 0] += 0.2 * (cycle - 1.0 + smooth_step(swing))
         ankles[:, foot, 2] += 0.04 * np.sin(np.pi * swing) ** 2
         contacts[:, foot] = phase >= 0.4
-    return _Plan(hips, ankles, contacts)
+    return Plan(hips, ankles, contacts)
 
 
-def _box(time: Array) -> _Plan:
+def _box(time: Array) -> Plan:
     """Step onto a box of 20 cm and stand on it: left from 1 s, right from 2 s, for 0.6 s."""
-    hips, ankles = _still(time)
+    hips, ankles = still(time)
     contacts = np.ones((len(time), 2), np.bool_)
     for foot, start in enumerate((1.0, 2.0)):
         step = smooth_step((time - start) / 0.6)
@@ -195,20 +195,20 @@ def _box(time: Array) -> _Plan:
     body = smooth_step((time - 1.5) / 1.0)
     hips[:, 1] -= 0.35 * body
     hips[:, 2] += 0.2 * body - 0.12
-    return _Plan(hips, ankles, contacts)
+    return Plan(hips, ankles, contacts)
 
 
-def _chair(time: Array) -> _Plan:
+def _chair(time: Array) -> Plan:
     """Sit on a chair; the right leg is crossed over from 2 s on."""
-    hips, ankles = _still(time)
+    hips, ankles = still(time)
     hips[:, 1:] = (0.0, 0.5)
     ankles[:, :, 1] = -0.42
     up = smooth_step((time - 2.0) / 0.7)
     ankles[:, 1] += up[:, None] * (0.2, -0.05, 0.3)
-    return _Plan(hips, ankles, np.stack([np.ones_like(time) > 0.0, time <= 2.0], axis=1))
+    return Plan(hips, ankles, np.stack([np.ones_like(time) > 0.0, time <= 2.0], axis=1))
 
 
-PLANS: dict[str, Callable[[Array], _Plan]] = {
+PLANS: dict[str, Callable[[Array], Plan]] = {
     "stand and sway": _sway,
     "rise on the toes": _rise_on_toes,
     "stand on one leg": _one_leg,

@@ -15,7 +15,9 @@ from .detection_scores import COLUMNS, DetectionScores
 from .detectors import MOTION_DETECTORS, OURS, POINT_DETECTORS, MotionDetector
 from .force_plates import weighed_walks
 from .labeled_clips import at_rate, labeled_clips
+from .made_drags import made_drags
 from .made_takes import made_takes
+from .part_takes import INPUTS
 from .weightless_feet import weightless_takes
 
 RATES = (30.0, 60.0, 120.0)
@@ -35,6 +37,7 @@ def detection_tables() -> list[str]:
         *_plate_table(),
         _table("Made takes, whose contacts are known", _made_scores()),
         _take_table(),
+        _drag_table(),
         *(_noise_table(degrees) for degrees in NOISE_DEG),
         calibration_table(RATES),
         _weightless_table(),
@@ -74,6 +77,23 @@ def _take_table() -> str:
         rows[name] = cells
     title = f"**Precision and recall of each made take, {MADE_RATE:g} Hz**"
     return f"{title}\n\n{table(['take', *MOTION_DETECTORS], rows)}\n"
+
+
+def _drag_table() -> str:
+    """Return which frames of dragged feet, and of feet that stand, are planted, in percent."""
+    detectors = {OURS: MOTION_DETECTORS[OURS], f"{OURS}, contacts alone": detect_contacts}
+    rows = {}
+    for spoiled, spoil in INPUTS.items():
+        for name, take in made_drags(MADE_RATE).items():
+            found = [detect(spoil(take.motion)) for detect in detectors.values()]
+            rows[f"{name}, {spoiled}"] = [
+                f"{100.0 * flags[chosen].mean():.0f}"
+                for chosen in (~take.contacts, take.contacts)
+                for flags in found
+            ]
+    heads = [f"{part}: {name}" for part in ("dragged", "standing") for name in detectors]
+    title = f"**Dragged feet: frames of a foot that are planted, %, {MADE_RATE:g} Hz**"
+    return f"{title}\n\n{table(['take', *heads], rows)}\n"
 
 
 def _noise_table(degrees: float) -> str:

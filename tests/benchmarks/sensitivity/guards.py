@@ -31,6 +31,7 @@ WITHOUT: dict[str, Any] = {
     "markers/solve_skeleton.MAX_ERROR_FACTOR": inf,
 }
 """Value without effect, by key; a tenth of the two numbers whose logarithm counts."""
+DRAGS = "feet/test_dragged_feet.py::test_dragged_foot_is_found_at_all_frame_rates"
 GUARDS: dict[str, Guard] = {
     "denoising/edge_poses.MIN_JUMP_RAD": Guard(
         0.0,
@@ -61,6 +62,11 @@ GUARDS: dict[str, Guard] = {
         1.0,
         "denoising/test_outlier_runs.py::test_second_error_of_a_take_need_not_be_as_likely_as_the_first",
     ),
+    "feet/dragged_feet.STANDING_SPEED": Guard(0.25, DRAGS),
+    "feet/dragged_feet.DRAGGED_SPEED": Guard(100.0, DRAGS),
+    "feet/dragged_feet.MEMORY_S": Guard(10.0, DRAGS),
+    "feet/dragged_feet.START_RATE": Guard(1e-12, DRAGS),
+    "feet/dragged_feet.STOP_RATE": Guard(1e-9, DRAGS),
     "feet/plant_in_window.MAX_CHANGE_RAD": Guard(
         inf, "feet/test_feet_that_move.py::test_glitch_of_one_frame_does_not_twist_a_leg"
     ),

@@ -1,5 +1,8 @@
 """A noisy take, and the button Clean."""
 
+import gc
+import warnings
+
 import numpy as np
 import pytest
 
@@ -46,3 +49,18 @@ def bad_arm(dancer):
             for key in list(curve.keyframe_points)[100:160][::-1]:
                 curve.keyframe_points.remove(key)
     return dancer
+
+
+@pytest.fixture
+def walker(load, blank, tmp_path):
+    """A walk of three seconds that shakes, imported from BVH."""
+    samples = load("solvers.samples")
+    walk = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
+    shaking = samples.corrupt(walk, samples.CorruptionSettings(jitter=1.0, root_jitter=0.002))
+    load("solvers.recordings").write_bvh(shaking, tmp_path / "walk.bvh")
+    with warnings.catch_warnings(action="ignore"):  # Blender's importer leaves its file open
+        blank.ops.import_anim.bvh(
+            filepath=str(tmp_path / "walk.bvh"), global_scale=0.01, update_scene_fps=True
+        )
+        gc.collect()
+    return blank.context.object

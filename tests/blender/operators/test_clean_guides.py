@@ -1,9 +1,6 @@
 """What guides Clean besides the take: contacts, limits and examples."""
 
-import gc
-import hashlib
 import json
-import warnings
 
 import numpy as np
 import pytest
@@ -33,80 +30,6 @@ def test_edited_contacts_are_used_and_preserved(noisy, clean, blank, load):
     assert np.ptp(foot[:, :2], axis=0).max() < 1e-3
 
 
-@pytest.fixture
-def walker(load, blank, tmp_path):
-    """A walk of three seconds that shakes, imported from BVH."""
-    samples = load("solvers.samples")
-    walk = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
-    shaking = samples.corrupt(walk, samples.CorruptionSettings(jitter=1.0, root_jitter=0.002))
-    load("solvers.recordings").write_bvh(shaking, tmp_path / "walk.bvh")
-    with warnings.catch_warnings(action="ignore"):  # Blender's importer leaves its file open
-        blank.ops.import_anim.bvh(
-            filepath=str(tmp_path / "walk.bvh"), global_scale=0.01, update_scene_fps=True
-        )
-        gc.collect()
-    return blank.context.object
-
-
-def contact_curve(action):
-    bag = action.layers[0].strips[0].channelbag(action.slots[0])
-    return bag.fcurves.find('["mocap_contact_left"]', index=0)
-
-
-def test_contacts_are_detected_again_until_one_is_edited(walker, clean, load, blank):
-    contacts = load("mocap_assist.actions.contact_keys")
-    played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
-    result = clean(plant_feet=True)
-    keys = contact_curve(result).keyframe_points
-    assert len(keys) > 4 and {key.type for key in keys} == {"GENERATED"}
-    source = (result, result.slots[0])
-    assert contacts.animators_contacts(source, **played) is None
-    assert contacts.read_contacts(*source, **played).any()
-
-    second = clean(plant_feet=True)
-    assert contacts.animators_contacts((second, second.slots[0]), **played) is None
-    edited = contact_curve(second)
-    edited.keyframe_points[0].co.y = 1.0 - edited.keyframe_points[0].co.y
-    edited.update()
-    mine = contacts.read_contacts(second, second.slots[0], **played)
-    third = clean(plant_feet=True)
-    assert (contacts.read_contacts(third, third.slots[0], **played) == mine).all()
-    assert (contacts.animators_contacts((third, third.slots[0]), **played) == mine).all()
-
-
-def test_contacts_that_were_detected_before_hips_had_keys_are_detected_again(walker, load):
-    contacts = load("mocap_assist.actions.contact_keys")
-    action, frames = walker.animation_data.action, np.arange(1.0, 31.0)
-    source = (action, action.slots[0])
-    found = np.zeros((30, 7), bool)
-    found[:10, 0] = found[5:20, 2] = True
-    contacts.write_contacts(walker, *source, frames, found, detected=True)
-    bag = action.layers[0].strips[0].channelbag(action.slots[0])
-    bag.fcurves.remove(bag.fcurves.find('["mocap_contact_hips"]', index=0))
-    feet_hands_knees = [each.ravel().tolist() for each in contacts.contact_keys(*source)][:6]
-    former = hashlib.sha256(repr(feet_hands_knees).encode()).hexdigest()
-    action[contacts.DETECTED] = former
-
-    assert contacts.animators_contacts(source, frames) is None
-
-
-def test_plant_feet_detects_contacts_again_until_a_key_is_edited(walker, load, blank):
-    contacts = load("mocap_assist.actions.contact_keys")
-    played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
-    blank.ops.mocap_assist.plant_feet()
-    first = walker.animation_data.action
-    edited = contact_curve(first)
-    edited.keyframe_points.remove(edited.keyframe_points[1])
-    edited.update()
-    mine = contacts.read_contacts(first, first.slots[0], **played)
-
-    blank.ops.mocap_assist.plant_feet()
-
-    second = walker.animation_data.action
-    assert second != first
-    assert (contacts.read_contacts(second, second.slots[0], **played) == mine).all()
-
-
 def test_keyed_hand_stays_in_place_and_keeps_its_keys(walker, load, blank, keys_of):
     """No hand of a walk is found in contact, so that only the field is there to be keyed."""
     contacts = load("mocap_assist.actions.contact_keys")
@@ -134,15 +57,18 @@ def test_edited_contacts_stay_when_other_frames_are_cleaned(walker, clean, load,
     scene = blank.context.scene
     scene.frame_start, scene.frame_end = 1, 45
     first = clean(plant_feet=True, frame_range="SCENE")
-    edited = contact_curve(first)
-    edited.keyframe_points[0].co.y = 1.0 - edited.keyframe_points[0].co.y
+    bag = first.layers[0].strips[0].channelbag(first.slots[0])
+    curve = bag.fcurves.find('["mocap_contact_left"]', index=0)
+    curve.keyframe_points[0].co.y = 1.0 - curve.keyframe_points[0].co.y
+    curve.update()
     scene.frame_start, scene.frame_end = 46, 90
 
     both = clean(plant_feet=True, frame_range="SCENE")
 
     stored = contacts.animators_contacts((both, both.slots[0]), np.arange(1.0, 91.0))
-    mine = contacts.read_contacts(first, first.slots[0], np.arange(1.0, 46.0))
-    assert stored is not None and (stored[:45] == mine).all()
+    mine = contacts.animators_contacts((first, first.slots[0]), np.arange(1.0, 46.0))
+    assert np.isfinite(mine[0, 0]) and np.isnan(stored[45:]).all()
+    np.testing.assert_array_equal(stored[:45], mine)
 
 
 def test_clean_respects_limit_constraints(noisy, clean, blank, keys_of):

@@ -88,3 +88,24 @@ def test_feet_that_can_be_held_are_held_as_if_keyed(standing):
 
     assert detected.contacts.all()
     assert (detected.motion.rotations == keyed.motion.rotations).all()
+
+
+def test_only_the_contact_that_is_keyed_does_not_yield(standing):
+    """The body glides in two contacts; one frame of the first is keyed."""
+    seconds = np.arange(2 * standing.n_frames) / RATE
+    glide = 0.5 * (np.clip(seconds - 1.0, 0.0, 1.0) + np.clip(seconds - 4.0, 0.0, 1.0))
+    rotations = np.tile(standing.rotations, (2, 1, 1))
+    roots = np.tile(standing.root_positions, (2, 1)) + glide[:, None] * (0.0, 1.0, 0.0)
+    source = standing.with_poses(rotations, roots)
+    given = np.full((len(seconds), 2), np.nan)
+    given[round(2.9 * RATE) : round(3.1 * RATE)] = 0.0
+    given[round(1.5 * RATE)] = 1.0
+
+    planted = plant_feet(source, given)
+
+    first, second = (slice(round(s * RATE), round((s + 1.0) * RATE)) for s in (1, 4))
+    ankles = [leg.ankle for leg in find_legs(source.skeleton)]
+    paths = forward_kinematics(planted.motion).positions[:, ankles, 1]
+    assert planted.contacts[first].all() and planted.contacts[second].all()
+    assert np.ptp(paths[first], axis=0).max() < 0.05
+    assert np.ptp(paths[second], axis=0).min() > 0.2

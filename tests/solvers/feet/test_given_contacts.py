@@ -9,6 +9,7 @@ from solvers.motion.humanoid import HumanoidMap, detect_contacts
 from solvers.motion.skeletons import find_shot_boundaries
 from solvers.rotations import quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
+from solvers.signals import find_runs
 
 WALK = walking_gait(GaitSettings(duration=1.5, frame_rate=60.0))
 
@@ -43,3 +44,26 @@ def test_one_leg_is_planted_at_given_contacts():
 
     assert planted.slide_after < 0.02 * planted.slide_before
     assert (planted.contacts == contacts).all()
+
+
+@pytest.mark.parametrize("n_columns", [2, 7])
+def test_contacts_that_are_not_a_number_are_detected(n_columns):
+    nothing_given = plant_feet(WALK, np.full((WALK.n_frames, n_columns), np.nan))
+
+    detected = plant_feet(WALK)
+
+    assert (nothing_given.contacts == detected.contacts).all()
+    assert (nothing_given.motion.rotations == detected.motion.rotations).all()
+
+
+def test_one_contact_is_given_and_the_others_are_detected():
+    detected = plant_feet(WALK).contacts
+    start, stop = find_runs(detected[:, 0])[1]
+    given = np.full(detected.shape, np.nan)
+    given[start:stop, 0] = 0.0
+
+    planted = plant_feet(WALK, given)
+
+    assert not planted.contacts[start:stop, 0].any()
+    planted.contacts[start:stop, 0] = detected[start:stop, 0]
+    assert (planted.contacts == detected).all()
