@@ -77,6 +77,12 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
         "{path} is a file of DAZ Studio. Export the figure with its animation as BVH or FBX.",
     ),
     (
+        "MATLAB 7.3 file",
+        _starts(b"MATLAB 7.3"),
+        "{path} is a MATLAB 7.3 file, which is HDF5. Save it again in MATLAB, with"
+        " save(file, '-v7').",
+    ),
+    (
         "HDF5",
         _starts(HDF5),
         "{path} is an HDF5 file. Save its 3D points as a NumPy array of the shape (frames,"
