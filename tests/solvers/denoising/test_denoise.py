@@ -287,20 +287,6 @@ def test_limb_never_observed_has_low_confidence():
     assert result.confidence.mean() > 0.5
 
 
-@pytest.mark.parametrize("rate", [1.0, 2.0, 4.0])
-def test_poses_far_apart_are_kept(recordings, rate):
-    """They were turned by up to 28 degrees, though nothing in the walk is noise."""
-    walk = real_walk(recordings, "07_01")
-    step = round(walk.frame_rate / rate)
-    every = slice(None, None, step)
-    poses = Motion(walk.skeleton, walk.rotations[every], walk.root_positions[every], rate)
-
-    result = denoise(poses).recording
-
-    assert angle_between(result.rotations, poses.rotations).max() < 1e-6
-    assert_allclose(result.root_positions, poses.root_positions, atol=1e-9)
-
-
 def test_all_frames_are_filled_at_two_frames_per_second(rng):
     positions = rng.normal(size=(40, 3, 3))
     positions[10:20, 0] = np.nan
