@@ -18,6 +18,7 @@ from .denoise_settings import (
     DenoiseMethod,
     DenoiseSettings,
     joint_factors,
+    settings_at_rate,
 )
 from .denoised import Denoised, join_segments, keep_as_recorded
 from .discontinuities import find_held_and_cuts, remove_path_jumps, restore_path_jumps
@@ -67,7 +68,8 @@ def denoise(
     A take that was joined from several recordings is cleaned segment by segment. A segment of
     less than a quarter of a second keeps its samples; only its gaps are filled. Such a segment
     is the T-pose at the start of many recordings. A single limb that starts or ends in a
-    separate pose keeps its samples too.
+    separate pose keeps its samples too, and so does a take of poses far apart
+    (`settings_at_rate`).
 
     Samples that a tracker repeated while the body moved on are treated as missing, unless their
     strength is below 1: then they are blended like others (`find_held_samples`).
@@ -116,6 +118,7 @@ def denoise(
         raise InvalidMotionError(
             "Nothing was observed in this take; there is nothing to clean."
         )
+    settings = settings_at_rate(settings, recording.frame_rate)
     held, cuts = find_held_and_cuts(recording, settings)
     seen = hide_held_samples(recording, held)
     edge_poses = find_edge_poses(seen, cuts)

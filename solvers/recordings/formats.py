@@ -13,10 +13,12 @@ from .containers import (
     check_folder_access,
     find_separator,
     is_c3d,
+    is_matlab,
     is_missing,
     json_length,
     split_cells,
 )
+from .depth_files import is_depth_mat
 from .format_description import Format, one_body
 from .joint_files import (
     MAX_TITLE_LINES,
@@ -68,6 +70,7 @@ from .marker_files import (
     open_trc,
     open_vicon_csv,
 )
+from .matlab_points import open_matlab_points
 from .numpy_files import is_frame_npy, open_npy
 from .point_archives import is_point_archive, open_point_archive
 from .refuse_stand_ins import REFUSALS
@@ -76,6 +79,7 @@ from .skeleton_files import (
     is_frame_smpl_json,
     is_kimodo,
     is_mvnx,
+    is_opensim_json,
     is_smpl,
     is_smpl_json,
     is_vrma,
@@ -85,12 +89,15 @@ from .skeleton_files import (
     open_smpl,
     open_smpl_json,
     read_acclaim,
+    read_opensim_json,
     read_vrma,
 )
 
 HEAD_BYTES = 4096
 MAX_TITLES_BYTES = 1 << 17
 """Of the first lines of a table, where these are longer than the head of other files."""
+NUMBERS_FIRST = re.compile(rb'\s*\{\s*"[^"]*"\s*:\s*\[[-+.\deE,\s]*\Z')
+"""JSON whose first member is longer than the head, such as the times of all frames."""
 MAX_DIRECTORY_BYTES = 1 << 16
 """Of the end of an archive, where the names of its members are."""
 MAX_JSON_BYTES = 1 << 22
@@ -150,6 +157,7 @@ FORMATS = (
     ),
     Format("Kimodo", is_kimodo, open_kimodo, has_skeleton=True),
     Format("Xsens MVNX", is_mvnx, open_mvnx, has_skeleton=True),
+    Format("OpenCap JSON", is_opensim_json, one_body(read_opensim_json), has_skeleton=True),
     Format("C3D", is_c3d, open_c3d, has_markers=True),
     Format("TRC", _is_trc, open_trc, has_markers=True),
     Format("OptiTrack CSV", is_motive_csv, open_motive_csv, has_markers=True),
@@ -164,6 +172,7 @@ FORMATS = (
     Format("UI-PRMD", is_ui_prmd, one_body(read_ui_prmd)),
     Format("freemocap", is_npy, open_npy, lacks_bones=True, is_one_frame=is_frame_npy),
     Format("joints of NumPy", is_point_archive, open_point_archive),
+    Format("joints of MATLAB", is_matlab, open_matlab_points),
     Format("ZED JSON", is_zed_json, open_zed_json),
     Format("Nuitrack CSV", is_nuitrack_csv, open_nuitrack_csv),
     Format("Nuitrack JSON", is_nuitrack_json, open_nuitrack_json),
@@ -195,7 +204,7 @@ def detect_format(path: Path | str) -> Format | None:
         with open_regular(path) as file:
             head = as_utf8(file.read(HEAD_BYTES))
             head += file.read(min(json_length(head), MAX_JSON_BYTES))
-            if _is_wide_table(head):
+            if _is_wide_table(head) or NUMBERS_FIRST.match(head):
                 head += file.read(MAX_TITLES_BYTES)
             if head.startswith(ZIP_MEMBER):
                 file.seek(max(HEAD_BYTES, file.seek(0, SEEK_END) - MAX_DIRECTORY_BYTES))
@@ -204,4 +213,6 @@ def detect_format(path: Path | str) -> Format | None:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:
         raise unreadable(path, error) from None
+    if is_depth_mat(Path(path), head):
+        return None
     return next((format_ for format_ in FORMATS if format_.fits(head)), None)

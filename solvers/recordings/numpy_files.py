@@ -171,13 +171,13 @@ def _bodies_of(array: Array) -> list[Array]:
     if array.ndim != 4 or 1 in array.shape[:2] or array.shape[3] not in {2, 3, 4}:
         return [array]
     found = np.where(array.any(axis=(2, 3), keepdims=True), array, np.nan)
-    steps = _step(found, 0), _step(found, 1)
+    steps = step_along(found, 0), step_along(found, 1)
     is_second = found.shape[1] > found.shape[0] if steps[0] == steps[1] else steps[1] < steps[0]
     bodies = found if is_second else np.moveaxis(found, 1, 0)
     return [body for body in bodies if np.isfinite(body).any()] or [*bodies]
 
 
-def _step(points: Array, axis: int) -> float:
+def step_along(points: Array, axis: int) -> float:
     """Return the median step along an axis; infinite if no two neighbors are observed."""
     steps = np.linalg.norm(np.diff(points[..., :3], axis=axis), axis=-1)
     steps = steps[np.isfinite(steps)]

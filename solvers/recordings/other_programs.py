@@ -10,6 +10,8 @@ OLD_PICKLE = re.compile(
 HDF5 = b"\x89HDF\r\n\x1a\n"
 SAFETENSORS = re.compile(rb"[\x00-\xff]{8}\s*\{\s*\"[^\"]+\"\s*:\s*\{\s*\"(dtype|format)\"")
 HTR = re.compile(rb"(?:\s*#[^\n]*\n)*\s*\[Header\]\s*(#[^\n]*\n\s*)*FileType\s+[hg]tr")
+PRINTED_JOINT = re.compile(rb"Joint \d+: Position\(|Joint info:\s+position: \[")
+"""The first joint as programs on the sensor's SDK print it, in C++ or Python."""
 
 THREE_TRACK = re.compile(
     rb"\"(?:tracks|hierarchy)\"\s*:\s*\[\s*\{[^\[\]]{0,300}\"(?:times|keys)\"\s*:\s*\["
@@ -75,6 +77,18 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
         "DAZ file",
         lambda head: b'"file_version"' in head[:200] and b'"asset_info"' in head,
         "{path} is a file of DAZ Studio. Export the figure with its animation as BVH or FBX.",
+    ),
+    (
+        "printout of Azure Kinect joints",
+        lambda head: PRINTED_JOINT.search(head) is not None,
+        "{path} is a printout of the joints of one frame of the Azure Kinect. Save all frames"
+        " as the JSON of its offline_processor, or as a table with columns such as Pelvis_x.",
+    ),
+    (
+        "MATLAB 7.3 file",
+        _starts(b"MATLAB 7.3"),
+        "{path} is a MATLAB 7.3 file, which is HDF5. Save it again in MATLAB, with"
+        " save(file, '-v7').",
     ),
     (
         "HDF5",

@@ -42,7 +42,10 @@ ALONG_ONE_AXIS = -np.cos(np.radians(20.0))
 the hips: a rest pose of bones along one axis. Chosen by hand on the rigs of
 `tests/solvers/motion`."""
 
-TWIST_WORD = re.compile("twist|roll|bend|stretch|helper|correct|half|sub|捩", re.IGNORECASE)
+TWIST_WORD = re.compile(
+    "twist|roll|pitch|yaw|bend|stretch|helper|correct|half|sub|捩", re.IGNORECASE
+)
+"""Of a helper, or of one axis of a joint, as those of robots."""
 NO_LETTERS = re.compile(r"[\W\d_]+")
 MIN_BONE_FRACTION = 0.05
 """Of a limb, below which a joint between two others is a helper. Chosen by hand on the rigs of

@@ -35,13 +35,11 @@ TABLES: dict[str, tuple[str, ...]] = {
     ),
     "Mixamo": (  # also Perception Neuron and MotionBuilder
         "Hips", "Spine", "Spine1", "Spine3 Spine2", "Neck", "Head",
-        "Shoulder", "Arm", "ForeArm", "Hand",
-        "UpLeg", "Leg", "Foot", "ToeBase",
+        "Shoulder", "Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot", "ToeBase",
     ),
     "CMU": (
         "Hips", "LowerBack", "Spine", "Spine1", "Neck", "Head",
-        "Shoulder", "Arm", "ForeArm", "Hand",
-        "UpLeg", "Leg", "Foot", "ToeBase",
+        "Shoulder", "Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot", "ToeBase",
     ),
     "Acclaim": (  # its wrist is a twist joint within the forearm
         "root", "lowerback", "upperback", "thorax", "lowerneck", "head",
@@ -63,15 +61,21 @@ TABLES: dict[str, tuple[str, ...]] = {
         "Collar", "Shoulder", "Elbow", "Wrist",
         "Hip", "Knee", "Ankle", "Toe",
     ),
+    "Unitree G1": (  # a robot; of three axes of a joint, the last carries the limb
+        "pelvis", "waist_yaw", "waist_roll", "waist_pitch", "", "",
+        "", "shoulder_yaw", "elbow", "wrist_yaw", "hip_yaw", "knee", "ankle_roll", "toe_base",
+    ),
+    "OpenSim": (  # its torso has no neck and head of their own
+        "pelvis", "torso", "", "", "", "",
+        "", "humerus", "ulna", "hand", "femur", "tibia", "talus", "toes",
+    ),
     "OptiTrack": (
         "Hip", "Ab", "Chest", "UpperChest", "Neck", "Head",
-        "Shoulder", "UArm", "FArm", "Hand",
-        "Thigh", "Shin", "Foot", "Toe",
+        "Shoulder", "UArm", "FArm", "Hand", "Thigh", "Shin", "Foot", "Toe",
     ),
     "Vicon": (
         "Waist", "Spine", "Chest", "", "Neck", "Head",
-        "Collar", "UpArm", "ForeArm", "Hand",
-        "UpLeg", "LowLeg", "Foot", "Toes",
+        "Collar", "UpArm", "ForeArm", "Hand", "UpLeg", "LowLeg", "Foot", "Toes",
     ),
     "OpenNI": (  # fifteen joints; hands and feet are where wrists and ankles are
         "", "torso", "", "", "Neck", "Head",
@@ -120,8 +124,7 @@ TABLES: dict[str, tuple[str, ...]] = {
     ),
     "Poser": (
         "hip", "abdomen", "chest", "", "neck", "head",
-        "Collar", "Shldr", "ForeArm", "Hand",
-        "Thigh", "Shin", "Foot", "Toe",
+        "Collar", "Shldr", "ForeArm", "Hand", "Thigh", "Shin", "Foot", "Toe",
     ),
     "DAZ": (
         "hip", "abdomenLower", "abdomenUpper chestLower", "chestUpper", "neckLower", "head",
@@ -162,13 +165,11 @@ TABLES: dict[str, tuple[str, ...]] = {
     ),
     "SMPL in robotics": (
         "pelvis", "torso", "spine", "chest", "neck", "head",
-        "thorax", "shoulder", "elbow", "wrist",
-        "hip", "knee", "ankle", "toe",
+        "thorax", "shoulder", "elbow", "wrist", "hip", "knee", "ankle", "toe",
     ),
     "SOMA": (
         "Hips", "Spine1", "Spine2", "Chest", "Neck1 Neck", "Head",
-        "Shoulder", "Arm", "ForeArm", "Hand",
-        "Leg", "Shin", "Foot", "ToeBase",
+        "Shoulder", "Arm", "ForeArm", "Hand", "Leg", "Shin", "Foot", "ToeBase",
     ),
     "MHR": (
         "root", "c_spine0", "c_spine1", "c_spine3", "c_neck", "c_head",

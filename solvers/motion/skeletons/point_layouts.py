@@ -93,6 +93,7 @@ LAYOUTS: dict[str, tuple[str, ...]] = {
     "OpenPose": (*_BODY_25[:8], *_BODY_25[9:19]),
     "CMU Panoptic": _PANOPTIC,
     "Kinect v1": tuple(KINECT_V1),
+    "UTD-MHAD": (*tuple(KINECT_V1)[3::-1], *tuple(KINECT_V1)[4:]),
     "KIT": _KIT,
     "SMPL": tuple(SMPL)[:22],
     "LaFAN1": _LAFAN,

@@ -17,6 +17,7 @@ Recording = TypeVar("Recording", Tracks, JointRecording)
 SEPARATOR, UNDERSCORE = ":", "_"
 SIDE_WORDS = frozenset({"l", "r", "left", "right", "lt", "rt"})
 """Words before an underscore that are sides rather than people."""
+SIDES_OF_WORDS = (("l", "r"), ("left", "right"), ("lt", "rt"))
 MIN_SHARED_FRACTION = 0.7
 """Fraction of the markers of two people that have the same names. Chosen by hand: people of one
 recording wear one set, where single markers differ or are missing."""
@@ -87,10 +88,22 @@ def _are_people(labels: Sequence[str]) -> bool:
         subject, name = _split(label, UNDERSCORE)
         if subject and subject.lower() not in SIDE_WORDS and not name.isdigit():
             worn.setdefault(subject, set()).add(name)
-    people = [names for names in worn.values() if len(names) >= MIN_PERSON_MARKERS]
+    people = [person for person in worn if len(worn[person]) >= MIN_PERSON_MARKERS]
     return any(
-        len(one & other) >= MIN_SHARED_FRACTION * min(len(one), len(other))
+        len(worn[one] & worn[other])
+        >= MIN_SHARED_FRACTION * min(len(worn[one]), len(worn[other]))
         for one, other in combinations(people, 2)
+        if not _are_sides(one, other)
+    )
+
+
+def _are_sides(one: str, other: str) -> bool:
+    """Return whether two words end as sides do, such as LL and LR of the actor L."""
+    pair = one.lower(), other.lower()
+    return any(
+        pair[0].removesuffix(left) == pair[1].removesuffix(right) and pair[0] != pair[1]
+        for left, right in (*SIDES_OF_WORDS, *(sides[::-1] for sides in SIDES_OF_WORDS))
+        if pair[0].endswith(left) and pair[1].endswith(right)
     )
 
 

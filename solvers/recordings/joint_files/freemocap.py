@@ -22,7 +22,7 @@ from ..conventions import (
     points_z_up,
     up_along,
 )
-from ..point_bodies import points_of_array
+from ..point_bodies import is_no_body, points_of_array
 
 WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
@@ -47,7 +47,8 @@ def read_freemocap(
     """Read a `.npy` file of freemocap, in meters, Z up; missing points are NaN.
 
     The array has neither names, unit, axes nor frame rate. Arrays of 33, 75, 543 or 553 points
-    are MediaPipe's body, two hands and face. The order of the hands differs between versions,
+    are MediaPipe's body, two hands and face, unless a body cannot be where the first 33 are, as
+    those of a calibration board. The order of the hands differs between versions,
     so the hand closer to the left wrist is the left one. The joints in the middle of the body,
     which MediaPipe lacks, are added (`COMPUTED_JOINTS`). Other arrays are points called
     `point_<number>`. The unit is millimeters, unless the extent is that of a body in meters. Up
@@ -126,10 +127,11 @@ def with_centers(
 
 def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
     n_points = points.shape[1]
+    is_body = n_points == len(BODY_POINTS) or n_points - WITH_HANDS in FACES
+    if not is_body or is_no_body(points[:, : len(BODY_POINTS)], BODY_POINTS):
+        return tuple(f"point_{number}" for number in range(1, n_points + 1))
     if n_points == len(BODY_POINTS):
         return BODY_POINTS
-    if n_points - WITH_HANDS not in FACES:
-        return tuple(f"point_{number}" for number in range(1, n_points + 1))
     hands = [points[:, len(BODY_POINTS)], points[:, len(BODY_POINTS) + len(HAND_POINTS)]]
     wrists = [points[:, BODY_POINTS.index(f"{side}_wrist")] for side in SIDES]
     (first_left, first_right), (second_left, second_right) = (

@@ -1,4 +1,4 @@
-"""Read the CSV export of Vicon Nexus: the section of trajectories."""
+"""Read the CSV export of Vicon Nexus and Workstation: the section of trajectories."""
 
 import re
 from pathlib import Path
@@ -10,6 +10,7 @@ from ...errors import InvalidFileError
 from ...motion import Tracks
 from ...progress import Progress, unwatched, within
 from ..containers import (
+    NUMBER,
     LineReader,
     decode_text,
     find_separator,
@@ -31,16 +32,18 @@ SECTIONS = (b"trajectories", b"devices", b"model outputs", b"joints", b"segments
 """First cells of the parts of a file, in lower case."""
 BLANK = rb'["\t;, ]*'
 HEAD = re.compile(
-    rb'(?i)["\s]*(?:' + b"|".join(SECTIONS) + rb")" + BLANK
-    + rb'[\r\n]+["\s]*\d+(?:[.,]\d+)?' + BLANK + rb"[\r\n]"
+    rb'(?i)["\s]*(?:title[^\r\n]*[\r\n]+(?:[a-z]+:[^\r\n]*[\r\n]+)*\s*)?(?:'
+    + b"|".join(SECTIONS) + rb")" + BLANK
+    + rb'[\r\n]+["\s]*\d+(?:[.,]\d+)?' + BLANK + rb"(?:Hz" + BLANK + rb")?[\r\n]"
 )  # fmt: skip
-HEADER_LINES = 5
-"""Section, rate, names, axes and units."""
+"""Workstation writes a title, a date and notes above, and the unit of the rate."""
+HEADER_LINES = 4
+"""Section, rate, names and axes; Nexus adds a line of units."""
 AXES = ("x", "y", "z")
 
 
 class _ViconHeader(NamedTuple):
-    """The five lines above the frames of trajectories."""
+    """The lines above the frames of trajectories."""
 
     rate: float
     separator: bytes
@@ -60,7 +63,7 @@ def is_vicon_csv(head: bytes) -> bool:
 def open_vicon_csv(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> Bodies[Tracks]:
-    """List the subjects of a Vicon Nexus CSV; read in meters, Z up, missing markers are NaN.
+    """List the subjects of a Vicon CSV; read in meters, Z up, missing markers are NaN.
 
     A marker is missing if one of its cells is blank or not a number, or if it is exactly at
     the origin. Skipped frame numbers are gaps. Nexus has Z up; eight or more markers of a file
@@ -71,7 +74,7 @@ def open_vicon_csv(
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
-        None: the units in the line above the frames.
+        None: the units in the line above the frames, millimeters without it.
     progress : Progress
 
     Returns
@@ -126,29 +129,37 @@ def _read_header(reader: LineReader, path: Path | str) -> _ViconHeader:
     """Skip to the trajectories, and read the lines above their frames."""
     while (line := reader.peek()) and _first_cell(line[0]) != SECTIONS[0]:
         reader.take()
-    lines = reader.take(HEADER_LINES)
+    lines, n_line = reader.take(HEADER_LINES), reader.n_taken - 2
     if len(lines) < HEADER_LINES:
         raise InvalidFileError(
             f"{path} has no trajectories of markers, or ends in their header. Export it from"
             " Nexus with Trajectories."
         )
     separator = find_separator(lines[3])
-    rate, names, axes, units = (split_cells(line, separator) for line in lines[1:])
-    columns = [at for at in range(2, len(axes) - 2) if _is_marker(axes[at : at + 3])]
+    rate, names, axes = (split_cells(line, separator) for line in lines[1:])
+    columns = [at for at in range(1, len(axes) - 2) if _is_marker(axes[at : at + 3])]
     if not columns:
         raise InvalidFileError(
             f"{path} has no columns X, Y and Z of a marker. Export it again, with Trajectories."
         )
     names += [b""] * (len(axes) - len(names))
+    units = _take_units(reader, separator)
     units += [b""] * (len(axes) - len(units))
     return _ViconHeader(
-        rate=read_number(rate[0], f"{path}, line {reader.n_taken - 3}, rate"),
+        rate=read_number(rate[0], f"{path}, line {n_line}, rate"),
         separator=separator,
         labels=[decode_text(names[at]) for at in columns],
         columns=columns,
         units=[meters_from_unit_name(decode_text(units[at])) or MILLIMETER for at in columns],
         width=len(axes),
     )
+
+
+def _take_units(reader: LineReader, separator: bytes) -> list[bytes]:
+    """Take the line of units, if there is one, and return its cells."""
+    cells = [cell for line in reader.peek() for cell in split_cells(line, separator)]
+    has_units = any(cells) and not any(NUMBER.fullmatch(cell) for cell in cells)
+    return cells if has_units and reader.take() else []
 
 
 def _is_marker(cells: list[bytes]) -> bool:

@@ -47,7 +47,7 @@ from .time_units import (
     second_of_times,
     time_name,
 )
-from .unnamed_joints import has_layout
+from .unnamed_joints import has_layout, is_no_body
 
 __all__ = [
     "HIPS",
@@ -70,6 +70,7 @@ __all__ = [
     "in_room",
     "is_frame_title",
     "is_increasing",
+    "is_no_body",
     "is_other_array",
     "is_quantity",
     "is_world",

@@ -47,9 +47,9 @@ SMPL = "SMPL"
 HUMANML3D_RATE_HZ = 20.0
 """Frames per second of HumanML3D, hertz, by definition of the data set."""
 SENSORS = {
-    "Kinect v1": Sensor.KINECT_V1, "Kinect v2 or NTU": Sensor.KINECT_V2,
-    "Azure Kinect": Sensor.AZURE_KINECT, "MediaPipe": Sensor.MEDIAPIPE,
-    "ZED 34": Sensor.ZED, "ZED 38": Sensor.ZED,
+    "Kinect v1": Sensor.KINECT_V1, "UTD-MHAD": Sensor.KINECT_V1,
+    "Kinect v2 or NTU": Sensor.KINECT_V2, "Azure Kinect": Sensor.AZURE_KINECT,
+    "MediaPipe": Sensor.MEDIAPIPE, "ZED 34": Sensor.ZED, "ZED 38": Sensor.ZED,
 }  # fmt: skip
 """Camera or tracker of a layout."""
 MIN_PIXELS = 10.0

@@ -25,6 +25,9 @@ MAX_MISFIT = 0.65
 by hand on takes of CMU and HDM05: the right order has 0.1 to 0.3, and 0.3 to 0.6 with noise of
 2 cm; one in a hundred random orders has less than 0.73; x0.5 and x2 fail tests of this
 module."""
+MIN_MISFIT_OF_OTHERS = 1.2
+"""Misfit, a ratio, from which points are no body even in an order that is expected. Chosen by
+hand: twice that of a take with noise of 2 cm, and the least of 20 arrays of pure noise."""
 CLEAR_MISFIT = 0.35
 """Misfit, a ratio, up to which the confidence is full. Chosen by hand on the same takes."""
 CLEAR_LEAD = 1.5
@@ -88,6 +91,19 @@ def name_joints(points: Array) -> NamedJoints | None:
     leads = min((lead - 1.0) / (CLEAR_LEAD - 1.0), 1.0)
     named = _in_order(points, LAYOUTS[ranked[0]])
     return NamedJoints(ranked[0], *named, 0.5 + 0.5 * fits * leads)
+
+
+def is_no_body(points: Array, order: Sequence[str]) -> bool:
+    """Return whether points in an order of joints cannot be those of a body.
+
+    It takes more than for `name_joints`, and nothing follows from joints that are missing: the
+    order is expected, and points of cameras may be noisy, or the upper body alone.
+    """
+    step = max(1, len(points) // N_SAMPLED_FRAMES)
+    posture = posture_positions(Tracks(*_in_order(points[::step], order), 1.0))
+    lengths, is_known = limb_lengths(posture)
+    is_odd = is_known.all() and length_misfit(lengths) > MIN_MISFIT_OF_OTHERS
+    return bool(is_odd) or _is_crossed(posture) or _has_thigh_inward(posture)
 
 
 def bone_misfit(names: Sequence[str], positions: Array) -> float:

@@ -1,4 +1,4 @@
-"""Read the archives of Kimodo: joints and world rotations of a SOMA or SMPL-X skeleton."""
+"""Read the archives of Kimodo: joints and world rotations of SOMA, SMPL-X or Unitree's G1."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -63,12 +63,34 @@ def _leg(side: str, has_toe_end: bool) -> Tree:
     return tuple(zip(chain[1:], chain[:-1], strict=True))
 
 
+def _robot() -> Tree:
+    """Return the joints of Unitree's G1, a robot, each with one axis; ends are Kimodo's."""
+    legs = (
+        _chain(f"{side}_", "pelvis", "hip_pitch", "hip_roll", "hip_yaw", "knee", "ankle_pitch",
+               "ankle_roll", "toe_base")
+        for side in ("left", "right")
+    )  # fmt: skip
+    arms = (
+        _chain(f"{side}_", "waist_pitch", "shoulder_pitch", "shoulder_roll", "shoulder_yaw",
+               "elbow", "wrist_roll", "wrist_pitch", "wrist_yaw", "hand_roll")
+        for side in ("left", "right")
+    )  # fmt: skip
+    waist = _chain("", "pelvis", "waist_yaw", "waist_roll", "waist_pitch")
+    return (("pelvis", ""), *(pair for chain in (*legs, waist, *arms) for pair in chain))
+
+
+def _chain(side: str, first: str, *parts: str) -> Tree:
+    names = (first, *(side + part for part in parts))
+    return tuple(zip(names[1:], names[:-1], strict=True))
+
+
 JOINTS = _soma(has_fingers=False)
 TREES: dict[int, Tree] = {
     len(tree): tree
     for tree in (
         JOINTS,
         _soma(has_fingers=True),
+        _robot(),
         tuple((name, parent) for name, parent, _ in BODY),
     )
 }
@@ -91,9 +113,9 @@ def open_kimodo(
     """List the motions of an archive of Kimodo; read in meters, Z up.
 
     The archives hold positions and world rotations of joints, without names, parents or frame
-    rate. Their number shows the skeleton: 30 or 77 of SOMA, 22 of SMPL-X. Bones are the mean
-    of the joints seen from their parents; 30 Hz is assumed where no rate is given. Several
-    samples of one text are bodies.
+    rate. Their number shows the skeleton: 30 or 77 of SOMA, 22 of SMPL-X, 34 of Unitree's G1.
+    Bones are the mean of the joints seen from their parents; 30 Hz is assumed where no rate is
+    given. Several samples of one text are bodies.
 
     Parameters
     ----------
@@ -151,8 +173,8 @@ def _motion(
     tree = TREES.get(joints.shape[1])
     if tree is None or joints.shape[2] != 3 or matrices.shape != (*joints.shape, 3):
         raise InvalidFileError(
-            f"{path} has joints of shape {joints.shape}; the skeletons of Kimodo have 22, 30 or"
-            " 77 joints with a rotation each. Export it as BVH."
+            f"{path} has joints of shape {joints.shape}; the skeletons of Kimodo have 22, 30,"
+            " 34 or 77 joints with a rotation each. Export it as BVH."
         )
     names = tuple(name for name, _ in tree)
     parents = [names.index(parent) if parent else -1 for _, parent in tree]

@@ -20,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[3]
 FAMILIES: dict[str, tuple[str, ...]] = {
     "denoising": (
         "solvers/denoising/denoise.py",
+        "solvers/denoising/denoise_settings.py",
         "solvers/denoising/edge_poses.py",
         "solvers/denoising/held_samples",
         "solvers/denoising/noise_sections.py",

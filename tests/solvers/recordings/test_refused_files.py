@@ -75,6 +75,8 @@ def object_array() -> bytes:
         ("%YAML 1.1\n%TAG !u! tag:unity3d.com,2011:\n", "FBX Exporter"),
         ("[Header]\n# of a\n\n#b\nFileType htr\nFileVersion 1\n", "BVH, FBX or C3D"),
         (f"[Header]\n{'#' * 60}\na note on the take", "unknown format"),
+        ("Joint 0: Position(265.7, -156.6, 2424.5), Orientation(", "of one frame of the Azure"),
+        ("PELVIS Joint info: \n\tposition: [265.7,-156.6]\n", "of its offline_processor"),
         (b"\x89HDF\r\n\x1a\n" + bytes(60), "with numpy.save"),
         (b"PK\x03\x04" + bytes(26) + b"[Content_Types].xml" + bytes(60), "as CSV"),
         (b"PK\x03\x04" + bytes(26) + b"take.usdc" + bytes(60), "Import it in Blender"),

@@ -21,6 +21,11 @@ from solvers.recordings.conventions import conventions_of
 
 NOSE, LEFT_WRIST, RIGHT_WRIST, ANKLES = 0, 15, 16, (27, 28)
 TRIPLE = [NOSE, LEFT_WRIST, RIGHT_WRIST]
+LIMBS = {
+    11: (0.18, 0.0, 0.42), 13: (0.35, 0.0, 0.2), LEFT_WRIST: (0.5, 0.0, 0.0),
+    23: (0.1, 0.0, -0.05), 25: (0.1, 0.0, -0.48), 27: (0.1, 0.0, -0.9),
+}  # fmt: skip
+"""Joints of the left side and their positions, meters above 1 m; those of the right follow."""
 
 
 @pytest.fixture
@@ -115,9 +120,9 @@ def person() -> np.ndarray:
     points = np.random.default_rng(5).normal(scale=0.02, size=(20, 75, 3))
     points += (0, 0, 1)
     points[:, NOSE] += (0, -0.1, 0.65)
-    points[:, list(ANKLES)] -= (0, 0, 0.9)
-    points[:, LEFT_WRIST] += (0.5, 0, 0)
-    points[:, RIGHT_WRIST] -= (0.5, 0, 0)
+    for left, place in LIMBS.items():
+        points[:, left] += place
+        points[:, left + 1] += (-place[0], *place[1:])
     points[:, 33:54] += points[:, [RIGHT_WRIST]] - (0, 0, 1)
     points[:, 54:] += points[:, [LEFT_WRIST]] - (0, 0, 1)
     points[3, 5] = np.nan
@@ -227,8 +232,10 @@ def test_freemocap_hands_are_assigned_by_observed_points(write, person, right_fi
 @pytest.mark.parametrize(
     ("n_points", "last"), [(33, "head_center"), (553, "head_center"), (7, "point_7")]
 )
-def test_freemocap_names_by_the_number_of_points(write, rng, n_points, last):
-    tracks = read_freemocap(write(npy(rng.normal(size=(4, n_points, 3)))), frame_rate=24.0)
+def test_freemocap_names_by_the_number_of_points(write, rng, person, n_points, last):
+    points = rng.normal(size=(4, n_points, 3))
+    points[:, :33] = person[:4, : min(n_points, 33)]
+    tracks = read_freemocap(write(npy(points)), frame_rate=24.0)
 
     assert tracks.names[-1] == last
     assert tracks.frame_rate == 24.0

@@ -49,6 +49,16 @@ def test_subjects_of_c3d_are_bodies_and_a_box_is_a_prop(tmp_path, rng):
     assert read_recording(path).n_points == 20
 
 
+def test_sides_after_the_letter_of_an_actor_are_no_people(tmp_path, rng):
+    """L is the actor in LL_IAS and LR_IAS, as Qualisys writes them."""
+    points = np.concatenate([person(rng), person(rng), person(rng, 2)], axis=1)
+    labels = [f"L{side}_M{n}" for side in "LR" for n in "ABCDEFGHIJKLMNOPQRST"]
+    write_c3d(Tracks((*labels, "LCV7", "LTV10"), points, 100.0), tmp_path / "take.c3d")
+
+    assert not list_bodies(tmp_path / "take.c3d")
+    assert read_recording(tmp_path / "take.c3d").n_points == 42
+
+
 @pytest.mark.parametrize("program", ["trc", "vicon", "motive", "qualisys"])
 def test_subjects_of_every_marker_format_are_bodies(make_writer, program, rng):
     points = np.concatenate([person(rng), box(rng), person(rng)], axis=1)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from solvers.motion import Motion, world_poses
+from solvers.motion import JointRecording, Motion, Sensor, world_poses
 from solvers.recordings import Axis, FloorPlacement, ReadingSettings, read_as
+from solvers.recordings.conventions import level
 from solvers.rotations import (
     quaternion_from_euler,
     rotate,
@@ -82,6 +83,21 @@ def test_joints_of_a_tilted_camera_stand(tmp_path, walker, tilt_deg):
     assert trunk(recording, "pelvis", "head")[2] > np.cos(np.radians(8.0))
     assert (LEANS in said) == (tilt_deg != 0.0)
     assert ("is turned upright" in said) == (tilt_deg != 0.0)
+
+
+@pytest.mark.parametrize("sensor", [Sensor.KINECT_V2, Sensor.OTHER])
+def test_a_small_lean_is_that_of_a_kinect(tmp_path, walker, sensor):
+    """Its axes are always those of the camera; of others the actor may lean."""
+    tilted, _ = read(joints(tmp_path / "take.csv", walker, 7.0), FloorPlacement.NEVER)
+    said: list[str] = []
+
+    turned = level(
+        JointRecording(tilted.tracks, None, sensor), lambda _, text="": said.append(str(text))
+    )
+
+    before, after = (trunk(each, "pelvis", "head")[2] for each in (tilted, turned))
+    assert before < np.cos(np.radians(8.0))
+    assert (after > np.cos(np.radians(5.0))) == bool(said) == (sensor is Sensor.KINECT_V2)
 
 
 def test_who_sits_with_straight_legs_leans_by_intention(tmp_path, walker):

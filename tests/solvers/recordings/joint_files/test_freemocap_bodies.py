@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from joint_files import npy
 from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
-from solvers.motion import forward_kinematics, motion_from_points
+from solvers.motion import Tracks, forward_kinematics, motion_from_points
 from solvers.motion.skeletons.mediapipe import BODY_POINTS, HAND_POINTS
 from solvers.recordings import read_bvh, read_freemocap
 
@@ -55,6 +56,32 @@ def test_motion_follows_the_tracked_joints(walk, tmp_path):
         measured = recording.tracks.positions[:, recording.names.index(name)]
         away = np.linalg.norm(found[:, motion.skeleton.names.index(name)] - measured, axis=1)
         assert away.mean() < 0.03, name
+
+
+@pytest.mark.parametrize("n_others", [0, 42])
+@pytest.mark.parametrize("points", ["board", "face"])
+def test_other_points_are_no_body_though_they_are_33(tmp_path, rng, points, n_others):
+    """They came in as a body whose limbs were the corners of a board."""
+    corners = 50.0 * np.argwhere(np.ones((3, 11, 1)))
+    own = corners if points == "board" else rng.normal(scale=(70.0, 90.0, 50.0), size=(33, 3))
+    turns = Rotation.from_euler("xyz", np.linspace((0, 0, 0), (0.9, 1.2, 0.5), 60))
+    moved = np.stack([turn.apply(own) for turn in turns]) + np.array([200.0, 2000.0, 800.0])
+    others = rng.normal(size=(60, n_others, 3)) + np.array([0.0, 2000.0, 0.0])
+    path = tmp_path / "take.npy"
+    path.write_bytes(npy(np.concatenate([moved, others], axis=1)))
+
+    recording = read_freemocap(path)
+
+    assert isinstance(recording, Tracks)
+    assert recording.names[:2] == ("point_1", "point_2")
+
+
+def test_a_body_without_legs_is_one(walk, tmp_path):
+    points = walk.copy()
+    points[:, 23:] = np.nan
+    (tmp_path / "take.npy").write_bytes(npy(1000.0 * points))
+
+    assert read_freemocap(tmp_path / "take.npy").names[:33] == BODY_POINTS
 
 
 def test_the_rest_pose_is_a_t_pose(walk, tmp_path):

@@ -47,6 +47,27 @@ def test_numbers_of_a_known_order_need_no_titles(read_any, body, above, confiden
     assert sizes[0] == pytest.approx(sizes[1], abs=1e-3)
 
 
+@pytest.mark.parametrize("order", ["pq", "pqc", "cpq"])
+def test_quaternions_next_to_the_positions_are_left_out(read_any, body, rng, order):
+    """As in dumps of the Kinect's joints; what is no quaternion is no joint."""
+    quaternions = rng.normal(size=(*body.shape[:2], 4))
+    quaternions /= np.linalg.norm(quaternions, axis=-1, keepdims=True)
+    quaternions[:, 3] = 0.0
+    states = np.full((*body.shape[:2], 1), 2.0)
+    parts = {"p": body, "q": quaternions, "c": states}
+    values = np.concatenate([parts[each] for each in order], axis=-1)
+
+    recording = read_any("\n".join(" ".join(f"{x:.5f}" for x in row.flat) for row in values))
+
+    assert recording.names == LAYOUTS["SMPL"]
+    sizes = [np.ptp(each[..., 2]) for each in (recording.tracks.positions, body)]
+    assert sizes[0] == pytest.approx(sizes[1], abs=1e-3)
+    parts["q"] *= 1.5
+    values = np.concatenate([parts[each] for each in order], axis=-1)
+    with pytest.raises(InvalidFileError, match="table without titles"):
+        read_any("\n".join(" ".join(f"{x:.5f}" for x in row.flat) for row in values))
+
+
 @pytest.mark.parametrize("above", [[], ["time"], ["frame", "time"]])
 def test_the_values_of_pandas_in_json_are_such_a_table(read_any, body, above):
     """Times among the values are not those of a joint."""

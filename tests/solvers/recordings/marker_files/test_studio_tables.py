@@ -10,6 +10,7 @@ from exports.studio_tables import (
     qualisys_markers,
     qualisys_skeleton,
     vicon,
+    workstation,
 )
 from numpy.testing import assert_allclose
 
@@ -26,7 +27,7 @@ def z_up(positions):
     return np.stack([x, -z, y], axis=-1)
 
 
-@pytest.mark.parametrize("program", [vicon, qualisys_markers])
+@pytest.mark.parametrize("program", [vicon, workstation, qualisys_markers])
 def test_markers_come_in_meters_without_the_prefix_of_the_actor(read_any, program):
     tracks = read_any(program(NAMES, POINTS))
 
@@ -48,7 +49,7 @@ def test_motive_markers_are_turned_to_z_up_in_the_unit_of_the_header(read_any, u
 
 
 @pytest.mark.parametrize("blank", [np.nan, 0.0])
-@pytest.mark.parametrize("program", [vicon, qualisys_markers])
+@pytest.mark.parametrize("program", [vicon, workstation, qualisys_markers])
 def test_blank_and_zero_cells_are_gaps(read_any, program, blank):
     points = POINTS.copy()
     points[2:4, 1] = blank

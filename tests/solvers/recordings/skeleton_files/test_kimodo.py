@@ -21,8 +21,17 @@ BONES = {
     "Head": (0.0, 0.1, 0.02), "Shoulder": (0.05, 0.08, 0.0), "Arm": (0.12, 0.0, 0.0),
     "ForeArm": (0.28, 0.0, 0.0), "Hand": (0.25, 0.0, 0.0), "Leg": (0.1, -0.05, 0.0),
     "Shin": (0.0, -0.42, 0.0), "Foot": (0.0, -0.4, -0.03), "ToeBase": (0.0, -0.06, 0.14),
+    "hip_pitch": (0.064, -0.103, 0.0), "hip_roll": (0.052, -0.03, 0.0),
+    "hip_yaw": (0.0, -0.124, 0.025), "knee": (0.002, -0.177, -0.078),
+    "ankle_pitch": (0.0, -0.3, 0.0), "ankle_roll": (0.0, -0.018, 0.0),
+    "toe_base": (0.0, -0.035, 0.14), "waist_yaw": (0.0, 0.0, 0.0),
+    "waist_roll": (0.0, 0.044, -0.004), "waist_pitch": (0.0, 0.0, 0.0),
+    "shoulder_pitch": (0.1, 0.248, 0.004), "shoulder_roll": (0.038, -0.014, 0.0),
+    "shoulder_yaw": (0.006, -0.103, 0.0), "elbow": (0.0, -0.081, 0.016),
+    "wrist_roll": (0.002, -0.01, 0.1), "wrist_pitch": (0.0, 0.0, 0.038),
+    "wrist_yaw": (0.0, 0.0, 0.046), "hand_roll": (0.0, 0.0, 0.1),
 }  # fmt: skip
-"""Y up, facing +Z, meters, by the end of the name; of the left side."""
+"""Y up, facing +Z, meters, by the end of the name, left side."""
 
 
 def walking(rng, tree=JOINTS):
@@ -44,7 +53,7 @@ def walking(rng, tree=JOINTS):
             (end for end in BONES if name.rstrip("12").endswith(end)), key=len, default=""
         )
         offset = np.array(BONES.get(longest, (0.03, 0.02, 0.05)))
-        offset *= (-1.0 if name.startswith("Right") else 1.0, 1.0, 1.0)
+        offset *= (-1.0 if name.lower().startswith("right") else 1.0, 1.0, 1.0)
         world[:, joint] = multiply(world[:, above], local[:, joint])
         joints[:, joint] = joints[:, above] + rotate(world[:, above], offset)
     return joints, matrix_from_quaternion(world)
@@ -70,6 +79,26 @@ def test_the_full_skeleton_with_fingers_is_read(tmp_path, rng):
     assert names.index("LeftHandPinkyEnd") == 38 and names.index("RightToeEnd") == 76
     found = find_humanoid_map(motion.skeleton)
     assert found.joint("leftHand") == "LeftHand" and found.joint("rightToes") == "RightToeBase"
+
+
+def test_a_robot_is_read_with_the_joints_that_carry_its_limbs(tmp_path, rng):
+    """Unitree's G1 has one joint for each axis; the last of them moves the limb."""
+    joints, matrices = walking(rng, TREES[34])
+    np.savez(tmp_path / "take.npz", posed_joints=joints, global_rot_mats=matrices)
+
+    motion = read_recording(tmp_path / "take.npz")
+
+    found = find_humanoid_map(motion.skeleton)
+    assert found.score > 0.9
+    for role, name in {
+        "UpperLeg": "hip_yaw", "LowerLeg": "knee", "Foot": "ankle_roll",
+        "UpperArm": "shoulder_yaw", "LowerArm": "elbow", "Hand": "wrist_yaw",
+    }.items():  # fmt: skip
+        assert found.joint(f"left{role}") == f"left_{name}"
+        assert found.joint(f"right{role}") == f"right_{name}"
+    poses = world_poses(motion.skeleton, motion.rotations, motion.root_positions)
+    x, y, z = np.moveaxis(joints, -1, 0)
+    assert_allclose(poses.positions, np.stack([x, -z, y], axis=-1), atol=1e-6)
 
 
 def test_samples_of_one_text_are_bodies(tmp_path, rng):
