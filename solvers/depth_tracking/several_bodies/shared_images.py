@@ -17,7 +17,8 @@ from ...depth_scene import (
     share_pixels,
 )
 from ..body import BodyModel
-from ..terms import closest_surface, render_hypothesis, subsampling_step
+from ..terms import subsampling_step
+from .surface_distances import surface_distances
 
 REACH_M = 0.5
 """Distance from a body, meters, beyond which a component of the image is no part of it. It
@@ -50,7 +51,7 @@ class SharedImages:
     def owners(self, frame: int, poses: Sequence[Array | None]) -> Integers:
         """Return the person of each pixel of a frame, (height, width); `NO_OWNER` for none.
 
-        A pixel belongs to the nearest of all surfaces that face the camera.
+        A pixel belongs to the nearest surface.
 
         Parameters
         ----------
@@ -67,10 +68,9 @@ class SharedImages:
         points = camera.back_project(coarse)[seen]
         distances = np.full((len(points), len(self.bodies)), np.inf)
         for person, (body, pose) in enumerate(zip(self.bodies, poses, strict=True)):
-            if pose is not None and len(points):
-                hypothesis = render_hypothesis(body, pose, camera)
-                distances[:, person] = np.abs(closest_surface(hypothesis, points)[0])
-            elif pose is None:
+            if pose is not None:
+                distances[:, person] = surface_distances(body, pose, points)
+            else:
                 center = self.centers[person, frame][np.newaxis]
                 distances[:, person] = level_distances(points, center, self.up)[:, 0]
         owners = np.full(coarse.shape, NO_OWNER)

@@ -1,6 +1,6 @@
 """The terms of the tracker's objective: how well a pose explains a depth image."""
 
-from .closest_surface import closest_surface, closest_surface_term
+from .closest_surface import closest_surface_term
 from .depth_image import depth_image_term
 from .free_space import off_actor_term
 from .hypothesis import Hypothesis, capsule_offsets, render_hypothesis
@@ -16,7 +16,6 @@ __all__ = [
     "Observation",
     "TrackerSettings",
     "capsule_offsets",
-    "closest_surface",
     "closest_surface_term",
     "depth_image_term",
     "group_pixels",

@@ -23,7 +23,7 @@ UP = np.array([0.0, -1.0, 0.0])
 BODY = np.stack(np.meshgrid(np.linspace(-0.2, 0.2, 9), np.linspace(-0.8, 0.8, 17)), axis=-1)
 BODY = np.append(BODY.reshape(-1, 2), np.zeros((153, 1)), axis=1)
 """Points of a flat person, 0.4 m wide; the median is the center."""
-TOUCHING_M = 0.6
+TOUCHING_M = 0.45
 """Horizontal distance of centers below which two people are one component."""
 
 
@@ -46,21 +46,22 @@ def follow(*people, n_people=None):
 
 
 def test_two_people_who_pass_each_other_keep_their_identities():
+    """They run: between samples each comes to where the other was expected without a speed."""
     centers = follow(
-        lambda time: (1.0 * time - 2.5, 0.0, 3.0), lambda time: (2.5 - 1.0 * time, 0.0, 3.9)
+        lambda time: (2.5 * time - 6.25, 0.0, 3.0), lambda time: (6.25 - 2.5 * time, 0.0, 3.46)
     )
 
     assert len(centers) == 2
     ordered = sorted(centers, key=lambda path: path[0, 0])
-    np.testing.assert_allclose(ordered[0][:, 0], TIMES - 2.5, atol=1e-9)
-    np.testing.assert_allclose(ordered[1][:, 2], 3.9, atol=1e-9)
+    np.testing.assert_allclose(ordered[0][:, 0], 2.5 * TIMES - 6.25, atol=1e-9)
+    np.testing.assert_allclose(ordered[1][:, 2], 3.46, atol=1e-9)
 
 
 def test_two_people_who_touch_for_two_seconds_stay_two():
-    """They approach to half a meter, one component, and move apart again."""
+    """They approach to 0.4 m, one component, and move apart again."""
 
     def half(time):
-        return 0.25 + 1.0 * max(abs(time - 2.5) - 1.0, 0.0)
+        return 0.2 + 1.0 * max(abs(time - 2.5) - 1.0, 0.0)
 
     centers = follow(lambda time: (-half(time), 0.0, 3.0), lambda time: (half(time), 0.0, 3.0))
 
@@ -94,13 +95,15 @@ def test_person_hidden_for_half_a_second_is_the_same():
 
 
 def test_person_divided_by_another_one_in_front_is_one():
-    """Two parts of a person behind another are 0.4 m apart, three bodies in one frame."""
+    """Two parts of a person behind another are half a meter from each other: three bodies."""
+
+    def is_divided(time):
+        return abs(time - 2.5) < 0.3
+
     centers = follow(
         lambda time: (0.0, 0.0, 2.5),
-        lambda time: (
-            (-0.2, 0.0, 4.0) if abs(time - 2.5) < 0.3 else (0.9 * time - 2.25, 0.0, 4.0)
-        ),
-        lambda time: (0.2, 0.0, 4.0) if abs(time - 2.5) < 0.3 else None,
+        lambda time: (-0.24 if is_divided(time) else 0.9 * time - 2.25, 0.0, 4.0),
+        lambda time: (0.24, 0.0, 4.0) if is_divided(time) else None,
     )
 
     assert len(centers) == 2

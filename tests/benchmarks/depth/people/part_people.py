@@ -1,7 +1,6 @@
 """Several people: together with one depth buffer, each component alone, and one person."""
 
 from collections.abc import Callable
-from time import process_time
 from typing import NamedTuple
 
 import numpy as np
@@ -11,14 +10,15 @@ from solvers.depth_scene.find_people import SeparatedPeople, find_people
 from solvers.depth_scene.foreground import ForegroundMethod, ForegroundSettings, cut_out_actor
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.model import BodyModel
-from solvers.depth_tracking.capturing.capture import capture
+from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
 from solvers.depth_tracking.several_bodies import capture_people
 
 from ...shared.tables import Scores
 from ..depth_sequences import errors
 from .two_actors import SCENES, PeopleSequence, people_sequence
 
-FPS = "frames/s"
+FORWARD = CaptureSettings(backward=False)
+"""Half the run time; the peers are tracked in the same way."""
 Found = list[np.ndarray]
 """Joints of each person that was found, (n_frames, 21, 3)."""
 
@@ -39,14 +39,13 @@ def people() -> list[str]:
         "each component alone": _alone,
         "one person": _one_person,
     }
-    scores = Scores("Two people", f"{2 * len(SCENES)} people as clips; lengths known", "")
+    unit = f"{2 * len(SCENES)} people as clips; tracked forward, lengths known"
+    scores = Scores("Two people", unit, "")
     by_person = Scores("Two people, by person, cm after offset", "one each", "")
     for name in SCENES:
         one = people_sequence(name)
         for label, method in methods.items():
-            started = process_time()
             found = method(one)
-            speed = one.depth.n_frames / (process_time() - started)
             matches = [matched(joints, one) for joints in found]
             for person in range(len(one.joints)):
                 figures = figures_of(person, found, matches, one)
@@ -54,7 +53,6 @@ def people() -> list[str]:
                     by_person.add(f"{name}, {'AB'[person]}", label, name, figures["cm"])
                 for column, figure in figures.items():
                     scores.add(label, column, f"{name} {person}", figure)
-            scores.add(label, FPS, name, speed)
     return [scores.markdown(), by_person.markdown()]
 
 
@@ -95,7 +93,7 @@ def bodies_of(found: SeparatedPeople, one: PeopleSequence) -> list[BodyModel]:
 
 def _together(one: PeopleSequence) -> Found:
     found = find_people(one.depth)
-    captures = capture_people(found, bodies_of(found, one))
+    captures = capture_people(found, bodies_of(found, one), settings=FORWARD)
     return [each.joints.positions for each in captures]
 
 
@@ -116,4 +114,4 @@ def _one_person(one: PeopleSequence) -> Found:
 
 
 def _captured(depth: DepthRecording, body: BodyModel) -> np.ndarray:
-    return capture(depth, body).joints.positions
+    return capture(depth, body, settings=FORWARD).joints.positions

@@ -11,11 +11,12 @@ from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_scene.share_pixels import NO_OWNER
 from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.body.tables import CAPSULES, JOINTS
 from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
 from solvers.depth_tracking.capturing.capture_method import CaptureMethod
 from solvers.depth_tracking.several_bodies.capture_people import capture_people
 from solvers.depth_tracking.several_bodies.shared_images import SharedImages
+from solvers.depth_tracking.several_bodies.surface_distances import surface_distances
 from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidMotionError, InvalidSettingError
@@ -96,6 +97,20 @@ def test_hidden_half_is_no_evidence_against_a_pose():
     ]
     assert errors[0] < 0.02 and errors[1] > 0.06
     assert found[0].coverage.mean() > 0.98 > 0.9 > found[1].coverage.mean()
+
+
+def test_distances_to_the_surface():
+    """Zero on it; outside and inside the head nearly as far, where no neck is nearer."""
+    hypothesis = render_hypothesis(BODY, NATURAL, CAMERA)
+    points, normals = hypothesis.points, hypothesis.normals
+
+    assert np.abs(surface_distances(BODY, NATURAL, points)).max() < 1e-9
+
+    head = hypothesis.image.capsules == CAPSULES.index("head")
+    outside = surface_distances(BODY, NATURAL, (points + 0.05 * normals)[head])
+    inside = surface_distances(BODY, NATURAL, (points - 0.02 * normals)[head])
+    assert outside.max() < 0.052 and np.median(outside) == pytest.approx(0.05, abs=0.001)
+    assert np.median(inside) == pytest.approx(-0.02, abs=0.001)
 
 
 def test_pixels_belong_to_the_nearest_surface():
