@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from ..denoising import PlantSettings
-from ..depth_scene import DepthRecording, ForegroundSettings, find_people
+from ..depth_scene import DepthRecording, ForegroundSettings, SeparatedPeople, find_people
 from ..depth_tracking.body import BodyModel, MotionPrior
 from ..depth_tracking.capturing import CaptureSettings
 from ..depth_tracking.several_bodies import capture_people
@@ -42,7 +42,9 @@ def capture_every_person(
         One for each person, the most visible first. Default: fitted to the recording.
     n_people : int, optional
         Default: as many as are visible at once.
-    motion_prior, empty, settings, foreground, planting, on_pose, progress
+    on_pose : PoseCallback
+        Called with each pose of the first person.
+    motion_prior, empty, settings, foreground, planting, progress
         As in `capture_recording`.
 
     Returns
@@ -63,9 +65,29 @@ def capture_every_person(
         recording, foreground, n_people=n_people, empty=empty,
         progress=within(progress, 0.0, FOREGROUND_FRACTION),
     )  # fmt: skip
+    return capture_separated_people(
+        people, bodies, motion_prior=motion_prior, settings=settings, planting=planting,
+        on_pose=on_pose, progress=within(progress, FOREGROUND_FRACTION, 1.0),
+    )  # fmt: skip
+
+
+def capture_separated_people(
+    people: SeparatedPeople,
+    bodies: Sequence[BodyModel] | None = None,
+    *,
+    motion_prior: MotionPrior | None = None,
+    settings: CaptureSettings = CAPTURE_SETTINGS,
+    planting: PlantSettings | None = PLANT_SETTINGS,
+    on_pose: PoseCallback = ignore_pose,
+    progress: Progress = unwatched,
+) -> tuple[CapturedMotion, ...]:
+    """Track separated people together, and plant their feet.
+
+    The parameters are those of `capture_every_person`.
+    """
     captures = capture_people(
         people, bodies, motion_prior=motion_prior, settings=settings, on_pose=on_pose,
-        progress=within(progress, FOREGROUND_FRACTION, 0.95),
+        progress=within(progress, 0.0, 0.95),
     )  # fmt: skip
     count = len(captures)
     return tuple(

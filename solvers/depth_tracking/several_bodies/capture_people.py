@@ -53,7 +53,9 @@ def capture_people(
         As found by `solvers.depth_scene.find_people`.
     bodies : sequence of BodyModel, optional
         One for each person, in the order of `people`. Default: fitted to the recording.
-    forest, motion_prior, settings, tracker, on_pose, progress
+    on_pose : PoseCallback
+        Called with each pose of the first person.
+    forest, motion_prior, settings, tracker, progress
         As in `capture`.
 
     Returns
@@ -78,6 +80,7 @@ def capture_people(
     if bodies is not None and len(bodies) != n_people:
         raise InvalidMotionError(f"{len(bodies)} bodies do not match {n_people} people.")
     forest = load_pixel_forest() if forest is None else forest
+    callbacks = [on_pose, *[ignore_pose] * (n_people - 1)]
     if motion_prior is None and settings.recorded:
         motion_prior = load_motion_prior()
     body_fraction = 0.0
@@ -86,7 +89,7 @@ def capture_people(
         bodies = [
             find_body(
                 actor.recording, forest, refine=settings.refine, tracker=tracker,
-                on_pose=on_pose,
+                on_pose=callbacks[index],
                 progress=within(
                     progress, body_fraction * index / n_people,
                     body_fraction * (index + 1) / n_people,
