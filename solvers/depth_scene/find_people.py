@@ -14,7 +14,7 @@ from .bodies import find_bodies
 from .camera_checks import check_intrinsics
 from .floor import LEVEL
 from .follow_several_people import BodyPoints, follow_several_people, level_distances
-from .foreground import ActorImages, ForegroundSettings
+from .foreground import ForegroundSettings
 from .person_finder import PersonFinder, person_finder, sample_frames
 from .recording import DepthImage, DepthRecording
 from .share_pixels import NO_OWNER, enlarged, share_pixels
@@ -87,7 +87,7 @@ def find_people(
             f"Only {len(centers)} of {n_people} people are found. Reduce the number of people,"
             " or the minimum body area."
         )
-    images = _PeopleImages(finder.images, centers)
+    images = _PeopleImages(finder, centers)
     people = replace(recording, read_depth=images.depth, read_occluders=None)
     warnings = (*check_intrinsics(recording.camera), *finder.warnings())
     actors = []
@@ -140,12 +140,12 @@ class _PeopleImages:
 
     Parameters
     ----------
-    images : ActorImages
+    finder : PersonFinder
     centers : shape (n_people, n_frames, 3), meters
     """
 
-    def __init__(self, images: ActorImages, centers: Array) -> None:
-        self._images, self._centers = images, centers
+    def __init__(self, finder: PersonFinder, centers: Array) -> None:
+        self._finder, self._centers = finder, centers
         self._last: tuple[int, DepthImage, Integers] | None = None
 
     def depth(self, frame: int) -> DepthImage:
@@ -170,12 +170,13 @@ class _PeopleImages:
 
     def _read(self, frame: int) -> tuple[DepthImage, Integers]:
         """Return the depth of the people, and the person of each pixel."""
-        images, centers = self._images, self._centers[:, frame]
+        images, centers = self._finder.images, self._centers[:, frame]
         camera = images.recording.camera
         depth = images.foreground(images.recording.frame(frame))
         bodies = find_bodies(depth, camera, images.settings.min_body_area)
         coarse, coarse_camera = depth[:: bodies.step, :: bodies.step], camera.every(bodies.step)
-        in_body = bodies.labels > 0
+        is_person = self._finder.may_be_people(bodies, coarse, bodies.step)
+        in_body = np.isin(bodies.labels, np.flatnonzero(is_person) + 1)
         distances = level_distances(
             coarse_camera.back_project(coarse)[in_body], centers,
             (images.floor or LEVEL).up,
@@ -185,6 +186,5 @@ class _PeopleImages:
         labels = np.unique(bodies.labels[owners != NO_OWNER])
         masks = [bodies.mask(int(label)) for label in labels]
         mask = np.any(masks, axis=0) if masks else np.zeros(depth.shape, dtype=bool)
-        return np.where(mask, depth, np.float32(0.0)), enlarged(
-            owners, bodies.step, depth.shape
-        )
+        owners = enlarged(owners, bodies.step, depth.shape)
+        return np.where(mask, depth, np.float32(0.0)), owners

@@ -18,7 +18,7 @@ from .foreground import (
     learn_background,
     uncovered_background,
 )
-from .recording import DepthRecording
+from .recording import DepthImage, DepthRecording
 
 SAMPLES_PER_SECOND, MAX_SAMPLES = 6.0, 12_000
 """Frames a second, in hertz, from which the scene is learned, and their maximum number. They
@@ -129,6 +129,25 @@ class PersonFinder:
         depth = self.images.recording.frame(frame)[::step, ::step]
         depth = self.images.foreground(depth, step)
         bodies = find_bodies(depth, self.camera, settings.min_body_area, step=1)
+        is_person = self.may_be_people(bodies, depth, step)
+        if is_person.any():
+            label = int(np.argmax(is_person)) + 1
+            self._is_cropped.append(
+                bool((bodies.labels[-1] == label).mean() >= MIN_CROPPED_FRACTION)
+            )
+            points = self.camera.back_project(depth)[bodies.labels == label]
+            heights = (self.images.floor or LEVEL).heights(points)
+            self._heights.append(float(np.ptp(np.quantile(heights, [0.01, 0.99]))))
+        return bodies, is_person
+
+    def may_be_people(
+        self, bodies: LabeledBodies, depth: DepthImage, step: int
+    ) -> NDArray[np.bool_]:
+        """Return for each body whether it has a plausible size, and is no furniture.
+
+        `depth` has the shape of the labels: every `step`-th column and row of the images.
+        """
+        settings = self.images.settings
         is_person = np.ones(len(bodies.areas), dtype=bool)
         if settings.actor_mask is not ForegroundMethod.RECORDED:
             is_person &= bodies.areas <= settings.max_body_area
@@ -141,15 +160,7 @@ class PersonFinder:
                 is_person[index] = (
                     in_front[bodies.labels == index + 1].mean() >= MIN_MOVING_FRACTION
                 )
-        if is_person.any():
-            label = int(np.argmax(is_person)) + 1
-            self._is_cropped.append(
-                bool((bodies.labels[-1] == label).mean() >= MIN_CROPPED_FRACTION)
-            )
-            points = self.camera.back_project(depth)[bodies.labels == label]
-            heights = (self.images.floor or LEVEL).heights(points)
-            self._heights.append(float(np.ptp(np.quantile(heights, [0.01, 0.99]))))
-        return bodies, is_person
+        return is_person
 
     def height(self) -> float:
         """Return the 0.9 quantile of the largest body's height, meters."""

@@ -99,9 +99,9 @@ def capture_people(
         ]  # fmt: skip
     contexts = [
         TrackingContext(
-            people.recording, body, forest, tracker, settings, motion_prior, on_pose
+            people.recording, body, forest, tracker, settings, motion_prior, callback
         )
-        for body in bodies
+        for body, callback in zip(bodies, callbacks, strict=True)
     ]
     floor = people.actors[0].floor
     images = SharedImages(

@@ -48,3 +48,31 @@ def test_track_from_here_reads_the_images_of_its_person(load):
 
     with pytest.raises(load("solvers.errors").InvalidMotionError, match="Only 2 people"):
         retracking._actor_only(played._replace(person=2), lambda fraction, message="": None)
+
+
+def test_all_people_are_tracked_and_written(load, blank, tmp_path):
+    """Two bodies stand next to each other for four frames; previews show the first one only."""
+    body, scene = load("solvers.depth_tracking.body"), load("solvers.depth_scene")
+    camera = scene.Camera(142.8, 142.8, 79.75, 59.75, 160, 120)
+    depth = np.zeros((120, 160), np.float32)
+    for right in (-0.7, 0.7):
+        pose = np.zeros(36)
+        pose[[0, 2]] = right, 2.8
+        model = body.default_body()
+        depth += body.cast_rays(model, body.segment_frames(model, pose), camera).depth_image()
+    recording = scene.DepthRecording(camera, 4, 30.0, lambda frame: depth)
+    solving = load("mocap_assist.track.solve_tracking")
+    settings = load("solvers.depth_tracking.capturing").CaptureSettings(
+        backward=False, refine=False, check_every=1000
+    )
+    previews = []
+
+    tracked = solving.track_recording(
+        recording, settings, scene.ForegroundSettings(), None, True, show=previews.append
+    )
+
+    assert (tracked.person, [other.person for other in tracked.others]) == (0, [1])
+    hips = [one.motion.root_positions[0] for one in (tracked, *tracked.others)]
+    assert np.linalg.norm(hips[0] - hips[1]) == pytest.approx(1.4, abs=0.05)
+    partial = solving.partial_result(previews, recording, settings)
+    np.testing.assert_allclose(partial.motion.root_positions[0], hips[0], atol=0.05)
