@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Integers
+from ...depth_scene import level_distances
 from ...progress import Progress
 from ..capturing import Pass, PassTracker, TrackingContext
-from .shared_images import SharedImages
+from .shared_images import REACH_M, SharedImages
 
 
 def track_together(
@@ -68,16 +69,24 @@ class _Together:
         centers = self._images.centers[:, frame]
         present = np.isfinite(centers).all(axis=-1)
         for person, tracker in enumerate(self._trackers):
-            if not present[person]:
-                tracker.forget()
-            elif self._is_hidden[person] and self._last_frame is not None:
+            if self._is_hidden[person] and self._last_frame is not None:
                 tracker.move(self._level_step(person, frame))
+            if not present[person] or self._is_lost(person, centers[person]):
+                tracker.forget()
         poses = [tracker.expected for tracker in self._trackers]
         for person in self._front_to_back(poses, centers, present):
             self._owners = self._images.owners(frame, poses)
             self._is_hidden[person] = not self._trackers[person].track(frame)
             poses[person] = self._trackers[person].last
         self._last_frame = frame
+
+    def _is_lost(self, person: int, center: Array) -> bool:
+        """Whether a hidden body is out of reach of where the person is expected."""
+        last = self._trackers[person].last
+        if not self._is_hidden[person] or last is None:
+            return False
+        distance = level_distances(last[np.newaxis, :3], center[np.newaxis], self._images.up)
+        return bool(distance[0, 0] > REACH_M)
 
     def _level_step(self, person: int, frame: int) -> Array:
         """Return the horizontal step of a center since the last frame, (3,) meters.

@@ -49,13 +49,13 @@ def merged(*people):
     return np.where(seen, nearest, 0.0), np.where(seen, depths.argmin(axis=0), NO_OWNER)
 
 
-def recorded_together(*people):
+def recorded_together(*people, frame_rate=30.0):
     """Return the recording of people in these poses, each (n_frames, 36); NaN is absent."""
     images = [
         merged(*(pose if np.isfinite(pose).all() else None for pose in poses))[0].astype("f4")
         for poses in zip(*people, strict=True)
     ]
-    return DepthRecording(CAMERA, len(images), 30.0, images.__getitem__)
+    return DepthRecording(CAMERA, len(images), frame_rate, images.__getitem__)
 
 
 def shared(recording, *centers):
@@ -196,6 +196,22 @@ def test_person_who_enters_late_does_not_change_the_other(passing):
     assert change.max() < 0.03
     assert (far.joints.confidence[:8] == 0.0).all()
     assert far.joints.confidence[20:, JOINTS.index("hips")].max() > 0.3
+
+
+def test_person_who_has_left_owns_no_pixels():
+    """The other walks to the empty place more than a second later."""
+    n_frames = 24
+    walker = placed(np.tile(NATURAL, (n_frames, 1)))
+    walker[:, 0] = np.linspace(-0.8, 0.7, n_frames)
+    leaver = placed(np.tile(posed(yaw=-0.5), (n_frames, 1)), 0.7)
+    leaver[5:] = np.nan
+    recording = recorded_together(walker, leaver, frame_rate=10.0)
+
+    found = capture_people(find_people(recording), [BODY, BODY], settings=FORWARD)
+
+    errors = np.linalg.norm(found[0].joints.positions - joints_of(walker), axis=-1)
+    assert errors.mean(axis=1).max() < 0.03
+    assert (found[1].joints.confidence[12:] == 0.0).all()
 
 
 def test_wrong_numbers_and_methods_are_refused():
