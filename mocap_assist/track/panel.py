@@ -24,7 +24,10 @@ from .tracking import selected_preview, why_not_track
 TRACK, RETRACK = "mocap_assist.track_depth", "mocap_assist.retrack"
 HOW = "Correct the pose at a wrong frame, then press Track from Here."
 CUT = ("min_distance", "max_distance")
-SHOWN = ("backward", "refine", "smoothing", "recorded", "plant_feet", "watch", "keep_on_esc")
+SHOWN = (
+    "all_people", "backward", "refine", "smoothing", "recorded", "plant_feet", "watch",
+    "keep_on_esc",
+)  # fmt: skip
 
 
 class TrackPanel(PanelMixin):

@@ -159,8 +159,9 @@ def _read_played_take(armature: bpy.types.Object) -> Steps[tuple[TrackedTake, Tr
         armature, played_source(armature), recording.n_frames, recording.frame_rate
     )
     return take, TrackedActor(
-        recording, tracked.actor, tracked.body, tracked.floor, take.first, take.motion
-    )
+        recording, tracked.actor, tracked.body, tracked.floor, take.first, take.motion,
+        tracked.person,
+    )  # fmt: skip
 
 
 def _earlier_corrections(source: Source, take: TrackedTake, frame: int) -> tuple[int, ...]:

@@ -5,9 +5,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...solvers.depth_scene import DepthRecording, FloorPlane, ForegroundSettings, find_actor
+from ...solvers.depth_scene import (
+    DepthRecording,
+    FloorPlane,
+    ForegroundSettings,
+    find_actor,
+    find_people,
+)
 from ...solvers.depth_tracking import BodyModel, Retracked, RetrackSettings, retrack
 from ...solvers.depth_tracking.tracking import offset_frames
+from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched, within
 from .pose_previews import FloorPreview, PosePreviewSender, Show, no_preview
@@ -26,6 +33,8 @@ class TrackedActor(NamedTuple):
     first: int
     """Index of the depth image at the start of the motion."""
     motion: Motion
+    person: int | None = None
+    """Index of the actor among all people; None if only one was tracked."""
 
 
 class Correction(NamedTuple):
@@ -48,15 +57,14 @@ def retrack_recording(
     progress: Progress = unwatched,
 ) -> Retracked:
     """Track again from a corrected frame; show each pose as it is found."""
-    actor_only = find_actor(
-        played.recording, played.actor, progress=within(progress, 0.0, ACTOR_FRACTION)
-    ).recording
+    actor_only = _actor_only(played, within(progress, 0.0, ACTOR_FRACTION))
     n_frames, first = played.motion.n_frames, played.first
     segment = DepthRecording(
         actor_only.camera,
         n_frames,
         actor_only.frame_rate,
         lambda frame: actor_only.frame(first + frame),
+        read_occluders=lambda frame: actor_only.occluders(first + frame),
     )
     show(FloorPreview(played.floor))
     return retrack(
@@ -70,6 +78,21 @@ def retrack_recording(
         on_pose=offset_frames(PosePreviewSender(show), first),
         progress=within(progress, ACTOR_FRACTION, 1.0),
     )
+
+
+def _actor_only(played: TrackedActor, progress: Progress) -> DepthRecording:
+    """Return the recording of the actor alone.
+
+    Raises InvalidMotionError if the person is not found again.
+    """
+    if played.person is None:
+        return find_actor(played.recording, played.actor, progress=progress).recording
+    actors = find_people(played.recording, played.actor, progress=progress).actors
+    if not 0 <= played.person < len(actors):
+        raise InvalidMotionError(
+            f"Only {len(actors)} people are found in the recording now. Track it again."
+        )
+    return actors[played.person].recording
 
 
 def corrected(motion: Motion, correction: Correction) -> Motion:

@@ -7,13 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.denoising import PlantSettings
-from ...solvers.depth_scene import DepthRecording, FloorPlane, ForegroundSettings, find_actor
+from ...solvers.depth_scene import (
+    DepthRecording,
+    FloorPlane,
+    ForegroundSettings,
+    find_actor,
+    find_people,
+)
 from ...solvers.depth_tracking.body import BodyModel
 from ...solvers.depth_tracking.capturing import Capture, CaptureSettings, unfinished_capture
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.signals import find_runs
-from ...solvers.workflows import capture_actor
+from ...solvers.workflows import capture_actor, capture_separated_people
 from .pose_previews import (
     FloorPreview,
     PosePreviewReceiver,
@@ -51,6 +57,10 @@ class Tracked(NamedTuple):
     low_confidence: tuple[LowConfidenceRange, ...]
     """The longest first."""
     remarks: tuple[str, ...]
+    person: int | None = None
+    """Index of the person in the recording; None if only one was tracked."""
+    others: tuple[Any, ...] = ()
+    """The other people, each `Tracked`."""
 
 
 def track_recording(
@@ -58,11 +68,17 @@ def track_recording(
     tracking: CaptureSettings,
     actor: ForegroundSettings,
     planting: PlantSettings | None,
+    all_people: bool = False,
     *,
     show: Show = no_preview,
     progress: Progress = unwatched,
 ) -> Tracked:
-    """Capture a recording; send previews of floor and poses to a `PosePreviewReceiver`."""
+    """Capture a recording; send previews of floor and poses to a `PosePreviewReceiver`.
+
+    With `all_people` the others are in the result, and the poses are those of the first person.
+    """
+    if all_people:
+        return _track_people(recording, tracking, actor, planting, show, progress)
     actor_only = find_actor(recording, actor, progress=within(progress, 0.0, ACTOR_FRACTION))
     show(FloorPreview(actor_only.floor))
     done = capture_actor(
@@ -73,6 +89,31 @@ def track_recording(
         progress=within(progress, ACTOR_FRACTION, 1.0),
     )
     return build_tracked(0, done.motion, done.captured, actor_only.floor, done.remarks)
+
+
+def _track_people(
+    recording: DepthRecording,
+    tracking: CaptureSettings,
+    actor: ForegroundSettings,
+    planting: PlantSettings | None,
+    show: Show,
+    progress: Progress,
+) -> Tracked:
+    people = find_people(recording, actor, progress=within(progress, 0.0, ACTOR_FRACTION))
+    floor = people.actors[0].floor
+    show(FloorPreview(floor))
+    captured = capture_separated_people(
+        people,
+        settings=tracking,
+        planting=planting,
+        on_pose=PosePreviewSender(show),
+        progress=within(progress, ACTOR_FRACTION, 1.0),
+    )
+    first, *others = (
+        build_tracked(0, done.motion, done.captured, floor, done.remarks)._replace(person=index)
+        for index, done in enumerate(captured)
+    )
+    return first._replace(others=tuple(others))
 
 
 def partial_result(

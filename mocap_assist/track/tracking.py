@@ -45,6 +45,11 @@ class TrackChoices(Settings):
     plant_feet: bool = setting(
         True, "Keep planted feet from sliding, where the recording shows feet"
     )
+    all_people: bool = setting(
+        False,
+        "Track all visible people together; creates an armature for each",
+        label="All People",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +117,10 @@ def read_tracking(
     """Open the displayed recording; return the picklable solve."""
     planting = settings.planting if settings.choices.plant_feet else None
     recording = recording_of(preview.data)
-    return PreviewSolve(track_recording, recording, settings.tracking, settings.actor, planting)
+    return PreviewSolve(
+        track_recording, recording, settings.tracking, settings.actor, planting,
+        settings.choices.all_people,
+    )  # fmt: skip
 
 
 def watch_tracking(
@@ -140,37 +148,53 @@ def write_tracked(
     solved_digest: str | None = None,
     fixed: FixedMotion | None = None,
 ) -> str:
-    """Add an armature with the actor's motion over the points; return a message.
+    """Add an armature for each actor over the points; return a message.
 
-    If the motion was `fixed`, the armature plays that; the tracked action is its recorded one.
+    The armature of the first actor becomes active. If that motion was `fixed`, the armature
+    plays it; the tracked action is its recorded one.
 
     Raises InvalidMotionError if the points show another recording than the one that was solved.
     """
     check_unchanged(preview, solved_digest, recording_of(preview.data))
+    with undo_on_error(bpy.context):
+        others = [
+            _add_armature(scene, preview, settings, other) for other in reversed(result.others)
+        ]
+        first = _add_armature(scene, preview, settings, result, fixed)
+    return " ".join([first, *reversed(others)])
+
+
+def _add_armature(
+    scene: bpy.types.Scene,
+    preview: bpy.types.Object,
+    settings: TrackBundle,
+    result: Tracked,
+    fixed: FixedMotion | None = None,
+) -> str:
+    """Add the armature of one actor; return a message."""
     shown, context, meters_per_unit = Shown.read(preview.data), bpy.context, unit_of(scene)
     image_indices = result.first + np.arange(result.motion.n_frames)
     frames = shown.start + shown.step * image_indices
-    with undo_on_error(context):
-        name = f"{preview.name} tracked"
-        armature, bones = build_armature(
-            context, name, result.motion.skeleton, meters_per_unit, MODE
+    name = f"{preview.name} tracked"
+    armature, bones = build_armature(
+        context, name, result.motion.skeleton, meters_per_unit, MODE
+    )
+    source = write_motion(armature, bones, result.motion, frames, meters_per_unit)
+    if fixed is not None:
+        name = source[0].name + SUFFIX
+        played, _ = write_motion(
+            armature, bones, fixed.motion, frames, meters_per_unit, name=name
         )
-        source = write_motion(armature, bones, result.motion, frames, meters_per_unit)
-        if fixed is not None:
-            name = source[0].name + SUFFIX
-            played, _ = write_motion(
-                armature, bones, fixed.motion, frames, meters_per_unit, name=name
-            )
-            played.use_fake_user = True
-            history.record(played, source, fixed.entry)
-        armature.matrix_world = _scene_from_motion(preview, result.floor) @ Matrix.Scale(
-            meters_per_unit, 4
-        )
-        armature.show_in_front = True
-        write_reliability(armature, *source, frames, result.confidence)
-        write_residual(armature, source, frames, result.residual)
-        body = TrackedBody(result.body, shown, result.floor, settings.actor)
-        body.write(armature, dict(zip(result.motion.skeleton.names, bones, strict=True)))
+        played.use_fake_user = True
+        history.record(played, source, fixed.entry)
+    armature.matrix_world = _scene_from_motion(preview, result.floor) @ Matrix.Scale(
+        meters_per_unit, 4
+    )
+    armature.show_in_front = True
+    write_reliability(armature, *source, frames, result.confidence)
+    write_residual(armature, source, frames, result.residual)
+    body = TrackedBody(result.body, shown, result.floor, settings.actor, result.person)
+    body.write(armature, dict(zip(result.motion.skeleton.names, bones, strict=True)))
     action = source[0]
     store_json(action, CAPTURED, _entry(settings, result, shown))
     list_low_confidence(scene, action, frames, result.low_confidence, _report(result))

@@ -1,7 +1,10 @@
 """`capture`: track the actor of a depth recording."""
 
 import argparse
+import re
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TypedDict
 
 import numpy as np
 
@@ -14,7 +17,7 @@ from ..motion import JointRecording, Sensor
 from ..progress import Progress, Remark, collect_remarks, within
 from ..recordings import depth_takes_in, read_depth, write_joint_csv
 from ..recordings.depth_files import DepthSettings
-from ..workflows import CapturedMotion, capture_recording
+from ..workflows import CapturedMotion, capture_every_person, capture_recording
 from .arguments import (
     JOINTS,
     Outcome,
@@ -26,6 +29,9 @@ from .arguments import (
     write,
 )
 
+ALL = "all"
+"""Of `--people`: as many as are visible at once."""
+
 
 def add_capture_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `capture`."""
@@ -36,6 +42,12 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keep-body", type=Path, metavar="FILE", help="Also write the fitted body"
     )
+    parser.add_argument(
+        "--people", type=parse_people, default=1, metavar="N",
+        help="Number of people to track together, or all for as many as are visible at once."
+        " Of take.bvh, the second person is written to take_person2.bvh, and so on [default 1:"
+        " the most visible person]",
+    )  # fmt: skip
     parser.add_argument(
         "--empty", nargs=2, type=int, metavar=("FIRST", "LAST"),
         help="Frames of the empty room, for background subtraction",
@@ -56,14 +68,30 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
         arguments_from(parser.add_argument_group(title), settings)
 
 
+def parse_people(word: str) -> int:
+    """Return a number of people for argparse; 0 is all."""
+    if word == ALL:
+        return 0
+    if re.fullmatch(r"[1-9]\d?", word, re.ASCII) is None:
+        raise argparse.ArgumentTypeError(
+            f"{word!r} is no number of people; write a number from 1 to 99, or {ALL}"
+        )
+    return int(word)
+
+
 def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | None:
     """Read the body for all files of a run, if one is given.
 
     Raises
     ------
     InvalidSettingError
-        --keep-body is combined with several takes.
+        --keep-body or --body is combined with several people, or --keep-body with several
+        takes.
     """
+    if arguments.people != 1 and (arguments.body or arguments.keep_body) is not None:
+        raise InvalidSettingError(
+            "A body file holds one body. Leave out --body and --keep-body with --people."
+        )
     many = arguments.output_folder is not None and len(
         find_recordings(arguments.files, list_recordings=depth_takes_in)
     )
@@ -84,27 +112,77 @@ def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) 
         progress=collect_remarks(within(progress, 0.0, 0.02), messages),
     )
     first, last = arguments.empty or (0, -1)
-    found = capture_recording(
-        recording,
-        prepared,
-        empty=range(first, last + 1),
-        settings=settings_from_arguments(arguments, CaptureSettings),
-        foreground=settings_from_arguments(arguments, ForegroundSettings),
-        planting=settings_from_arguments(arguments, PlantSettings) if arguments.feet else None,
-        progress=within(progress, 0.02, 0.98),
-    )
+    options: _Options = {
+        "empty": range(first, last + 1),
+        "settings": settings_from_arguments(arguments, CaptureSettings),
+        "foreground": settings_from_arguments(arguments, ForegroundSettings),
+        "planting": settings_from_arguments(arguments, PlantSettings)
+        if arguments.feet
+        else None,
+        "progress": within(progress, 0.02, 0.98),
+    }
+    if arguments.people != 1:
+        n_people = arguments.people or None
+        people = capture_every_person(recording, n_people=n_people, **options)
+        return _write_people(people, task, messages, within(progress, 0.98, 1.0))
+    found = capture_recording(recording, prepared, **options)
     if arguments.keep_body is not None:
         found.captured.body.save(arguments.keep_body)
     assert task.target is not None
-    if task.target.suffix.lower() == JOINTS:
-        joints = JointRecording(found.captured.joints, None, Sensor.OTHER)
-        write_joint_csv(joints, task.target, progress=within(progress, 0.98, 1.0))
-    else:
-        write(found.motion, task.target, within(progress, 0.98, 1.0))
+    _write(found, task.target, within(progress, 0.98, 1.0))
     return _outcome(found, messages)
 
 
-def _outcome(found: CapturedMotion, messages: list[Remark]) -> Outcome:
+class _Options(TypedDict):
+    empty: range
+    settings: CaptureSettings
+    foreground: ForegroundSettings
+    planting: PlantSettings | None
+    progress: Progress
+
+
+def _write_people(
+    people: Sequence[CapturedMotion],
+    task: Task,
+    messages: Sequence[Remark],
+    progress: Progress,
+) -> Outcome:
+    """Write each person to a file of its own, the most visible one, the target, last."""
+    assert task.target is not None
+    targets = [path_of_person(task.target, number) for number in range(1, len(people) + 1)]
+    for written, index in enumerate(reversed(range(len(people)))):
+        part = within(progress, written / len(people), (written + 1) / len(people))
+        _write(people[index], targets[index], part)
+    outcomes = [
+        _outcome(found, messages if index == 0 else []) for index, found in enumerate(people)
+    ]
+    lines = [
+        f"Person {number}, {target.name}: {outcome.text}"
+        for number, (target, outcome) in enumerate(zip(targets, outcomes, strict=True), start=1)
+    ]
+    figures = {
+        "people": [
+            {"output": str(target), **outcome.figures}
+            for target, outcome in zip(targets, outcomes, strict=True)
+        ]
+    }
+    return Outcome("\n".join(lines), figures)
+
+
+def path_of_person(target: Path, number: int) -> Path:
+    """Return the file of a person, counted from 1, of a take that is written to `target`."""
+    return target if number == 1 else target.with_stem(f"{target.stem}_person{number}")
+
+
+def _write(found: CapturedMotion, target: Path, progress: Progress) -> None:
+    if target.suffix.lower() == JOINTS:
+        joints = JointRecording(found.captured.joints, None, Sensor.OTHER)
+        write_joint_csv(joints, target, progress=progress)
+    else:
+        write(found.motion, target, progress)
+
+
+def _outcome(found: CapturedMotion, messages: Sequence[Remark]) -> Outcome:
     captured, remarks = (
         found.captured,
         [*(f"{message.rstrip('.')}." for message in messages), *found.remarks],

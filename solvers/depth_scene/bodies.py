@@ -89,7 +89,7 @@ def find_bodies(
         is_small = int((depth > 0.0).sum()) <= MAX_FULL_PIXELS
         step = 1 if is_small else -(-camera.width // COARSE_WIDTH)
     coarse, camera = depth[::step, ::step], camera.every(step)
-    components, areas = _label_components(coarse, camera)
+    components, areas = label_components(coarse, camera)
     points = _group_points(components, camera.back_project(coarse))
     large = np.flatnonzero(areas >= min_area)
     large = large[np.argsort(-areas[large], kind="stable")]
@@ -152,10 +152,10 @@ def _refine_mask(depth: Depth, coarse_depth: Depth, step: int) -> Flags:
     return mask & (depth > 0.0)
 
 
-def _label_components(
+def label_components(
     depth: Depth, camera: Camera
 ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """Label connected pixels from 1 (0: no reading) and return their surfaces."""
+    """Label connected pixels from 1 (0: no reading); return their surfaces, square meters."""
     from scipy.sparse import coo_array  # slow to import: only when needed
     from scipy.sparse.csgraph import connected_components  # slow to import: only when needed
 

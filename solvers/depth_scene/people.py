@@ -86,7 +86,7 @@ def follow_people(
         interval = range(person.samples[0], person.samples[-1] + 1)
         if not any(sample in actor for sample in interval):
             actor.update(zip(person.samples, person.centers, strict=True))
-    trajectory = _interpolate_trajectory(actor, frames, n_frames, frame_rate)
+    trajectory = interpolate_trajectory(actor, frames, n_frames, frame_rate)
     return People(frames, np.array(n_bodies, dtype=np.intp), trajectory)
 
 
@@ -116,7 +116,7 @@ def _assign(
         people[-1].add(sample, bodies.centers[body], float(bodies.areas[body]))
 
 
-def _interpolate_trajectory(
+def interpolate_trajectory(
     actor: dict[int, Array], frames: NDArray[np.intp], n_frames: int, frame_rate: float
 ) -> Array:
     """Interpolate between samples; far from all samples the actor counts as missing."""

@@ -29,6 +29,9 @@ class DepthRecording:
     read_color : callable, or None
         Maps a frame to the colors aligned with the depth pixels, shape (height, width, 3),
         0 to 255. None if no aligned color was recorded.
+    read_occluders : callable, or None
+        Maps a frame to the depth of what may hide the actor, such as other people, shape
+        (height, width), meters; 0 elsewhere. None if nothing does.
     """
 
     camera: Camera
@@ -36,6 +39,7 @@ class DepthRecording:
     frame_rate: float
     read_depth: Callable[[int], DepthImage]
     read_color: Callable[[int], ColorImage] | None = None
+    read_occluders: Callable[[int], DepthImage | None] | None = None
 
     def __post_init__(self) -> None:
         if self.n_frames < 1:
@@ -57,6 +61,11 @@ class DepthRecording:
         """Return the colors (height, width, 3) of a frame, 0 to 255, or None without color."""
         self._check(index)
         return None if self.read_color is None else self.read_color(index)
+
+    def occluders(self, index: int) -> DepthImage | None:
+        """Return the depth of what may hide the actor in a frame, meters, or None."""
+        self._check(index)
+        return None if self.read_occluders is None else self.read_occluders(index)
 
     def _check(self, index: int) -> None:
         if not 0 <= index < self.n_frames:

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
         train_pixel_forest,
     )
     from .published import REGISTRATION_TRACKER, track_pose_by_edges
+    from .several_bodies import capture_people
     from .terms import TrackerSettings
     from .tracking import TrackedMotion, track_pose
 
@@ -70,6 +71,7 @@ __all__ = [
     "TrackerSettings",
     "calibrate_body",
     "capture",
+    "capture_people",
     "default_body",
     "detect_pose",
     "learn_motion_prior",

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from ..import_on_demand import import_on_demand
 
 if TYPE_CHECKING:
+    from .capture_every_person import capture_every_person, capture_separated_people
     from .capture_recording import CapturedMotion, capture_actor, capture_recording
     from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
     from .fix_chains import ChainResult
@@ -67,7 +68,9 @@ __all__ = [
     "Variants",
     "bases_from_library",
     "capture_actor",
+    "capture_every_person",
     "capture_recording",
+    "capture_separated_people",
     "clean_from_library",
     "describe_missing_points",
     "drop_missing_points",

@@ -116,10 +116,25 @@ def capture_actor(
         actor.recording, body, motion_prior=motion_prior, floor=actor.floor,
         settings=settings, on_pose=on_pose, progress=within(progress, 0.0, 0.95),
     )  # fmt: skip
-    plant_settings = planting if actor.feet_visible else None
-    result = plant_feet_if_possible(
-        captured.motion, plant_settings, progress=within(progress, 0.95, 1.0)
+    return finish_capture(
+        actor, captured, planting, fitted=body is None, progress=within(progress, 0.95, 1.0)
     )
-    capture_notes = capture_remarks(actor, captured, fitted=body is None)
+
+
+def finish_capture(
+    actor: Actor,
+    captured: Capture,
+    planting: PlantSettings | None,
+    *,
+    fitted: bool,
+    progress: Progress,
+) -> CapturedMotion:
+    """Plant the feet of a captured actor, and collect the remarks.
+
+    `fitted` is whether the body was fitted to the recording.
+    """
+    plant_settings = planting if actor.feet_visible else None
+    result = plant_feet_if_possible(captured.motion, plant_settings, progress=progress)
+    capture_notes = capture_remarks(actor, captured, fitted=fitted)
     remarks = (*capture_notes, *result.remarks)
     return CapturedMotion(result.motion, captured, actor, result.planted, remarks)

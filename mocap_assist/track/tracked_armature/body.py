@@ -37,6 +37,8 @@ class TrackedBody:
     shown: Shown
     floor: FloorPlane | None
     actor: ForegroundSettings
+    person: int | None = None
+    """Index of the actor among all people; None if only one was tracked."""
 
     def write(self, armature: bpy.types.Object, bones: Mapping[str, str]) -> None:
         """Store this in an armature; `bones` maps joints of the body to bones."""
@@ -49,6 +51,7 @@ class TrackedBody:
             "shown": self.shown.as_dict(),
             "floor": None if floor is None else [*floor.up.tolist(), floor.height],
             "actor": {**asdict(self.actor), "actor_mask": self.actor.actor_mask.name},
+            "person": self.person,
         }
         store_json(armature.data, KEY, stored)
         for joint, bone in bones.items():
@@ -78,6 +81,7 @@ def _parsed(text: str) -> TrackedBody:
         Shown.of(stored["shown"]),
         None if floor is None else FloorPlane(np.array(floor[:3]), float(floor[3])),
         ForegroundSettings(**actor | {"actor_mask": ForegroundMethod[actor["actor_mask"]]}),
+        None if stored.get("person") is None else int(stored["person"]),
     )
 
 

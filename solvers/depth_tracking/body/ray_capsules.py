@@ -1,6 +1,7 @@
 """Ray casting of the body model: capsule and depth of each pixel."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +42,12 @@ class BodyImage:
     def segments(self) -> Integers:
         """Index of the visible segment of each pixel, shape (n,)."""
         return CAPSULE_SEGMENTS[self.capsules]
+
+    def in_front_of(self, occluders: NDArray[np.floating[Any]]) -> "BodyImage":
+        """Return the pixels that no occluder hides; their depths (height, width), 0: none."""
+        nearer = occluders.ravel()[self.pixels]
+        seen = (nearer == 0.0) | (self.depths <= nearer)
+        return BodyImage(self.camera, self.pixels[seen], self.depths[seen], self.capsules[seen])
 
     def depth_image(self) -> Array:
         """Return the depth image (height, width), meters; 0 off the body."""

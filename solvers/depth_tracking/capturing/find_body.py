@@ -105,9 +105,11 @@ def _best_stature(
     best = ADULT_STATURE_M
     message = "No person is detected in any frame. Check the background settings."
     for index, frame in enumerate(frames):
-        image = depth.frame(frame)
+        image, occluders = depth.frame(frame), depth.occluders(frame)
         try:
-            detected = detect_pose(image, depth.camera, default_body(best), forest)
+            detected = detect_pose(
+                image, depth.camera, default_body(best), forest, occluders=occluders
+            )
         except InvalidMotionError as error:
             message = str(error)
             continue
@@ -116,7 +118,9 @@ def _best_stature(
                 scores[stature] += detected.score
             else:
                 body = default_body(stature)
-                scores[stature] += score_body(body, detected, image, depth.camera)
+                scores[stature] += score_body(
+                    body, detected, image, depth.camera, occluders=occluders
+                )
         best = max(scores, key=lambda stature: scores[stature])
         progress((index + 1) / len(frames), "Trying body sizes")
     if not any(scores.values()):
@@ -126,5 +130,6 @@ def _best_stature(
 
 def _clip_recording(depth: DepthRecording, first: int, n_frames: int) -> DepthRecording:
     return DepthRecording(
-        depth.camera, n_frames, depth.frame_rate, lambda frame: depth.frame(first + frame)
-    )
+        depth.camera, n_frames, depth.frame_rate, lambda frame: depth.frame(first + frame),
+        read_occluders=lambda frame: depth.occluders(first + frame),
+    )  # fmt: skip

@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...depth_scene import DepthRecording
 from ...errors import InvalidMotionError
 from ...progress import Progress
-from ..body import COORDINATES, N_COORDINATES, BodyModel, MotionPrior
+from ..body import COORDINATES, N_COORDINATES, BodyModel, MotionPrior, predict_pose
 from ..detection import DetectorSettings, detect_pose
 from ..forest import PixelForest
 from ..terms import Observation, TrackerSettings, observe
@@ -91,7 +91,7 @@ class TrackingContext:
         try:
             detection = detect_pose(
                 self.depth.frame(frame), self.depth.camera, self.body, self.forest,
-                DetectorSettings(),
+                DetectorSettings(), occluders=self.depth.occluders(frame),
             )  # fmt: skip
         except InvalidMotionError:
             return None
@@ -126,12 +126,56 @@ def track_with_restarts(
         Default: `RegularChecks` of `actor.recovery`.
     """
     frames = list(order)
-    poses = np.full((actor.depth.n_frames, N_COORDINATES), np.nan)
-    scores = np.full(actor.depth.n_frames, np.nan)
-    policy = policy or RegularChecks(actor.recovery, actor.depth.frame_rate)
-    trajectory: list[Array] = [] if start is None else [start]
-    restarts = []
+    tracker = PassTracker(actor, start, policy)
     for done, frame in enumerate(frames):
+        tracker.track(frame)
+        progress((done + 1) / len(frames), "Tracking")
+    return tracker.result()
+
+
+class PassTracker:
+    """Tracks one body in one direction, frame by frame.
+
+    Parameters
+    ----------
+    actor : TrackingContext
+    start : shape (36,), optional
+        Near the pose in the first frame. Default: the detector starts.
+    policy : RestartPolicy, optional
+        Default: `RegularChecks` of `actor.recovery`.
+    """
+
+    def __init__(
+        self, actor: TrackingContext, start: Array | None, policy: RestartPolicy | None = None
+    ) -> None:
+        self._actor = actor
+        self._policy = policy or RegularChecks(actor.recovery, actor.depth.frame_rate)
+        self._trajectory: list[Array] = [] if start is None else [start]
+        self._poses = np.full((actor.depth.n_frames, N_COORDINATES), np.nan)
+        self._scores = np.full(actor.depth.n_frames, np.nan)
+        self._restarts: list[int] = []
+
+    @property
+    def last(self) -> Array | None:
+        """The last pose, shape (36,), or None before the first."""
+        return self._trajectory[-1] if self._trajectory else None
+
+    @property
+    def expected(self) -> Array | None:
+        """The predicted pose of the next frame, shape (36,), or None before the first."""
+        if not self._trajectory:
+            return None
+        return predict_pose(self._trajectory[-2:], self._actor.tracker.prediction)
+
+    def track(self, frame: int) -> bool:
+        """Track the next frame; restart with the detector after a failure.
+
+        Returns
+        -------
+        bool
+            Whether enough of the actor is visible.
+        """
+        actor, policy, trajectory = self._actor, self._policy, self._trajectory
         observation = observe(actor.depth, frame, actor.tracker.image_width)
         score, quality = np.nan, quality_without_actor()
         if trajectory and not observation.empty:
@@ -146,17 +190,31 @@ def track_with_restarts(
                     detected[0], trajectory[-1] if trajectory else detected[0]
                 )
                 if trajectory:
-                    restarts.append(frame)
+                    self._restarts.append(frame)
                 pose, quality, trajectory = unwrapped, detected[1], []
                 score = quality.score
                 policy.reset()
         if trajectory or np.isfinite(score):
             trajectory.append(pose)
-            poses[frame], scores[frame] = pose, score
+            self._poses[frame], self._scores[frame] = pose, score
             actor.on_pose(PosePreview(actor.body, frame, pose, quality))
+        self._trajectory = trajectory
         policy.add_score(score)
-        progress((done + 1) / len(frames), "Tracking")
-    return Pass(poses, scores, tuple(restarts))
+        return not observation.empty
+
+    def move(self, displacement: Array) -> None:
+        """Move the hips of the last poses, (3,) meters, as while the body is hidden."""
+        moved = np.zeros(N_COORDINATES)
+        moved[:3] = displacement
+        self._trajectory = [pose + moved for pose in self._trajectory[-2:]]
+
+    def forget(self) -> None:
+        """Forget the trajectory: the detector finds the body when it appears again."""
+        self._trajectory = []
+
+    def result(self) -> Pass:
+        """Return what was tracked."""
+        return Pass(self._poses, self._scores, tuple(self._restarts))
 
 
 def _unwrap_rotation(pose: Array, before: Array) -> Array:

@@ -175,7 +175,7 @@ def _frame_equations(
     body: BodyModel, pose: Array, observation: Observation, tracker: TrackerSettings
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Return blocks of a frame's normal equations: pose, shape, coupling, right-hand sides."""
-    hypothesis = render_hypothesis(body, pose, observation.camera)
+    hypothesis = render_hypothesis(body, pose, observation.camera, observation.occluders)
     limits = joint_limits(pose, tracker.limit_weight)
     pose_matrix: Array = limits.matrix + _POSE_DAMPING * np.eye(N_COORDINATES)
     rows = _rows(hypothesis, observation, tracker)

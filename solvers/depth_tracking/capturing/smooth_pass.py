@@ -97,7 +97,7 @@ def _equations_at_pose(
     actor: TrackingContext, pose: Array, observation: Observation
 ) -> Registered:
     """Return the equations of one image at a pose, without temporal prior."""
-    hypothesis = render_hypothesis(actor.body, pose, observation.camera)
+    hypothesis = render_hypothesis(actor.body, pose, observation.camera, observation.occluders)
     limits = sum_equations([
         joint_limits(pose, actor.tracker.limit_weight),
         natural_stance(pose, 0.0, actor.tracker.ankle_weight),

@@ -81,6 +81,8 @@ def detect_pose(
     body: BodyModel,
     forest: PixelForest,
     settings: DetectorSettings = DetectorSettings(),
+    *,
+    occluders: DepthImage | None = None,
 ) -> DetectedPose:
     """Detect the pose of a body in a depth image.
 
@@ -97,6 +99,8 @@ def detect_pose(
     body : BodyModel
     forest : PixelForest
     settings : DetectorSettings
+    occluders : float32, shape (height, width), meters, optional
+        Depth of what may hide the body; 0 elsewhere.
 
     Raises
     ------
@@ -107,7 +111,7 @@ def detect_pose(
     ----------
     .. [1] Wei, Zhang, Chai (2012), section 4.
     """
-    observation, step = subsample_image(depth_frame, camera, settings.max_pixels)
+    observation, step = subsample_image(depth_frame, camera, settings.max_pixels, occluders)
     pixels = classify_pixels(observation.depth.astype(np.float32), observation.camera, forest)
     if len(pixels.rows) < settings.min_pixels:
         raise InvalidMotionError(
@@ -127,7 +131,10 @@ def detect_pose(
     )
     candidates = [
         _score_candidate(
-            render_hypothesis(body, pose, observation.camera), pixels, observation, settings
+            render_hypothesis(body, pose, observation.camera, observation.occluders),
+            pixels,
+            observation,
+            settings,
         )
         for pose in trials
     ]
@@ -149,6 +156,8 @@ def score_body(
     depth_frame: DepthImage,
     camera: Camera,
     settings: DetectorSettings = DetectorSettings(),
+    *,
+    occluders: DepthImage | None = None,
 ) -> float:
     """Return how well another body explains an image, 0 to 1, near the pose of the first.
 
@@ -157,11 +166,13 @@ def score_body(
     body : BodyModel
     detected : DetectedPose
         What `detect_pose` returned for this image.
-    depth_frame, camera, settings
+    depth_frame, camera, settings, occluders
         Those of `detect_pose`.
     """
-    observation, _ = subsample_image(depth_frame, camera, settings.max_pixels)
-    hypothesis = render_hypothesis(body, detected.pose, observation.camera)
+    observation, _ = subsample_image(depth_frame, camera, settings.max_pixels, occluders)
+    hypothesis = render_hypothesis(
+        body, detected.pose, observation.camera, observation.occluders
+    )
     start = _score_candidate(hypothesis, detected.pixels, observation, settings)
     return _refine_candidate(start, detected.pixels, observation, settings).score
 
@@ -176,11 +187,12 @@ class _Candidate:
 
 
 def subsample_image(
-    depth: DepthImage, camera: Camera, max_pixels: int
+    depth: DepthImage, camera: Camera, max_pixels: int, occluders: DepthImage | None = None
 ) -> tuple[Observation, int]:
     """Subsample an image to at most about `max_pixels` pixels of the body; return the step."""
     step = max(1, int(np.ceil(np.sqrt(np.count_nonzero(depth) / max_pixels))))
-    return Observation(camera, np.asarray(depth, dtype=np.float64)).every(step), step
+    full = Observation(camera, np.asarray(depth, dtype=np.float64), occluders)
+    return full.every(step), step
 
 
 def _score_candidate(

@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array, Integers
 from ...depth_scene import Camera
@@ -70,10 +72,22 @@ class Hypothesis:
         return indices
 
 
-def render_hypothesis(body: BodyModel, pose: Array, camera: Camera) -> Hypothesis:
-    """Render `body` in `pose` (36,) as seen by `camera`."""
+def render_hypothesis(
+    body: BodyModel,
+    pose: Array,
+    camera: Camera,
+    occluders: NDArray[np.floating[Any]] | None = None,
+) -> Hypothesis:
+    """Render `body` in `pose` (36,) as seen by `camera`.
+
+    Points behind the occluders, a depth image (height, width), are left out: what is hidden is
+    no evidence against a pose.
+    """
     frames = segment_frames(body, pose)
-    return Hypothesis(body, pose, frames, cast_rays(body, frames, camera))
+    image = cast_rays(body, frames, camera)
+    if occluders is not None:
+        image = image.in_front_of(occluders)
+    return Hypothesis(body, pose, frames, image)
 
 
 def capsule_normals(body: BodyModel, frames: Array, points: Array, capsules: Integers) -> Array:

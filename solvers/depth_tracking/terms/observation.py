@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
 from ...arrays import Array, Integers
 from ...depth_scene import Camera, DepthRecording
@@ -23,10 +24,13 @@ class Observation:
     ----------
     camera : Camera
     depth : shape (height, width), meters
+    occluders : shape (height, width), meters, or None
+        Depth of what may hide the actor, such as another person; 0 elsewhere.
     """
 
     camera: Camera
     depth: Array
+    occluders: NDArray[np.floating[Any]] | None = None
 
     @cached_property
     def flat(self) -> Array:
@@ -84,12 +88,14 @@ class Observation:
         """Return every `step`-th column and row."""
         if step == 1:
             return self
-        return Observation(self.camera.every(step), self.depth[::step, ::step])
+        occluders = None if self.occluders is None else self.occluders[::step, ::step]
+        return Observation(self.camera.every(step), self.depth[::step, ::step], occluders)
 
 
 def observe(depth: DepthRecording, frame: int, image_width: int) -> Observation:
     """Return the observation of a frame, subsampled to about `image_width` columns."""
-    full = Observation(depth.camera, depth.frame(frame).astype(np.float64))
+    image, occluders = depth.frame(frame).astype(np.float64), depth.occluders(frame)
+    full = Observation(depth.camera, image, occluders)
     return full.every(subsampling_step(depth.camera, image_width))
 
 

@@ -117,8 +117,11 @@ class _Objective:
 
     def evaluate(self, pose: Array) -> Registered:
         """Return the equations of likelihood, prior and joint limits at a pose."""
-        hypothesis = render_hypothesis(self.body, pose, self.observation.camera)
-        rows = self.likelihood(hypothesis, self.observation, self.settings)
+        observation = self.observation
+        hypothesis = render_hypothesis(
+            self.body, pose, observation.camera, observation.occluders
+        )
+        rows = self.likelihood(hypothesis, observation, self.settings)
         equations = [
             equations_in_coordinates([segment_equations(rows)], hypothesis.twists),
             self.prior(pose),

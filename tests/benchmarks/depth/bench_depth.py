@@ -46,6 +46,7 @@ from .part_depth_renderers import renderers
 from .part_detector import detector
 from .part_failures import failures
 from .part_retracking import retracking
+from .people.part_people import people
 from .plot_bars import draw_bars
 from .published.part_edges import components, real_takes
 from .published.part_registration import ablation, calibration, robustness
@@ -100,7 +101,7 @@ def main() -> None:
         "failures": failures, "recorded": recorded, "retracking": retracking,
         "tuning": tuning, "robustness": robustness, "calibration": calibration,
         "ablation": lambda: ablation(_hard_sequences()),
-        "components": components, "real-edges": real_takes,
+        "components": components, "real-edges": real_takes, "people": people,
     }  # fmt: skip
     for name, part in parts.items():
         if chosen.only and name not in chosen.only.split(","):

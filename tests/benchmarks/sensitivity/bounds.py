@@ -7,7 +7,7 @@ BOUNDS: dict[str, tuple[str, ...]] = {
         "denoising/window_estimates/smoothness.N_UPDATES",
         "feet/plant_in_window.MAX_EXCESS",
         "feet/plant_in_window.MAX_FITS",
-        "depth_scene/actor.*SAMPLES*",
+        "depth_scene/person_finder.*SAMPLES*",
         "depth_scene/bodies.MAX_FULL_PIXELS",
         "depth_scene/bodies.POINT_STEP",
         "depth_tracking/capturing/calibrate_body.MAX_PIXELS",

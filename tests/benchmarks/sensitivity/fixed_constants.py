@@ -33,7 +33,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "reconstruction/reliability/error_model.ONE_CENTIMETER",
         "reconstruction/residual_correction/learn_residual_prior.MEDIAN_SQUARED_LENGTH",
         "reconstruction/reliability/settings.SENSOR_RATE_HZ",
-        "depth_scene/actor.MAJORITY",
+        "depth_scene/person_finder.MAJORITY",
         "depth_tracking/capturing/smooth_pass._CONSTRAINT_WEIGHT",
         "depth_tracking/tracking/register_pose._METERS_PER_RADIAN",
         "motion/humanoid/foot_contacts.HUMAN_LEG_LENGTH_M",
@@ -58,6 +58,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
         "recordings/depth_files/layouts.TUM_UNIT",
     ),
     "index, state, flag or error code": (
+        "depth_scene/share_pixels.NO_OWNER",
         "depth_tracking/body/ray_capsules.NO_SEGMENT",
         "motion/humanoid/posture_joints.CHEST",
         "motion/humanoid/posture_joints.SPINE",

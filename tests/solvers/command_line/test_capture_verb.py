@@ -169,3 +169,49 @@ def test_two_takes_into_one_file_are_refused(call, takes, tmp_path):
 
     assert status == 2 and err.count("\n") == 1 and "can hold one body" in err
     assert not (tmp_path / "body.npz").exists()
+
+
+@pytest.fixture(scope="module")
+def two_people(tmp_path_factory):
+    """Four frames of two bodies, who stand next to each other."""
+    body, depths = default_body(), []
+    for right in (-0.7, 0.7):
+        pose = NATURAL.copy()
+        pose[0] += right
+        depths.append(cast_rays(body, segment_frames(body, pose), CAMERA).depth_image())
+    path = tmp_path_factory.mktemp("depth") / "two.npz"
+    pictures = np.repeat(np.round(1000 * sum(depths))[None], 4, axis=0).astype(np.uint16)
+    camera = {name: getattr(CAMERA, name) for name in ("fx", "fy", "cx", "cy")}
+    np.savez(path, depth=pictures, frame_rate=30.0, **camera)
+    return path
+
+
+def test_each_person_is_written_to_a_file_and_a_second_run_keeps_both(
+    call, two_people, tmp_path
+):
+    folder = tmp_path / "out"
+    words = ("capture", two_people, "--people", "all", "--output-folder", folder, "--json")
+
+    status, out, err = call(*words, *FAST_OPTIONS)
+
+    assert (status, err) == (0, "")
+    figures = json.loads(out)["people"]
+    written = [folder / "two.bvh", folder / "two_person2.bvh"]
+    assert [each["output"] for each in figures] == [str(path) for path in written]
+    hips = [read_bvh(path).root_positions[0] for path in written]
+    assert np.linalg.norm(hips[0] - hips[1]) == pytest.approx(1.4, abs=0.05)
+
+    assert "already_made" in call(*words, *FAST_OPTIONS)[1]
+
+
+def test_numbers_of_people_are_checked(call, two_people, tmp_path):
+    target = tmp_path / "out.bvh"
+    for words, sentence in (
+        (("--people", "none"), "'none' is no number of people"),
+        (("--people", "3"), "Only 2 of 3 people are found."),
+        (("--people", "2", "--keep-body", tmp_path / "body.npz"), "Leave out --body and"),
+        (("--people", "2", "--method", "wei"), "The method wei tracks one person."),
+    ):
+        status, out, err = call("capture", two_people, target, *words, *FAST_OPTIONS)
+        assert (status, out) == (2, "") and sentence in err and err.count("\n") == 1
+    assert not target.exists()

@@ -1,0 +1,1 @@
+"""Several people before one depth camera."""
