@@ -1,20 +1,23 @@
 """`capture`: track the actor of a depth recording."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..denoising import PlantSettings
-from ..depth_scene import ForegroundSettings
+from ..depth_scene import DepthRecording, ForegroundSettings
 from ..depth_tracking.body import LENGTHS, BodyModel, load_body_model
 from ..depth_tracking.capturing import CaptureSettings
+from ..depth_tracking.several_cameras import AlignmentSettings
 from ..errors import InvalidSettingError
 from ..motion import JointRecording, Sensor
 from ..progress import Progress, Remark, collect_remarks, within
 from ..recordings import depth_takes_in, read_depth, write_joint_csv
 from ..recordings.depth_files import DepthSettings
-from ..workflows import CapturedMotion, capture_recording
+from ..workflows import CapturedMotion, capture_from_cameras, capture_recording
 from .arguments import (
     JOINTS,
     Outcome,
@@ -37,6 +40,11 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
         "--keep-body", type=Path, metavar="FILE", help="Also write the fitted body"
     )
     parser.add_argument(
+        "--camera", type=Path, metavar="FILE", action="append", default=[],
+        help="Recording of the same take by another depth camera; its place and time are found"
+        " by the actor. Repeat it for more cameras",
+    )  # fmt: skip
+    parser.add_argument(
         "--empty", nargs=2, type=int, metavar=("FIRST", "LAST"),
         help="Frames of the empty room, for background subtraction",
     )  # fmt: skip
@@ -51,7 +59,8 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     for title, settings in (
         ("reading", DepthSettings), ("the actor", ForegroundSettings),
-        ("tracking", CaptureSettings), ("planting feet", PlantSettings),
+        ("tracking", CaptureSettings), ("several cameras", AlignmentSettings),
+        ("planting feet", PlantSettings),
     ):  # fmt: skip
         arguments_from(parser.add_argument_group(title), settings)
 
@@ -62,8 +71,12 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
     Raises
     ------
     InvalidSettingError
-        --keep-body is combined with several takes.
+        --keep-body or --camera is combined with several takes.
     """
+    if arguments.camera and arguments.output_folder is not None:
+        raise InvalidSettingError(
+            "--camera adds a recording to one take. Name one file to read and one to write."
+        )
     many = arguments.output_folder is not None and len(
         find_recordings(arguments.files, list_recordings=depth_takes_in)
     )
@@ -78,21 +91,15 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
 def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) -> Outcome:
     """Capture one recording, write it and report the quality of the tracking."""
     arguments, messages = task.arguments, list[Remark]()
-    recording = read_depth(
-        task.source,
-        settings_from_arguments(arguments, DepthSettings),
-        progress=collect_remarks(within(progress, 0.0, 0.02), messages),
-    )
-    first, last = arguments.empty or (0, -1)
-    found = capture_recording(
-        recording,
-        prepared,
-        empty=range(first, last + 1),
-        settings=settings_from_arguments(arguments, CaptureSettings),
-        foreground=settings_from_arguments(arguments, ForegroundSettings),
-        planting=settings_from_arguments(arguments, PlantSettings) if arguments.feet else None,
-        progress=within(progress, 0.02, 0.98),
-    )
+    recordings = [
+        read_depth(
+            path,
+            settings_from_arguments(arguments, DepthSettings),
+            progress=collect_remarks(within(progress, 0.0, 0.02), messages),
+        )
+        for path in (task.source, *arguments.camera)
+    ]
+    found = _captured(recordings, arguments, prepared, within(progress, 0.02, 0.98))
     if arguments.keep_body is not None:
         found.captured.body.save(arguments.keep_body)
     assert task.target is not None
@@ -102,6 +109,30 @@ def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) 
     else:
         write(found.motion, task.target, within(progress, 0.98, 1.0))
     return _outcome(found, messages)
+
+
+def _captured(
+    recordings: Sequence[DepthRecording],
+    arguments: argparse.Namespace,
+    body: BodyModel | None,
+    progress: Progress,
+) -> CapturedMotion:
+    """Capture a take from one or several recordings."""
+    first, last = arguments.empty or (0, -1)
+    empty = range(first, last + 1)
+    settings = settings_from_arguments(arguments, CaptureSettings)
+    foreground = settings_from_arguments(arguments, ForegroundSettings)
+    planting = settings_from_arguments(arguments, PlantSettings) if arguments.feet else None
+    if len(recordings) == 1:
+        return capture_recording(
+            recordings[0], body, empty=empty, settings=settings, foreground=foreground,
+            planting=planting, progress=progress,
+        )  # fmt: skip
+    alignment = settings_from_arguments(arguments, AlignmentSettings)
+    return capture_from_cameras(
+        recordings, body, empty=empty, settings=settings, foreground=foreground,
+        planting=planting, alignment=alignment, progress=progress,
+    )  # fmt: skip
 
 
 def _outcome(found: CapturedMotion, messages: list[Remark]) -> Outcome:
@@ -116,7 +147,7 @@ def _outcome(found: CapturedMotion, messages: list[Remark]) -> Outcome:
         f"{found.motion.n_frames} frames, {distance_cm:.1f} cm from the depth pixels"
         f" on average, with {overlap:.0f} % overlap. The detector ran {times} after the start."
     )
-    figures = {
+    figures: dict[str, Any] = {
         "n_frames": found.motion.n_frames,
         "frame_rate_hz": found.motion.frame_rate,
         "residual_m": float(np.nanmean(captured.residual)),
@@ -128,6 +159,15 @@ def _outcome(found: CapturedMotion, messages: list[Remark]) -> Outcome:
         "slide_before_m": found.planted and found.planted.slide_before,
         "slide_after_m": found.planted and found.planted.slide_after,
     }
+    if found.alignments:
+        figures["cameras"] = [
+            {
+                "first_from_camera": np.linalg.inv(each.camera_from_first).tolist(),
+                "offset_s": each.offset,
+                "mismatch_m": each.mismatch,
+            }
+            for each in found.alignments
+        ]
     return Outcome(" ".join([text, *remarks]), figures)
 
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from ..import_on_demand import import_on_demand
 
 if TYPE_CHECKING:
+    from .capture_from_cameras import capture_from_cameras
     from .capture_recording import CapturedMotion, capture_actor, capture_recording
     from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
     from .fix_chains import ChainResult
@@ -67,6 +68,7 @@ __all__ = [
     "Variants",
     "bases_from_library",
     "capture_actor",
+    "capture_from_cameras",
     "capture_recording",
     "clean_from_library",
     "describe_missing_points",

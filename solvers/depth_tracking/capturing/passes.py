@@ -28,7 +28,7 @@ from ..tracking import (
 from .restart_policies import RecoverySettings, RegularChecks, RestartPolicy
 
 _YAW = COORDINATES.index("yaw")
-_DETECTION_WEIGHT = 1.0
+DETECTION_WEIGHT = 1.0
 """Weak weight that keeps the refinement near the detected pose. Chosen by hand;
 `make sensitivity` varies it."""
 
@@ -95,7 +95,7 @@ class TrackingContext:
             )  # fmt: skip
         except InvalidMotionError:
             return None
-        weights = np.full(N_COORDINATES, _DETECTION_WEIGHT)
+        weights = np.full(N_COORDINATES, DETECTION_WEIGHT)
         weights[:6] = 0.0
         prior = NextPose(detection.pose, weights, detection.pose)
         observation = observe(self.depth, frame, self.tracker.image_width)
