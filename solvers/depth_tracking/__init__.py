@@ -47,16 +47,26 @@ if TYPE_CHECKING:
         train_pixel_forest,
     )
     from .published import REGISTRATION_TRACKER, track_pose_by_edges
+    from .several_cameras import (
+        AlignmentSettings,
+        CameraAlignment,
+        CapturedByCameras,
+        align_tracks,
+        capture_cameras,
+    )
     from .terms import TrackerSettings
     from .tracking import TrackedMotion, track_pose
 
 __all__ = [
     "REGISTRATION_TRACKER",
+    "AlignmentSettings",
     "BodyModel",
     "CalibrationSettings",
+    "CameraAlignment",
     "Capture",
     "CaptureMethod",
     "CaptureSettings",
+    "CapturedByCameras",
     "DetectedPose",
     "DetectorSettings",
     "MotionPrior",
@@ -68,8 +78,10 @@ __all__ = [
     "SkinnedBody",
     "TrackedMotion",
     "TrackerSettings",
+    "align_tracks",
     "calibrate_body",
     "capture",
+    "capture_cameras",
     "default_body",
     "detect_pose",
     "learn_motion_prior",

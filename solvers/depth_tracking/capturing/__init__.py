@@ -1,24 +1,44 @@
 """Track a complete recording: body size, passes with restarts, smoothing, manual fixes."""
 
 from .calibrate_body import CalibrationSettings, calibrate_body
-from .capture import Capture, CaptureSettings, capture
+from .capture import (
+    DEFAULT_CAPTURE,
+    Capture,
+    CaptureSettings,
+    assemble_capture,
+    best_of_passes,
+    capture,
+)
 from .capture_method import CaptureMethod
+from .find_body import find_body
+from .passes import Pass, prior_near
 from .refine_body import RefineBodySettings, refine_body
 from .retrack import Retracked, retrack
 from .retracked_path import RetrackSettings
+from .smooth_pass import acceleration_weights, smooth_in_windows
+from .smooth_take import smooth_take
 from .unfinished_capture import unfinished_capture
 
 __all__ = [
+    "DEFAULT_CAPTURE",
     "CalibrationSettings",
     "Capture",
     "CaptureMethod",
     "CaptureSettings",
+    "Pass",
     "RefineBodySettings",
     "RetrackSettings",
     "Retracked",
+    "acceleration_weights",
+    "assemble_capture",
+    "best_of_passes",
     "calibrate_body",
     "capture",
+    "find_body",
+    "prior_near",
     "refine_body",
     "retrack",
+    "smooth_in_windows",
+    "smooth_take",
     "unfinished_capture",
 ]

@@ -13,8 +13,11 @@ from ..body import (
     CAPSULE_SEGMENTS,
     N_COORDINATES,
     joint_limits,
+    natural_stance,
     screw_rows,
+    sum_equations,
 )
+from ..capturing import prior_near
 from ..terms import likelihood_rows
 from .align_tracks import CameraAlignment
 from .track_views import ViewedActor
@@ -23,17 +26,12 @@ from .views import CameraTake, View, render_view
 N_FRAMES, _N_STEPS = 32, 4
 """Number of frames from which the cameras are refined, and of Gauss-Newton steps. They bound
 the run time."""
-_POSE_DAMPING = 5.0
-"""Weight per square radian of a change of pose in one step, as in `refine_body`. Chosen by
-hand; the poses of 32 frames are free and the cameras follow in four steps."""
 _N_UNKNOWNS = 7
 """Twist of a camera and its time offset, by definition."""
-_CORRELATED_PIXELS = 30.0
-"""Number of neighboring pixels with correlated errors, as in `fit_quality`. Chosen by hand; 1
-would give skeletons of 2 cm mismatch no weight."""
-_PLACE_STD_M, _ANGLE_STD_RAD, _TIME_STD_S = 0.05, 0.03, 0.01
-"""Standard deviations of an alignment by skeletons: meters, radians and seconds. Chosen by
-hand, near its errors in docs/benchmarks/depth.md (1 to 10 cm, 2 degrees, 8 ms)."""
+_STIFFNESS = np.array([3e4, 3e4, 3e4, 1e4, 1e4, 1e4, 3e5])
+"""Weights per square radian, square meter and square second of a change of the alignment by
+skeletons. They guard a straight walk, which shows no difference between a later time and
+another position (`test_straight_walk_keeps_the_time_of_the_skeletons`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +97,7 @@ def _step(
 ) -> tuple[Array, dict[int, Array]]:
     """Return the step of the cameras (n_cameras, 7), and of each pose (36,)."""
     n_cameras = len(actor.cameras)
-    spread = np.array([_ANGLE_STD_RAD] * 3 + [_PLACE_STD_M] * 3 + [_TIME_STD_S])
-    stiffness = np.tile(_CORRELATED_PIXELS / spread**2, n_cameras)
+    stiffness = np.tile(_STIFFNESS, n_cameras)
     matrix, vector = np.diag(stiffness), -stiffness * change.ravel()
     eliminated = {}
     for frame, pose in poses.items():
@@ -121,9 +118,12 @@ def _step(
 
 def _frame_equations(actor: ViewedActor, frame: int, pose: Array, rate: Array) -> _Equations:
     size = len(actor.cameras) * _N_UNKNOWNS
-    limits = joint_limits(pose, actor.tracker.limit_weight)
-    pose_matrix = limits.matrix + _POSE_DAMPING * np.eye(N_COORDINATES)
-    pose_vector = limits.vector
+    prior = sum_equations([
+        joint_limits(pose, actor.tracker.limit_weight),
+        natural_stance(pose, 0.0, actor.tracker.ankle_weight),
+        prior_near(pose)(pose),
+    ])
+    pose_matrix, pose_vector = prior.matrix, prior.vector
     cameras, camera_vector = np.zeros((size, size)), np.zeros(size)
     coupling = np.zeros((N_COORDINATES, size))
     for view in actor.views(frame, rate):

@@ -16,8 +16,14 @@ from ..body import (
     sum_equations,
 )
 from ..terms import DEFAULT_TRACKER, TrackerSettings, likelihood_rows
-from ..tracking import FitQuality, Registered, descend, fit_quality, quality_without_actor
-from ..tracking.register_pose import Prior
+from ..tracking import (
+    FitQuality,
+    Prior,
+    Registered,
+    descend,
+    fit_quality,
+    quality_without_actor,
+)
 from .views import View, ViewHypothesis, render_view
 
 
@@ -60,15 +66,15 @@ def register_views(
     halves = [view.every(2) for view in views]
     halves = [view for view in halves if not view.observation.empty]
     if coarse and halves:
-        objective = _Objective(body, halves, prior, settings)
+        objective = _ViewsObjective(body, halves, prior, settings)
         pose = descend(objective.evaluate, pose, coarse, settings).pose
-    objective = _Objective(body, views, prior, settings)
+    objective = _ViewsObjective(body, views, prior, settings)
     registered = descend(objective.evaluate, pose, settings.iterations - coarse, settings)
     return replace(registered, iterations=registered.iterations + coarse)
 
 
 @dataclass(frozen=True, eq=False)
-class _Objective:
+class _ViewsObjective:
     """The constant inputs of one registration."""
 
     body: BodyModel

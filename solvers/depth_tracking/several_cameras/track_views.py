@@ -14,12 +14,15 @@ from ..body import (
     PoseEquations,
     joint_limits,
     natural_stance,
-    stay_near,
     sum_equations,
 )
-from ..capturing.passes import DETECTION_WEIGHT, Pass
-from ..capturing.smooth_pass import acceleration_weights, smooth_in_windows
-from ..capturing.smooth_take import smooth_take
+from ..capturing import (
+    Pass,
+    acceleration_weights,
+    prior_near,
+    smooth_in_windows,
+    smooth_take,
+)
 from ..terms import TrackerSettings
 from ..tracking import (
     FitQuality,
@@ -108,8 +111,6 @@ def refine_poses(
     """
     refined = np.full(poses.shape, np.nan)
     scores = np.full(len(poses), np.nan)
-    weights = np.full(N_COORDINATES, DETECTION_WEIGHT)
-    weights[:6] = 0.0
     rates = velocities(poses)
     for frame, pose in enumerate(poses):
         progress((frame + 1) / len(poses), "Joining the cameras")
@@ -117,11 +118,7 @@ def refine_poses(
         views = actor.views(frame, rates[frame]) if wanted else []
         if not views:
             continue
-
-        def prior(near: Array, start: Array = pose) -> PoseEquations:
-            return stay_near(near, start, weights)
-
-        found = register_views(actor.body, pose, views, prior, actor.tracker)
+        found = register_views(actor.body, pose, views, prior_near(pose), actor.tracker)
         refined[frame], scores[frame] = found.pose, actor.quality(found, views).score
     return Pass(refined, scores, ())
 

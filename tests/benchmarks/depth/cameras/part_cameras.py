@@ -11,12 +11,12 @@ from solvers.depth_tracking.several_cameras.align_tracks import CameraAlignment,
 from solvers.depth_tracking.several_cameras.capture_cameras import (
     CapturedByCameras,
     capture_cameras,
-    capture_views,
-    own_poses,
 )
+from solvers.depth_tracking.several_cameras.capture_views import capture_views, own_poses
 from solvers.depth_tracking.several_cameras.track_views import ViewedActor
 from solvers.depth_tracking.several_cameras.views import CameraTake
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER
+from solvers.errors import InvalidMotionError
 
 from ...shared.tables import Scores
 from ..depth_sequences import errors
@@ -38,11 +38,16 @@ def cameras() -> list[str]:
     """Compare one camera, the mean of two skeletons, and one body in both images."""
     unit = f"{len(PAIRS)} sequences as clips; nothing is given"
     scores = Scores("Two cameras", unit, "")
-    places = Scores("The second camera, calibrated by the actor", unit, "")
+    positions = Scores("The second camera, calibrated by the actor", unit, "")
     by_clip = Scores("Limbs that camera 1 loses, by sequence, cm", "one each", "")
+    refused: list[str] = []
     for name in PAIRS:
         pair = camera_pair(name)
-        found = capture_cameras([pair.first.depth, pair.second.depth])
+        try:
+            found = capture_cameras([pair.first.depth, pair.second.depth])
+        except InvalidMotionError as error:
+            refused.append(f"{name}: {error}")
+            continue
         by_skeletons = align_tracks(found.alone[0].joints, found.alone[1].joints)
         hidden = _hidden(found.alone[0], pair)
         for method, joints in _methods(found, by_skeletons, pair):
@@ -54,8 +59,8 @@ def cameras() -> list[str]:
             ("from the skeletons", by_skeletons), ("refined by the images", found.alignments[1])
         ):  # fmt: skip
             for column, figure in _placement(alignment, pair).items():
-                places.add(method, column, name, figure)
-    return [scores.markdown(), places.markdown(), by_clip.markdown()]
+                positions.add(method, column, name, figure)
+    return [scores.markdown(), positions.markdown(), by_clip.markdown(), *refused]
 
 
 def _methods(

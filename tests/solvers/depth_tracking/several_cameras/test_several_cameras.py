@@ -16,10 +16,8 @@ from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing import CaptureMethod, CaptureSettings, capture
 from solvers.depth_tracking.several_cameras import CameraAlignment, capture_cameras
 from solvers.depth_tracking.several_cameras.align_tracks import FIRST_CAMERA
-from solvers.depth_tracking.several_cameras.capture_cameras import (
-    capture_views,
-    floor_of_first_camera,
-)
+from solvers.depth_tracking.several_cameras.capture_cameras import floor_of_first_camera
+from solvers.depth_tracking.several_cameras.capture_views import capture_views
 from solvers.depth_tracking.several_cameras.refine_alignment import refine_alignment
 from solvers.depth_tracking.several_cameras.register_views import register_views
 from solvers.depth_tracking.several_cameras.track_views import ViewedActor, velocities
@@ -260,3 +258,27 @@ def test_cancelled_capture_raises():
 
     with pytest.raises(SolveCancelled):
         capture_cameras(both_recordings(hiding(24)), BODY, settings=FAST, progress=cancel)
+
+
+def test_straight_walk_keeps_the_time_of_the_skeletons():
+    """A body that glides is the same a moment later, at another place."""
+    poses = np.tile(NATURAL, (24, 1))
+    poses[:, 0] = np.linspace(-0.2, 0.2, 24)
+    wrong = SIDE.copy()
+    wrong[:3, 3] += (0.05, -0.04, 0.06)
+    first, second = both_recordings(poses)
+    actor = ViewedActor(
+        (
+            CameraTake(first, FIRST_CAMERA),
+            CameraTake(second, CameraAlignment(wrong, OFFSET_S, 0.02)),
+        ),
+        BODY,
+        DEFAULT_TRACKER,
+    )
+    given = {frame: poses[frame] for frame in range(7, 23)}
+
+    found = refine_alignment(actor, given, velocities(poses), unwatched).cameras[1].alignment
+
+    assert abs(found.offset - OFFSET_S) < 0.02
+    at_this_time = found.camera_from_first[:3, 3] - SIDE[:3, 3]
+    assert np.abs(at_this_time[:2]).max() < 0.015
