@@ -89,7 +89,7 @@ def _takes(pair: CameraPair, alignment: CameraAlignment) -> tuple[CameraTake, Ca
 
 def _mean(own: list[np.ndarray], found: CapturedByCameras, pair: CameraPair) -> np.ndarray:
     """Return the joints of both cameras, weighted by their confidence: the peer."""
-    weights = [each.joints.confidence for each in found.alone]
+    weights = [np.asarray(each.joints.confidence) for each in found.alone]
     times = np.arange(FIRST_SHARED, pair.first.depth.n_frames) / pair.first.depth.frame_rate
     nearest = np.round((times - found.alignments[1].offset) * pair.second.depth.frame_rate)
     frames = np.clip(nearest.astype(int), 0, pair.second.depth.n_frames - 1)

@@ -282,3 +282,22 @@ def test_straight_walk_keeps_the_time_of_the_skeletons():
     assert abs(found.offset - OFFSET_S) < 0.02
     at_this_time = found.camera_from_first[:3, 3] - SIDE[:3, 3]
     assert np.abs(at_this_time[:2]).max() < 0.015
+
+
+def test_views_move_the_body_to_the_time_of_their_image():
+    """The second camera begins 6.5 frames later: its nearest image is half a frame off."""
+    first, second = both_recordings(hiding(12))
+    cameras = (
+        CameraTake(first, FIRST_CAMERA),
+        CameraTake(second, CameraAlignment(SIDE, OFFSET_S, 0.02)),
+    )
+    actor = ViewedActor(cameras, BODY, DEFAULT_TRACKER)
+    rate = np.linspace(-1.0, 1.0, 36)
+
+    own, other = actor.views(9, rate)
+
+    assert_array_equal(own.displacement, 0.0 * rate)
+    assert_allclose(np.abs(other.displacement), 0.5 * np.abs(rate), atol=1e-9)
+    image = cameras[1].image_at(9 / 30.0)
+    assert_allclose(other.displacement, (image + 6.5 - 9.0) * rate, atol=1e-9)
+    assert len(actor.views(3, rate)) == 1
