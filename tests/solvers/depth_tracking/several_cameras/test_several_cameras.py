@@ -286,11 +286,8 @@ def test_straight_walk_keeps_the_time_of_the_skeletons():
 
 def test_views_move_the_body_to_the_time_of_their_image():
     """The second camera begins 6.5 frames later: its nearest image is half a frame off."""
-    first, second = both_recordings(hiding(12))
-    cameras = (
-        CameraTake(first, FIRST_CAMERA),
-        CameraTake(second, CameraAlignment(SIDE, OFFSET_S, 0.02)),
-    )
+    alignments = FIRST_CAMERA, CameraAlignment(SIDE, OFFSET_S, 0.02)
+    cameras = tuple(map(CameraTake, both_recordings(hiding(12)), alignments))
     actor = ViewedActor(cameras, BODY, DEFAULT_TRACKER)
     rate = np.linspace(-1.0, 1.0, 36)
 
