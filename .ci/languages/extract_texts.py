@@ -12,6 +12,7 @@ NOT_SHOWN = (
     "mocap_assist/languages/",
     "solvers/samples/", "solvers/pictures/", "solvers/processes/",
     "solvers/depth_tracking/forest/", "solvers/depth_tracking/forest_training/",
+    "solvers/depth_tracking/several_cameras/", "solvers/workflows/capture_from_cameras.py",
     "solvers/reconstruction/residual_correction/learn_", "solvers/rotations/",
     "solvers/retrieval/index/", "solvers/retrieval/library/values.py",
     "solvers/retrieval/find_in_libraries.py",

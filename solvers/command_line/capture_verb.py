@@ -4,7 +4,7 @@ import argparse
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -12,12 +12,18 @@ from ..denoising import PlantSettings
 from ..depth_scene import ForegroundSettings
 from ..depth_tracking.body import LENGTHS, BodyModel, load_body_model
 from ..depth_tracking.capturing import CaptureSettings
+from ..depth_tracking.several_cameras import AlignmentSettings
 from ..errors import InvalidSettingError
 from ..motion import JointRecording, Sensor
 from ..progress import Progress, Remark, collect_remarks, within
 from ..recordings import depth_takes_in, read_depth, write_joint_csv
 from ..recordings.depth_files import DepthSettings
-from ..workflows import CapturedMotion, capture_every_person, capture_recording
+from ..workflows import (
+    CapturedMotion,
+    capture_every_person,
+    capture_from_cameras,
+    capture_recording,
+)
 from .arguments import (
     JOINTS,
     Outcome,
@@ -49,6 +55,11 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
         " the most visible person]",
     )  # fmt: skip
     parser.add_argument(
+        "--camera", type=Path, metavar="FILE", action="append", default=[],
+        help="Recording of the same take by another depth camera; its place and time are found"
+        " by the actor. Repeat it for more cameras",
+    )  # fmt: skip
+    parser.add_argument(
         "--empty", nargs=2, type=int, metavar=("FIRST", "LAST"),
         help="Frames of the empty room, for background subtraction",
     )  # fmt: skip
@@ -63,7 +74,8 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     for title, settings in (
         ("reading", DepthSettings), ("the actor", ForegroundSettings),
-        ("tracking", CaptureSettings), ("planting feet", PlantSettings),
+        ("tracking", CaptureSettings), ("several cameras", AlignmentSettings),
+        ("planting feet", PlantSettings),
     ):  # fmt: skip
         arguments_from(parser.add_argument_group(title), settings)
 
@@ -85,12 +97,20 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
     Raises
     ------
     InvalidSettingError
-        --keep-body or --body is combined with several people, or --keep-body with several
-        takes.
+        --keep-body or --body is combined with several people, or --keep-body or --camera with
+        several takes, or --camera with several people.
     """
     if arguments.people != 1 and (arguments.body or arguments.keep_body) is not None:
         raise InvalidSettingError(
             "A body file holds one body. Leave out --body and --keep-body with --people."
+        )
+    if arguments.camera and arguments.people != 1:
+        raise InvalidSettingError(
+            "Several cameras track one person. Leave out --people or --camera."
+        )
+    if arguments.camera and arguments.output_folder is not None:
+        raise InvalidSettingError(
+            "--camera adds a recording to one take. Name one file to read and one to write."
         )
     many = arguments.output_folder is not None and len(
         find_recordings(arguments.files, list_recordings=depth_takes_in)
@@ -106,11 +126,14 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
 def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) -> Outcome:
     """Capture one recording, write it and report the quality of the tracking."""
     arguments, messages = task.arguments, list[Remark]()
-    recording = read_depth(
-        task.source,
-        settings_from_arguments(arguments, DepthSettings),
-        progress=collect_remarks(within(progress, 0.0, 0.02), messages),
-    )
+    recordings = [
+        read_depth(
+            path,
+            settings_from_arguments(arguments, DepthSettings),
+            progress=collect_remarks(within(progress, 0.0, 0.02), messages),
+        )
+        for path in (task.source, *arguments.camera)
+    ]
     first, last = arguments.empty or (0, -1)
     options: _Options = {
         "empty": range(first, last + 1),
@@ -123,9 +146,13 @@ def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) 
     }
     if arguments.people != 1:
         n_people = arguments.people or None
-        people = capture_every_person(recording, n_people=n_people, **options)
+        people = capture_every_person(recordings[0], n_people=n_people, **options)
         return _write_people(people, task, messages, within(progress, 0.98, 1.0))
-    found = capture_recording(recording, prepared, **options)
+    if arguments.camera:
+        alignment = settings_from_arguments(arguments, AlignmentSettings)
+        found = capture_from_cameras(recordings, prepared, alignment=alignment, **options)
+    else:
+        found = capture_recording(recordings[0], prepared, **options)
     if arguments.keep_body is not None:
         found.captured.body.save(arguments.keep_body)
     assert task.target is not None
@@ -194,7 +221,7 @@ def _outcome(found: CapturedMotion, messages: Sequence[Remark]) -> Outcome:
         f"{found.motion.n_frames} frames, {distance_cm:.1f} cm from the depth pixels"
         f" on average, with {overlap:.0f} % overlap. The detector ran {times} after the start."
     )
-    figures = {
+    figures: dict[str, Any] = {
         "n_frames": found.motion.n_frames,
         "frame_rate_hz": found.motion.frame_rate,
         "residual_m": float(np.nanmean(captured.residual)),
@@ -206,6 +233,15 @@ def _outcome(found: CapturedMotion, messages: Sequence[Remark]) -> Outcome:
         "slide_before_m": found.planted and found.planted.slide_before,
         "slide_after_m": found.planted and found.planted.slide_after,
     }
+    if found.alignments:
+        figures["cameras"] = [
+            {
+                "first_from_camera": np.linalg.inv(each.camera_from_first).tolist(),
+                "offset_s": each.offset,
+                "mismatch_m": each.mismatch,
+            }
+            for each in found.alignments
+        ]
     return Outcome(" ".join([text, *remarks]), figures)
 
 

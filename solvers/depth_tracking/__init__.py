@@ -48,16 +48,26 @@ if TYPE_CHECKING:
     )
     from .published import REGISTRATION_TRACKER, track_pose_by_edges
     from .several_bodies import capture_people
+    from .several_cameras import (
+        AlignmentSettings,
+        CameraAlignment,
+        CapturedByCameras,
+        align_tracks,
+        capture_cameras,
+    )
     from .terms import TrackerSettings
     from .tracking import TrackedMotion, track_pose
 
 __all__ = [
     "REGISTRATION_TRACKER",
+    "AlignmentSettings",
     "BodyModel",
     "CalibrationSettings",
+    "CameraAlignment",
     "Capture",
     "CaptureMethod",
     "CaptureSettings",
+    "CapturedByCameras",
     "DetectedPose",
     "DetectorSettings",
     "MotionPrior",
@@ -69,8 +79,10 @@ __all__ = [
     "SkinnedBody",
     "TrackedMotion",
     "TrackerSettings",
+    "align_tracks",
     "calibrate_body",
     "capture",
+    "capture_cameras",
     "capture_people",
     "default_body",
     "detect_pose",

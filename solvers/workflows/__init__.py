@@ -6,6 +6,7 @@ from ..import_on_demand import import_on_demand
 
 if TYPE_CHECKING:
     from .capture_every_person import capture_every_person, capture_separated_people
+    from .capture_from_cameras import capture_from_cameras
     from .capture_recording import CapturedMotion, capture_actor, capture_recording
     from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
     from .fix_chains import ChainResult
@@ -69,6 +70,7 @@ __all__ = [
     "bases_from_library",
     "capture_actor",
     "capture_every_person",
+    "capture_from_cameras",
     "capture_recording",
     "capture_separated_people",
     "clean_from_library",

@@ -7,6 +7,7 @@ from ..denoising import Planted, PlantSettings
 from ..depth_scene import Actor, DepthRecording, ForegroundSettings, find_actor
 from ..depth_tracking.body import BodyModel, MotionPrior
 from ..depth_tracking.capturing import Capture, CaptureSettings, capture
+from ..depth_tracking.several_cameras import CameraAlignment
 from ..depth_tracking.tracking import PoseCallback, ignore_pose
 from ..motion import Motion
 from ..progress import Progress, unwatched, within
@@ -33,6 +34,8 @@ class CapturedMotion:
     planted : Planted or None
     remarks : tuple of str
         Sentences the animator should read.
+    alignments : tuple of CameraAlignment
+        Where and when each of several cameras recorded; empty for one camera.
     """
 
     motion: Motion
@@ -40,6 +43,7 @@ class CapturedMotion:
     actor: Actor
     planted: Planted | None
     remarks: tuple[str, ...]
+    alignments: tuple[CameraAlignment, ...] = ()
 
 
 def capture_recording(

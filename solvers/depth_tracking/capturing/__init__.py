@@ -11,11 +11,12 @@ from .capture import (
 )
 from .capture_method import CaptureMethod
 from .find_body import find_body
-from .passes import Pass, PassTracker, TrackingContext
+from .passes import Pass, PassTracker, TrackingContext, prior_near
 from .refine_body import RefineBodySettings, refine_body
 from .retrack import Retracked, retrack
 from .retracked_path import RetrackSettings
-from .smooth_pass import smooth_poses
+from .smooth_pass import acceleration_weights, smooth_in_windows, smooth_poses
+from .smooth_take import smooth_take
 from .unfinished_capture import unfinished_capture
 
 __all__ = [
@@ -30,13 +31,17 @@ __all__ = [
     "RetrackSettings",
     "Retracked",
     "TrackingContext",
+    "acceleration_weights",
     "assemble_capture",
     "best_of_passes",
     "calibrate_body",
     "capture",
     "find_body",
+    "prior_near",
     "refine_body",
     "retrack",
+    "smooth_in_windows",
     "smooth_poses",
+    "smooth_take",
     "unfinished_capture",
 ]

@@ -95,12 +95,17 @@ class TrackingContext:
             )  # fmt: skip
         except InvalidMotionError:
             return None
-        weights = np.full(N_COORDINATES, _DETECTION_WEIGHT)
-        weights[:6] = 0.0
-        prior = NextPose(detection.pose, weights, detection.pose)
+        prior = prior_near(detection.pose)
         observation = observe(self.depth, frame, self.tracker.image_width)
         terms = self.likelihood(frame, observation, self.body, ())
         return track_frame(self.body, prior, observation, self.tracker, terms)
+
+
+def prior_near(pose: Array) -> NextPose:
+    """Return the weak prior that keeps a refinement near a pose (36,); the hips are free."""
+    weights = np.full(N_COORDINATES, _DETECTION_WEIGHT)
+    weights[:6] = 0.0
+    return NextPose(pose, weights, pose)
 
 
 def track_with_restarts(

@@ -1,11 +1,11 @@
 """Smooth the tracked poses of a take, weighted by the information of each image."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 
 import numpy as np
 
 from ...arrays import Array
-from ...progress import Progress
+from ...progress import Progress, within
 from ..body import (
     N_COORDINATES,
     PoseEquations,
@@ -15,7 +15,13 @@ from ..body import (
     segment_equations,
     sum_equations,
 )
-from ..terms import Observation, likelihood_rows, observe, render_hypothesis
+from ..terms import (
+    Observation,
+    TrackerSettings,
+    likelihood_rows,
+    observe,
+    render_hypothesis,
+)
 from ..tracking import FitQuality, PosePreview, Registered, fit_quality, quality_without_actor
 from .passes import TrackingContext
 from .smooth_take import smooth_take
@@ -37,21 +43,55 @@ def smooth_poses(
     """Return smoothed poses (n_frames, 36), and the fit quality of each frame."""
     smoothed, qualities = poses.copy(), []
     n_frames = len(poses)
-    if smoothing > 0.0 and n_frames >= 3:
-        for first in range(0, n_frames, _WINDOW_FRAMES):
-            start, stop = (
-                max(0, first - _OVERLAP_FRAMES),
-                min(n_frames, first + _WINDOW_FRAMES + _OVERLAP_FRAMES),
-            )
-            window = smooth_window(actor, poses[start:stop], start, smoothing)
-            last = min(first + _WINDOW_FRAMES, n_frames)
-            smoothed[first:last] = window[first - start : last - start]
-            progress(0.5 * last / n_frames, "Smoothing")
+    if smoothing > 0.0:
+        smoothed = smooth_in_windows(
+            poses,
+            lambda window, first: smooth_window(actor, window, first, smoothing),
+            within(progress, 0.0, 0.5),
+        )
     for frame in range(n_frames):
         qualities.append(measure_fit(actor, smoothed[frame], frame))
         actor.on_pose(PosePreview(actor.body, frame, smoothed[frame], qualities[-1]))
         progress(0.5 + 0.5 * (frame + 1) / n_frames, "Measuring the fit")
     return smoothed, qualities
+
+
+def smooth_in_windows(
+    poses: Array, smooth: Callable[[Array, int], Array], progress: Progress
+) -> Array:
+    """Return smoothed poses (n_frames, 36), with the memory of one window.
+
+    Parameters
+    ----------
+    poses : shape (n_frames, 36)
+    smooth : callable
+        Maps the poses of a window and their first frame to smoothed poses.
+    progress : Progress
+    """
+    smoothed, n_frames = poses.copy(), len(poses)
+    if n_frames < 3:
+        return smoothed
+    for first in range(0, n_frames, _WINDOW_FRAMES):
+        start, stop = (
+            max(0, first - _OVERLAP_FRAMES),
+            min(n_frames, first + _WINDOW_FRAMES + _OVERLAP_FRAMES),
+        )
+        window = smooth(poses[start:stop], start)
+        last = min(first + _WINDOW_FRAMES, n_frames)
+        smoothed[first:last] = window[first - start : last - start]
+        progress(last / n_frames, "Smoothing")
+    return smoothed
+
+
+def acceleration_weights(
+    tracker: TrackerSettings, smoothing: float, frame_rate: float
+) -> Array:
+    """Return the weights (36,) of squared second differences of poses."""
+    # Second differences shrink with the square of the frame rate.
+    rate_factor = (frame_rate / REFERENCE_RATE_HZ) ** 4
+    weights = np.full(N_COORDINATES, smoothing * rate_factor * tracker.rotation_weight)
+    weights[:3] = smoothing * rate_factor * tracker.shift_weight
+    return weights
 
 
 def smooth_window(
@@ -75,10 +115,7 @@ def smooth_window(
         Indices of poses that stay fixed.
     """
     tracker = actor.tracker
-    # Second differences shrink with the square of the frame rate.
-    rate_factor = (actor.depth.frame_rate / REFERENCE_RATE_HZ) ** 4
-    stiffness = np.full(N_COORDINATES, smoothing * rate_factor * tracker.rotation_weight)
-    stiffness[:3] = smoothing * rate_factor * tracker.shift_weight
+    stiffness = acceleration_weights(tracker, smoothing, actor.depth.frame_rate)
     equations = []
     for index, pose in enumerate(poses):
         if index in constrained:

@@ -3,7 +3,7 @@
 from .failure_test import FailureTest, has_failed
 from .fit_quality import MAX_DEPTH_ERROR_M, FitQuality, fit_quality, quality_without_actor
 from .pose_preview import PoseCallback, PosePreview, ignore_pose, offset_frames
-from .register_pose import Likelihood, Registered, register_pose
+from .register_pose import Likelihood, Prior, Registered, descend, register_pose
 from .track_pose import (
     FrameLikelihood,
     NextPose,
@@ -25,11 +25,13 @@ __all__ = [
     "NextPose",
     "PoseCallback",
     "PosePreview",
+    "Prior",
     "Registered",
     "TrackedMotion",
     "all_terms",
     "assemble_motion",
     "checked_pose",
+    "descend",
     "fit_quality",
     "has_failed",
     "ignore_pose",

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -99,9 +100,9 @@ def register_pose(
     half = observation.every(2)
     if coarse and not half.empty:
         objective = _Objective(body, half, prior, settings, likelihood)
-        pose = _descend(objective, pose, coarse).pose
+        pose = descend(objective.evaluate, pose, coarse, settings).pose
     objective = _Objective(body, observation, prior, settings, likelihood)
-    registered = _descend(objective, pose, settings.iterations - coarse)
+    registered = descend(objective.evaluate, pose, settings.iterations - coarse, settings)
     return replace(registered, iterations=registered.iterations + coarse)
 
 
@@ -131,15 +132,34 @@ class _Objective:
         return Registered(hypothesis, sum_equations(equations), 1)
 
 
-def _descend(objective: _Objective, pose: Array, iterations: int) -> Registered:
-    settings = objective.settings
+AnyRegistered = TypeVar("AnyRegistered", bound=Registered)
+
+
+def descend(
+    evaluate: Callable[[Array], AnyRegistered],
+    pose: Array,
+    iterations: int,
+    settings: TrackerSettings,
+) -> AnyRegistered:
+    """Return the best pose after damped Gauss-Newton steps.
+
+    Parameters
+    ----------
+    evaluate : callable
+        Maps a pose (36,) to the normal equations of all terms.
+    pose : shape (36,)
+    iterations : int
+        Maximum number of evaluated poses.
+    settings : TrackerSettings
+        The damping and the limits of the steps.
+    """
     damping = settings.damping
-    best = objective.evaluate(pose)
+    best = evaluate(pose)
     for iteration in range(1, iterations):
         change = solve_step(best.equations, np.full(N_COORDINATES, damping))
         if np.abs(change).max() < _MIN_STEP:
             break
-        trial = objective.evaluate(best.pose + _limit_step(change, settings))
+        trial = evaluate(best.pose + _limit_step(change, settings))
         if not settings.accept_only_better or trial.equations.cost <= best.equations.cost:
             best, damping = trial, max(damping / _DAMPING_FACTOR, settings.damping)
         else:

@@ -23,6 +23,7 @@ from solvers.depth_tracking.tracking.track_pose import track_pose
 from ..peers.icp_trackers import articulated_icp, ray_constrained_icp
 from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import Scores
+from .cameras.part_cameras import cameras
 from .colored_sequences import colored, others_motions
 from .depth_extra_sequences import more_sequence
 from .depth_sequences import (
@@ -101,7 +102,8 @@ def main() -> None:
         "failures": failures, "recorded": recorded, "retracking": retracking,
         "tuning": tuning, "robustness": robustness, "calibration": calibration,
         "ablation": lambda: ablation(_hard_sequences()),
-        "components": components, "real-edges": real_takes, "people": people,
+        "components": components, "cameras": cameras, "people": people,
+        "real-edges": real_takes,
     }  # fmt: skip
     for name, part in parts.items():
         if chosen.only and name not in chosen.only.split(","):

@@ -1,0 +1,12 @@
+"""Several depth cameras: calibrated by the actor, and one body in all their images."""
+
+from .align_tracks import AlignmentSettings, CameraAlignment, align_tracks
+from .capture_cameras import CapturedByCameras, capture_cameras
+
+__all__ = [
+    "AlignmentSettings",
+    "CameraAlignment",
+    "CapturedByCameras",
+    "align_tracks",
+    "capture_cameras",
+]

@@ -1,0 +1,113 @@
+"""Capture the motion of an actor from the raw recordings of several depth cameras."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..denoising import PlantSettings
+from ..depth_scene import Actor, DepthRecording, ForegroundSettings, find_actor
+from ..depth_tracking.body import BodyModel, MotionPrior
+from ..depth_tracking.capturing import CaptureSettings
+from ..depth_tracking.several_cameras import (
+    AlignmentSettings,
+    CapturedByCameras,
+    capture_cameras,
+)
+from ..depth_tracking.tracking import PoseCallback, ignore_pose
+from ..progress import Progress, unwatched, within
+from .capture_recording import (
+    CAPTURE_SETTINGS,
+    FOREGROUND_FRACTION,
+    FOREGROUND_SETTINGS,
+    PLANT_SETTINGS,
+    CapturedMotion,
+)
+from .capture_remarks import capture_remarks
+from .plant_feet_if_possible import plant_feet_if_possible
+
+ALIGNMENT_SETTINGS = AlignmentSettings()
+
+
+def capture_from_cameras(
+    recordings: Sequence[DepthRecording],
+    body: BodyModel | None = None,
+    *,
+    motion_prior: MotionPrior | None = None,
+    empty: Sequence[int] = (),
+    settings: CaptureSettings = CAPTURE_SETTINGS,
+    alignment: AlignmentSettings = ALIGNMENT_SETTINGS,
+    foreground: ForegroundSettings = FOREGROUND_SETTINGS,
+    planting: PlantSettings | None = PLANT_SETTINGS,
+    on_pose: PoseCallback = ignore_pose,
+    progress: Progress = unwatched,
+) -> CapturedMotion:
+    """Separate the actor from each room, capture one motion from all and plant the feet.
+
+    Parameters
+    ----------
+    recordings : sequence of DepthRecording
+        With or without the background. The result has the frames of the first.
+    body : BodyModel, optional
+        By default it is fitted to the recordings.
+    motion_prior : MotionPrior, optional
+    empty : sequence of int
+        Frames of each room without the actor.
+    settings : CaptureSettings
+    alignment : AlignmentSettings
+    foreground : ForegroundSettings
+    planting : PlantSettings or None
+        None skips planting; so do depth images that all end above the feet.
+    on_pose : PoseCallback
+        Called with each pose of the result.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidMotionError
+        No person is detected by a camera, or two recordings cannot be aligned.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    step = FOREGROUND_FRACTION / len(recordings)
+    actors = [
+        find_actor(
+            recording, foreground, empty=empty,
+            progress=within(progress, step * number, step * (number + 1)),
+        )
+        for number, recording in enumerate(recordings)
+    ]  # fmt: skip
+    found = capture_cameras(
+        [actor.recording for actor in actors], body, motion_prior=motion_prior,
+        floors=[actor.floor for actor in actors], settings=settings, alignment=alignment,
+        on_pose=on_pose, progress=within(progress, FOREGROUND_FRACTION, 0.95),
+    )  # fmt: skip
+    with_feet = any(actor.feet_visible for actor in actors)
+    result = plant_feet_if_possible(
+        found.captured.motion, planting if with_feet else None,
+        progress=within(progress, 0.95, 1.0),
+    )  # fmt: skip
+    remarks = (
+        *capture_remarks(actors[0], found.captured, fitted=body is None),
+        *_camera_remarks(actors, found),
+        *result.remarks,
+    )
+    return CapturedMotion(
+        result.motion, found.captured, actors[0], result.planted, remarks, found.alignments
+    )
+
+
+def _camera_remarks(actors: Sequence[Actor], found: CapturedByCameras) -> list[str]:
+    """Return sentences on the other cameras: their place and time, and their warnings."""
+    remarks = []
+    for number, (actor, alignment) in enumerate(
+        zip(actors[1:], found.alignments[1:], strict=True), start=2
+    ):
+        position = np.linalg.inv(alignment.camera_from_first)[:3, 3]
+        when = "later" if alignment.offset >= 0.0 else "earlier"
+        remarks.append(
+            f"Camera {number} is {np.linalg.norm(position):.2f} m from the first and began"
+            f" {abs(alignment.offset):.2f} s {when}; their skeletons differ by"
+            f" {100 * alignment.mismatch:.1f} cm."
+        )
+        remarks += [f"Camera {number}: {remark}" for remark in actor.remarks]
+    return remarks

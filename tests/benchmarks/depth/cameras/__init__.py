@@ -1,0 +1,1 @@
+"""Several depth cameras: made sequences and what the second camera gains."""
