@@ -15,6 +15,7 @@ from ..progress import Progress, Remark, collect_remarks, within
 from ..recordings import depth_takes_in, read_depth, write_joint_csv
 from ..recordings.depth_files import DepthSettings
 from ..workflows import CapturedMotion, capture_recording
+from ..workflows.following import FollowedMotion
 from .arguments import (
     JOINTS,
     Outcome,
@@ -25,6 +26,7 @@ from .arguments import (
     settings_from_arguments,
     write,
 )
+from .follow_recording import add_follow_options, check_follow, follow_recording
 
 
 def add_capture_options(parser: argparse.ArgumentParser) -> None:
@@ -49,6 +51,7 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
         "--feet", action=argparse.BooleanOptionalAction, default=True,
         help="Plant standing feet [default: yes, where they are visible]",
     )  # fmt: skip
+    add_follow_options(parser)
     for title, settings in (
         ("reading", DepthSettings), ("the actor", ForegroundSettings),
         ("tracking", CaptureSettings), ("planting feet", PlantSettings),
@@ -62,8 +65,9 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
     Raises
     ------
     InvalidSettingError
-        --keep-body is combined with several takes.
+        --keep-body is combined with several takes, or --follow with a folder for results.
     """
+    check_follow(arguments)
     many = arguments.output_folder is not None and len(
         find_recordings(arguments.files, list_recordings=depth_takes_in)
     )
@@ -78,21 +82,11 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
 def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) -> Outcome:
     """Capture one recording, write it and report the quality of the tracking."""
     arguments, messages = task.arguments, list[Remark]()
-    recording = read_depth(
-        task.source,
-        settings_from_arguments(arguments, DepthSettings),
-        progress=collect_remarks(within(progress, 0.0, 0.02), messages),
-    )
-    first, last = arguments.empty or (0, -1)
-    found = capture_recording(
-        recording,
-        prepared,
-        empty=range(first, last + 1),
-        settings=settings_from_arguments(arguments, CaptureSettings),
-        foreground=settings_from_arguments(arguments, ForegroundSettings),
-        planting=settings_from_arguments(arguments, PlantSettings) if arguments.feet else None,
-        progress=within(progress, 0.02, 0.98),
-    )
+    found: CapturedMotion | FollowedMotion
+    if arguments.follow:
+        found = follow_recording(task.source, arguments, prepared, within(progress, 0.0, 0.98))
+    else:
+        found = _capture_complete(task, prepared, messages, within(progress, 0.0, 0.98))
     if arguments.keep_body is not None:
         found.captured.body.save(arguments.keep_body)
     assert task.target is not None
@@ -104,7 +98,28 @@ def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) 
     return _outcome(found, messages)
 
 
-def _outcome(found: CapturedMotion, messages: list[Remark]) -> Outcome:
+def _capture_complete(
+    task: Task, body: BodyModel | None, messages: list[Remark], progress: Progress
+) -> CapturedMotion:
+    arguments = task.arguments
+    recording = read_depth(
+        task.source,
+        settings_from_arguments(arguments, DepthSettings),
+        progress=collect_remarks(within(progress, 0.0, 0.02), messages),
+    )
+    first, last = arguments.empty or (0, -1)
+    return capture_recording(
+        recording,
+        body,
+        empty=range(first, last + 1),
+        settings=settings_from_arguments(arguments, CaptureSettings),
+        foreground=settings_from_arguments(arguments, ForegroundSettings),
+        planting=settings_from_arguments(arguments, PlantSettings) if arguments.feet else None,
+        progress=within(progress, 0.02, 1.0),
+    )
+
+
+def _outcome(found: CapturedMotion | FollowedMotion, messages: list[Remark]) -> Outcome:
     captured, remarks = (
         found.captured,
         [*(f"{message.rstrip('.')}." for message in messages), *found.remarks],
@@ -128,6 +143,13 @@ def _outcome(found: CapturedMotion, messages: list[Remark]) -> Outcome:
         "slide_before_m": found.planted and found.planted.slide_before,
         "slide_after_m": found.planted and found.planted.slide_after,
     }
+    if isinstance(found, FollowedMotion):
+        figures |= {
+            "first_frame": found.first,
+            "n_images": len(found.delays),
+            "n_dropped": found.n_dropped,
+            "median_delay_s": float(np.median(found.delays)),
+        }
     return Outcome(" ".join([text, *remarks]), figures)
 
 

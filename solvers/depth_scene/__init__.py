@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from .actor import Actor, find_actor
     from .camera import Camera
     from .camera_checks import check_intrinsics
+    from .causal_actor import CausalActor
     from .floor import LEVEL, FloorPlane, find_floor
     from .foreground import ForegroundMethod, ForegroundSettings
     from .recording import ColorImage, DepthImage, DepthRecording
@@ -16,6 +17,7 @@ __all__ = [
     "LEVEL",
     "Actor",
     "Camera",
+    "CausalActor",
     "ColorImage",
     "DepthImage",
     "DepthRecording",

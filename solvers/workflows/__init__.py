@@ -6,6 +6,7 @@ from ..import_on_demand import import_on_demand
 
 if TYPE_CHECKING:
     from .capture_recording import CapturedMotion, capture_actor, capture_recording
+    from .capture_remarks import capture_remarks
     from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
     from .fix_chains import ChainResult
     from .fix_report import (
@@ -68,6 +69,7 @@ __all__ = [
     "bases_from_library",
     "capture_actor",
     "capture_recording",
+    "capture_remarks",
     "clean_from_library",
     "describe_missing_points",
     "drop_missing_points",

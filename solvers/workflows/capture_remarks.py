@@ -19,7 +19,9 @@ length changes how long and wide a body appears, but not how deep. Chosen by han
 `test_very_thick_body_is_reported_as_a_possible_wrong_focal_length`."""
 
 
-def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[str, ...]:
+def capture_remarks(
+    actor: Actor, captured: Capture, *, fitted: bool, live: bool = False
+) -> tuple[str, ...]:
     """Return sentences on the actor and on the quality of the tracking.
 
     Parameters
@@ -29,6 +31,8 @@ def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[s
     captured : Capture
     fitted : bool
         Whether the body was fitted to the recording rather than given.
+    live : bool
+        Whether each frame was tracked without those after it.
     """
     remarks = [*actor.remarks]
     if actor.floor is None:
@@ -37,7 +41,11 @@ def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[s
     if occluded > MAX_OCCLUDED_FRACTION:
         remarks.append(
             f"{100 * occluded:.0f} % of the joints were occluded or fitted poorly; they are"
-            " estimated from the frames before and after."
+            + (
+                " estimated from the frames before."
+                if live
+                else " estimated from the frames before and after."
+            )
         )
     tracked = np.isfinite(captured.residual)
     if actor.visible.all() and not tracked.all():

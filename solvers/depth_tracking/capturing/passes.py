@@ -142,7 +142,7 @@ def track_with_restarts(
         if not observation.empty and policy.should_detect(quality if trajectory else None):
             detected = actor.detected(frame)
             if detected is not None and policy.accepts(detected[1].score, score):
-                unwrapped = _unwrap_rotation(
+                unwrapped = unwrap_rotation(
                     detected[0], trajectory[-1] if trajectory else detected[0]
                 )
                 if trajectory:
@@ -159,7 +159,7 @@ def track_with_restarts(
     return Pass(poses, scores, tuple(restarts))
 
 
-def _unwrap_rotation(pose: Array, before: Array) -> Array:
+def unwrap_rotation(pose: Array, before: Array) -> Array:
     """Return the pose with multiples of 360 degrees added, continuous with the frame before."""
     unwrapped = pose.copy()
     for index in (_YAW, _YAW + 2):
