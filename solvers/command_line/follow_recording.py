@@ -1,4 +1,4 @@
-"""`capture --follow`: track a folder of depth images while a recorder writes it."""
+"""`capture --follow`: track depth images while a recorder writes them."""
 
 import argparse
 import signal
@@ -30,8 +30,8 @@ def add_follow_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `capture --follow`."""
     parser.add_argument(
         "--follow", action="store_true",
-        help="Track a folder of images live, while a recorder writes it, and write the motion"
-        " at the end: on Ctrl+C, or when no image comes any more",
+        help="Track a folder of images or an .mkv live, while a recorder writes it, and write"
+        " the motion at the end: on Ctrl+C, or when no image comes any more",
     )  # fmt: skip
     arguments_from(parser.add_argument_group("following"), FollowSettings)
 

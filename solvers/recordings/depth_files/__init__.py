@@ -7,19 +7,26 @@ from .folder import check_depth_header, detect_layout, is_depth_folder, resolve_
 from .image_frames import sort_naturally
 from .images import read_pixels
 from .layouts import Layout
+from .mkv import NANOSECOND, PIXEL_BYTES, DepthBlocks, depth_track, is_video, read_depth_mkv
 from .settings import DEFAULT_DEPTH_SETTINGS, CameraOrientation, DepthSettings
 
 __all__ = [
     "DEFAULT_DEPTH_SETTINGS",
+    "NANOSECOND",
+    "PIXEL_BYTES",
     "CameraOrientation",
+    "DepthBlocks",
     "DepthSettings",
     "Layout",
     "check_depth_header",
     "check_exr",
+    "depth_track",
     "detect_depth_format",
     "detect_layout",
     "is_depth_folder",
+    "is_video",
     "read_depth",
+    "read_depth_mkv",
     "read_pixels",
     "resolve_camera",
     "rotate_upright",

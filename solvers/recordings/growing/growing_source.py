@@ -9,6 +9,10 @@ from ...depth_scene import Camera, DepthImage
 from ..conventions import common_rate
 from .image_names import PositionKind
 
+MAX_GAP_STEPS = 10
+"""Number of frames between two time stamps from which a clock has jumped. It guards the frame
+rate of recordings whose clock jumps at the start (`test_rate_of_stamps_that_jump`)."""
+
 
 class NewImage(NamedTuple):
     """A finished image; its depth is read by `GrowingDepth.read`."""
@@ -38,7 +42,7 @@ class GrowingDepth(Protocol):
 
     @property
     def is_gone(self) -> bool:
-        """Whether it was removed or cut, so that nothing can follow."""
+        """Whether it was removed or cut off, so that nothing can follow."""
 
     @property
     def issue(self) -> str:
@@ -68,12 +72,16 @@ def measure_positions(
 ) -> ImagePositions:
     """Return the rate of images with these positions; `frame_rate` in Hz for images in order.
 
-    Numbers with equal steps, such as every second one, count the frames between them.
+    Numbers with equal steps, such as every second one, count the frames between them. Time
+    stamps may be rounded, have gaps, and jump.
     """
     steps = np.diff(positions)
     step = float(np.median(steps)) if len(steps) else 0.0
     if kind is PositionKind.TIMES and step > 0.0:
-        return ImagePositions(common_rate(1.0 / step), 1.0)
+        n_steps = np.round(steps / step)
+        is_near = (n_steps >= 1.0) & (n_steps <= MAX_GAP_STEPS)
+        rate = float(n_steps[is_near].sum() / steps[is_near].sum())
+        return ImagePositions(common_rate(rate), 1.0)
     if kind is PositionKind.NUMBERS:
         return ImagePositions(frame_rate, 1.0 / (max(step, 1.0) * frame_rate))
     return ImagePositions(frame_rate, 0.0)

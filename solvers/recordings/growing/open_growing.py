@@ -5,13 +5,16 @@ from pathlib import Path
 from ...errors import InvalidFileError
 from ..depth_files import DEFAULT_DEPTH_SETTINGS, DepthSettings
 from .growing_folder import GrowingFolder
+from .growing_mkv import GrowingMkv
 from .growing_source import GrowingDepth
+
+MKV = ".mkv"
 
 
 def open_growing(
     path: Path | str, settings: DepthSettings = DEFAULT_DEPTH_SETTINGS
 ) -> GrowingDepth:
-    """Return a folder of depth images that is read while it grows.
+    """Return a folder of depth images, or an `.mkv`, that is read while it grows.
 
     Parameters
     ----------
@@ -22,14 +25,16 @@ def open_growing(
     Raises
     ------
     InvalidFileError
-        It is a file, or in a folder that does not exist.
+        It is a file of another kind, or in a folder that does not exist.
     """
     path = Path(path)
-    if path.is_file():
-        raise InvalidFileError(
-            f"{path} is a file. Follow a folder of 16-bit PNG images, or capture the file when"
-            " it is complete."
-        )
     if not path.parent.is_dir():
         raise InvalidFileError(f"There is no folder {path.parent} to wait for {path.name} in.")
+    if path.suffix.lower() == MKV:
+        return GrowingMkv(path, settings)
+    if path.is_file():
+        raise InvalidFileError(
+            f"{path} cannot be read while it grows. Follow a folder of 16-bit PNG images or an"
+            " .mkv, or capture the file when it is complete."
+        )
     return GrowingFolder(path, settings)

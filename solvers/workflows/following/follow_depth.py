@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from time import monotonic, sleep, time
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,6 +29,19 @@ COUNT_CYCLE = 100
 """Number of images after which the progress begins again: how many come is unknown."""
 FOLLOW_SETTINGS, CAPTURE_SETTINGS = FollowSettings(), CaptureSettings()
 FOREGROUND_SETTINGS = ForegroundSettings()
+
+
+class Clock(NamedTuple):
+    """The time; a benchmark has one of its own."""
+
+    now: Callable[[], float]
+    """Returns seconds that always rise."""
+    written: Callable[[], float]
+    """Returns seconds as file systems count them."""
+    sleep: Callable[[float], None]
+
+
+SYSTEM_CLOCK = Clock(monotonic, time, sleep)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +94,7 @@ def follow_depth(
     planting: PlantSettings | None = None,
     on_pose: PoseCallback = ignore_pose,
     is_ended: Callable[[], bool] = never,
+    clock: Clock = SYSTEM_CLOCK,
     progress: Progress = unwatched,
 ) -> FollowedMotion:
     """Track the actor of a depth recording while it is written, until nothing more comes.
@@ -108,6 +123,7 @@ def follow_depth(
         Called with each pose as soon as it is tracked.
     is_ended : callable
         Returns whether to end now; the motion so far is kept.
+    clock : Clock
     progress : Progress
         While images come, the fraction does not rise.
 
@@ -129,7 +145,9 @@ def follow_depth(
     if motion_prior is None and capture.recorded:
         motion_prior = load_motion_prior()
     wanted = TakeSettings(settings.calibration, capture, foreground, body, motion_prior, empty)
-    following = _Following(source, detector, settings, wanted, on_pose, is_ended, progress)
+    following = _Following(
+        source, detector, settings, wanted, on_pose, is_ended, clock, progress
+    )
     while following.step():
         continue
     return following.result(planting)
@@ -146,28 +164,29 @@ class _Following:
         wanted: TakeSettings,
         on_pose: PoseCallback,
         is_ended: Callable[[], bool],
+        clock: Clock,
         progress: Progress,
     ) -> None:
         self._source, self._detector, self._settings = source, detector, settings
         self._wanted, self._on_pose = wanted, on_pose
-        self._is_ended, self._progress = is_ended, progress
+        self._is_ended, self._progress, self._clock = is_ended, progress, clock
         self._take: FollowedTake | None = None
         self._waiting: deque[WaitingImage] = deque()
-        self._last_image = monotonic()
-        self._n_polls = 0
-        """Number of times that images came since the actor was measured."""
+        self._last_image = self._clock.now()
+        self._measured_at: float | None = None
+        """When images came for the first time after the measurement."""
         self._n_while_measuring, self._n_dropped = 0, 0
         self._delays: list[float] = []
 
     def step(self) -> bool:
         """Take the next image, or wait for it; return whether more may come."""
         if new := self._source.poll():
-            self._last_image = monotonic()
-            self._waiting.extend(map(WaitingImage, new))
             self._drop()
+            self._last_image = self._clock.now()
+            self._waiting.extend(WaitingImage(each, self._last_image) for each in new)
         if not self._waiting:
             return self._wait()
-        image, depth = self._waiting.popleft()
+        image, _, depth = waiting = self._waiting.popleft()
         if self._take is None:
             self._take = FollowedTake(self._source, self._detector, self._wanted)
         if depth is None and (full := self._source.read(image)) is not None:
@@ -176,7 +195,7 @@ class _Following:
             return True
         if self._take.is_measured:
             self._track(self._take, image, depth)
-        elif (fraction := self._take.collect(image, depth)) >= 1.0:
+        elif (fraction := self._take.collect(waiting._replace(depth=depth))) >= 1.0:
             self._measure(self._take)
         else:
             self._progress(fraction, "Waiting until the actor can be measured")
@@ -184,40 +203,44 @@ class _Following:
 
     def _track(self, take: FollowedTake, image: NewImage, depth: DepthImage) -> None:
         pose = take.add(image, depth)
-        self._delays.append(time() - image.written)
+        self._delays.append(self._clock.written() - image.written)
         if pose is not None:
             self._on_pose(pose)
         count = len(self._delays)
         self._progress(count % COUNT_CYCLE / COUNT_CYCLE, f"Tracking image {count}")
 
     def _drop(self) -> None:
-        """Drop images that have waited too long when newer ones come.
+        """Drop images that have waited too long, as newer ones come.
 
         Those that came during the measurement wait until more come: it may have been the end.
         """
-        take = self._take
-        if take is None or not take.is_measured or not self._settings.max_delay:
+        take, now, max_delay = self._take, self._clock.now(), self._settings.max_delay
+        if take is None or not take.is_measured or not max_delay:
             return
-        self._n_polls += 1
-        if self._n_polls == 1:
+        if self._measured_at is None:
+            self._measured_at = now
             return
-        n_late = len(self._waiting) - max(round(self._settings.max_delay * take.frame_rate), 1)
-        for _ in range(n_late):
-            self._waiting.popleft()
-        if self._n_polls == 2:
-            self._n_while_measuring = max(n_late, 0)
+        n_late, begins_again = 0, False
+        while self._waiting and now - self._waiting[0].came_at > max_delay:
+            begins_again |= self._waiting.popleft().came_at <= self._measured_at
+            n_late += 1
+            take.skip()
+        if begins_again:
+            self._n_while_measuring += n_late + len(self._delays)
+            self._delays.clear()
+            take.begin_again()
         else:
-            self._n_dropped += max(n_late, 0)
+            self._n_dropped += n_late
 
     def _wait(self) -> bool:
         """Wait a moment for an image; return False once none is expected any more."""
-        silence_s, settings = monotonic() - self._last_image, self._settings
+        silence_s, settings = self._clock.now() - self._last_image, self._settings
         limit_s = settings.max_wait if self._take is None else settings.max_silence
         if self._source.is_gone or silence_s > limit_s:
             take = self._take
             return take is not None and not take.is_measured and self._measure(take)
         self._progress(0.0, "Waiting for images")
-        sleep(POLL_INTERVAL_S)
+        self._clock.sleep(POLL_INTERVAL_S)
         return not self._is_ended()
 
     def _measure(self, take: FollowedTake) -> bool:

@@ -1,6 +1,8 @@
 """Measure an actor in the first images of a recording, and then track each image."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -48,6 +50,8 @@ class WaitingImage(NamedTuple):
     """An image that waits to be tracked."""
 
     image: NewImage
+    came_at: float
+    """Time at which it was found, seconds."""
     depth: DepthImage | None = None
     """Coarse; None if it was not read yet."""
 
@@ -101,9 +105,9 @@ class FollowedTake:
         """Return an image with about as many columns as the tracker uses."""
         return np.ascontiguousarray(image[:: self._step, :: self._step])
 
-    def collect(self, image: NewImage, depth: DepthImage) -> float:
+    def collect(self, image: WaitingImage) -> float:
         """Keep one of the first images, coarse; return which fraction of them is there."""
-        self._first.append(WaitingImage(image, depth))
+        self._first.append(image)
         wanted = self._settings.calibration_s * self._positions().frame_rate
         return len(self._first) / (max(round(wanted), 2) + self._settings.empty.stop)
 
@@ -115,7 +119,7 @@ class FollowedTake:
         given, positions = self._settings, self._positions()
         try:
             actor, body = measure_followed(
-                [depth for _, depth in self._first if depth is not None],
+                [each.depth for each in self._first if each.depth is not None],
                 self._camera, positions.frame_rate, given.body, empty=given.empty,
                 foreground=given.foreground, refine=given.capture.refine, progress=progress,
             )  # fmt: skip
@@ -123,13 +127,13 @@ class FollowedTake:
             self.fault = str(error)
             self._forget(given.empty.stop, max(len(self._first) // 2, 1))
             return []
-        tracker = LiveTracker(
-            self._camera, positions.frame_rate, body, self._detector,
+        new_tracker = partial(
+            LiveTracker, self._camera, positions.frame_rate, body, self._detector,
             given.motion_prior, recovery=given.capture,
         )  # fmt: skip
         first, self._first = self._first, []
         self._started = _StartedFollowing(
-            actor, tracker, positions, first[0].image.position, self._n_forgotten
+            actor, new_tracker, positions, first[0].image.position, self._n_forgotten
         )
         return first
 
@@ -144,6 +148,16 @@ class FollowedTake:
         """Track the next image, coarse; return None before the first pose is detected."""
         assert self._started is not None
         return self._started.add(image, depth)
+
+    def skip(self) -> None:
+        """Leave out an image; without numbers and times, the later ones keep their time."""
+        assert self._started is not None
+        self._started.skip()
+
+    def begin_again(self) -> None:
+        """Forget the motion so far: it begins with the next image."""
+        assert self._started is not None
+        self._started.begin_again()
 
     def finish(self) -> tuple[int, Capture]:
         """Return the motion so far, and the frame of the recording at which it begins.
@@ -164,18 +178,26 @@ class _StartedFollowing:
     def __init__(
         self,
         actor: Actor,
-        tracker: LiveTracker,
+        new_tracker: Callable[[], LiveTracker],
         positions: ImagePositions,
         first_position: float,
         n_before: int,
     ) -> None:
         self.actor, self.frame_rate = actor, positions.frame_rate
-        self.tracker, self._causal_actor = tracker, CausalActor(actor)
+        self._new_tracker = new_tracker
+        self.tracker, self._causal_actor = new_tracker(), CausalActor(actor)
         self._seconds = positions.seconds_per_unit
         start = first_position * self._seconds - 1.0 / self.frame_rate
         self._slots = TimeSlots(start, self.frame_rate)
         self._n_before, self._n_images = n_before, 0
         self._previews: list[PosePreview] = []
+
+    def skip(self) -> None:
+        self._n_images += 1
+
+    def begin_again(self) -> None:
+        self.tracker, self._causal_actor = self._new_tracker(), CausalActor(self.actor)
+        self._previews.clear()
 
     def add(self, image: NewImage, depth: DepthImage) -> PosePreview | None:
         self._n_images += 1

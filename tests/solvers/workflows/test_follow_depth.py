@@ -22,7 +22,12 @@ from solvers.depth_tracking.terms import DEFAULT_TRACKER
 from solvers.errors import InvalidMotionError, InvalidSettingError
 from solvers.progress import unwatched
 from solvers.recordings.growing import ImagePositions, NewImage
-from solvers.workflows.following import DetectorProcess, FollowSettings, follow_depth
+from solvers.workflows.following import (
+    Clock,
+    DetectorProcess,
+    FollowSettings,
+    follow_depth,
+)
 
 BODY = default_body()
 FOREST = load_pixel_forest()
@@ -37,6 +42,7 @@ class Written:
     def __init__(self, images, positions=None, per_poll=(1,)):
         self.camera, self.is_gone, self.issue = CAMERA, False, ""
         self._images, self._per_poll = images, [*per_poll]
+        self.seconds_per_unit = 1.0 / 30.0
         positions = range(len(images)) if positions is None else positions
         self._new = [NewImage(str(n), float(at), 0.0) for n, at in enumerate(positions)]
 
@@ -51,7 +57,7 @@ class Written:
         return self._images[int(image.name)]
 
     def positions(self, positions):
-        return ImagePositions(30.0, 1.0 / 30.0)
+        return ImagePositions(30.0, self.seconds_per_unit)
 
     def remarks(self):
         return ()
@@ -95,19 +101,50 @@ def test_detector_of_another_process_gives_what_its_delays_give_here(images):
     assert_allclose(live.captured.poses, again.captured.poses, atol=1e-9)
 
 
-def test_images_that_wait_too_long_are_dropped_and_their_poses_interpolated(images):
-    """Fifteen images are for the calibration; then eight come in the time of one."""
-    source = Written(images * 2, per_poll=[*[1] * 15, 8])
-    settings = replace(FAST, max_delay=0.1)
+@pytest.mark.parametrize("seconds_per_unit", [1.0 / 30.0, 0.0])
+def test_images_that_wait_too_long_are_dropped_and_their_poses_interpolated(
+    images, seconds_per_unit
+):
+    """Fifteen images are for the calibration, and eight come during it; then two for each one
+    that is tracked in 0.05 s.
 
-    found = follow(source, settings=settings)
+    Images keep their time, whether their names have numbers or only an order.
+    """
+    source = Written(images * 3, per_poll=[*[1] * 15, 8, 2])
+    source.seconds_per_unit = seconds_per_unit
+    elapsed = []
+    clock = Clock(lambda: 0.05 * len(elapsed), lambda: 0.0, elapsed.append)
 
-    assert found.motion.n_frames == 2 * N_FRAMES
-    assert found.n_dropped > 0 and any("were dropped" in each for each in found.remarks)
-    assert len(found.delays) < 2 * N_FRAMES
+    found = follow(
+        source, settings=replace(FAST, max_delay=0.1), clock=clock, on_pose=elapsed.append
+    )
+
+    assert 15 < found.first <= 15 + 8 + 6
+    assert found.first + found.motion.n_frames == 3 * N_FRAMES
+    assert f"The first {found.first} images came before" in found.remarks[-2]
+    assert found.remarks[-1].startswith(f"{found.n_dropped} images were dropped")
+    n_left = found.motion.n_frames - found.n_dropped
+    assert len(found.delays) == n_left < 0.8 * found.motion.n_frames
     is_tracked = found.captured.joints.confidence.any(axis=1)
-    assert is_tracked.sum() == len(found.delays)
+    assert is_tracked.sum() == n_left
     assert np.isfinite(found.captured.poses).all()
+
+
+def test_images_that_come_in_bursts_are_not_dropped(images, followed):
+    """As those of k4arecorder: all of a second at once, and the next ones after these."""
+    source = Written(images, per_poll=[8, *[0] * 20, 8, *[0] * 30, 8])
+    elapsed = []
+    clock = Clock(lambda: 0.05 * len(elapsed), lambda: 0.0, elapsed.append)
+
+    found = follow(
+        source,
+        settings=replace(FAST, max_delay=0.1, max_silence=10.0),
+        clock=clock,
+        on_pose=elapsed.append,
+    )
+
+    assert found.n_dropped == 0
+    assert_array_equal(found.captured.poses, followed.captured.poses)
 
 
 def test_recording_that_ended_is_tracked_completely(images, followed):

@@ -263,7 +263,7 @@ def test_description_that_is_still_written_is_waited_for(tmp_path):
 def test_what_cannot_be_followed_is_refused(tmp_path):
     (tmp_path / "take.npz").write_bytes(b"")
     for path, words in (
-        (tmp_path / "take.npz", "is a file. Follow a folder"),
+        (tmp_path / "take.npz", "cannot be read while it grows"),
         (tmp_path / "no" / "take", "There is no folder"),
     ):
         with pytest.raises(InvalidFileError, match=words):
