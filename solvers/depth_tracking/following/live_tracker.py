@@ -43,6 +43,9 @@ class LiveTracker:
     motion_prior : MotionPrior, optional
     recovery : RecoverySettings
     tracker : TrackerSettings
+    waits : bool
+        Whether to wait for the first detected pose. Otherwise images without a pose go by
+        until it is there, and tracking begins in the present image.
 
     References
     ----------
@@ -60,7 +63,9 @@ class LiveTracker:
         *,
         recovery: RecoverySettings = DEFAULT_RECOVERY,
         tracker: TrackerSettings = DEFAULT_TRACKER,
+        waits: bool = True,
     ) -> None:
+        self._waits = waits
         self._camera, self._body, self._detector = camera, body, detector
         self._prior, self._tracker = motion_prior, tracker
         self._policy = RegularChecks(recovery, frame_rate)
@@ -89,7 +94,7 @@ class LiveTracker:
             has_pose = bool(self._trajectory)
             self._is_wanted |= self._policy.should_detect(quality if has_pose else None)
         self._keep(image, score, observation)
-        if not self._trajectory:
+        if not self._trajectory and self._waits:
             self._detector.wait()
         detection = self._detector.poll()
         if detection is not None and self._kept:
@@ -130,7 +135,7 @@ class LiveTracker:
 
     def _keep(self, image: DepthImage, score: float, observation: Observation) -> None:
         """Request a detection if one is wanted; keep the images since the request."""
-        if self._is_wanted and not self._trajectory:
+        if self._is_wanted and not self._trajectory and self._waits:
             self._detector.wait()
         if self._is_wanted and not observation.empty and self._detector.is_idle:
             self._is_wanted = False

@@ -178,7 +178,7 @@ class _StartedFollowing:
     def __init__(
         self,
         actor: Actor,
-        new_tracker: Callable[[], LiveTracker],
+        new_tracker: Callable[..., LiveTracker],
         positions: ImagePositions,
         first_position: float,
         n_before: int,
@@ -196,7 +196,8 @@ class _StartedFollowing:
         self._n_images += 1
 
     def begin_again(self) -> None:
-        self.tracker, self._causal_actor = self._new_tracker(), CausalActor(self.actor)
+        self.tracker = self._new_tracker(waits=False)
+        self._causal_actor = CausalActor(self.actor)
         self._previews.clear()
 
     def add(self, image: NewImage, depth: DepthImage) -> PosePreview | None:

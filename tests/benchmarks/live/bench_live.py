@@ -28,7 +28,6 @@ from solvers.workflows import LiveTake
 from ..depth.depth_sequences import TRUTH
 from ..shared.report import DOCS, Report
 from ..shared.tables import table
-from .delay import measure_delay
 from .followed_depth import followed
 from .held_feet import HEADER, HeldFeet, drifting, hold_feet
 
@@ -82,6 +81,8 @@ def _joints(report: Report) -> None:
 
 
 def _delay(report: Report) -> None:
+    from .delay import measure_delay  # imports bpy, which workers of the next part cannot
+
     started = perf_counter()
     rows = {
         name: measure_delay(*stream, walker_skeleton()).cells() for name, stream in streams()

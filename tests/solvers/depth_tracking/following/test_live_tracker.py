@@ -45,10 +45,10 @@ def poses():
     return found
 
 
-def follow(recording, delays=(0,), detector=None):
+def follow(recording, delays=(0,), detector=None, waits=True):
     """Return the tracker, and its result in each frame."""
     detector = detector or DelayedDetector(FOREST, delays)
-    tracker = LiveTracker(CAMERA, 30.0, BODY, detector, recovery=RECOVERY)
+    tracker = LiveTracker(CAMERA, 30.0, BODY, detector, recovery=RECOVERY, waits=waits)
     frames = range(recording.n_frames)
     return tracker, [tracker.update(frame, recording.frame(frame)) for frame in frames]
 
@@ -78,6 +78,13 @@ def test_late_detection_replaces_a_failed_pose_in_the_present_frame(hidden):
     requested, present = poses()[restart - 5], poses()[restart]
     assert distance(found[restart].pose, present) < 0.01 < distance(requested, present)
     assert distance(found[-1].pose, poses()[-1]) < 0.05
+
+
+def test_tracker_that_does_not_wait_begins_in_the_present_image():
+    _, found = follow(recorded(poses()[10:18]), (5,), waits=False)
+
+    assert found[:5] == [None] * 5
+    assert distance(found[5].pose, poses()[15]) < 0.01 < distance(poses()[10], poses()[15])
 
 
 def distance(pose, other):
