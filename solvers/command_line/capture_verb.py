@@ -9,7 +9,7 @@ from typing import Any, TypedDict
 import numpy as np
 
 from ..denoising import PlantSettings
-from ..depth_scene import ForegroundSettings
+from ..depth_scene import DepthRecording, ForegroundSettings
 from ..depth_tracking.body import LENGTHS, BodyModel, load_body_model
 from ..depth_tracking.capturing import CaptureSettings
 from ..depth_tracking.several_cameras import AlignmentSettings
@@ -24,6 +24,7 @@ from ..workflows import (
     capture_from_cameras,
     capture_recording,
 )
+from ..workflows.following import FollowedMotion
 from .arguments import (
     JOINTS,
     Outcome,
@@ -34,6 +35,7 @@ from .arguments import (
     settings_from_arguments,
     write,
 )
+from .follow_recording import add_follow_options, check_follow, follow_recording
 
 ALL = "all"
 """Of `--people`: as many as are visible at once."""
@@ -72,6 +74,7 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
         "--feet", action=argparse.BooleanOptionalAction, default=True,
         help="Plant standing feet [default: yes, where they are visible]",
     )  # fmt: skip
+    add_follow_options(parser)
     for title, settings in (
         ("reading", DepthSettings), ("the actor", ForegroundSettings),
         ("tracking", CaptureSettings), ("several cameras", AlignmentSettings),
@@ -97,9 +100,10 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
     Raises
     ------
     InvalidSettingError
-        --keep-body or --body is combined with several people, or --keep-body or --camera with
-        several takes, or --camera with several people.
+        --keep-body or --body is combined with several people, --keep-body or --camera with
+        several takes, --camera with several people, or --follow with any of these.
     """
+    check_follow(arguments)
     if arguments.people != 1 and (arguments.body or arguments.keep_body) is not None:
         raise InvalidSettingError(
             "A body file holds one body. Leave out --body and --keep-body with --people."
@@ -126,33 +130,14 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
 def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) -> Outcome:
     """Capture one recording, write it and report the quality of the tracking."""
     arguments, messages = task.arguments, list[Remark]()
-    recordings = [
-        read_depth(
-            path,
-            settings_from_arguments(arguments, DepthSettings),
-            progress=collect_remarks(within(progress, 0.0, 0.02), messages),
-        )
-        for path in (task.source, *arguments.camera)
-    ]
-    first, last = arguments.empty or (0, -1)
-    options: _Options = {
-        "empty": range(first, last + 1),
-        "settings": settings_from_arguments(arguments, CaptureSettings),
-        "foreground": settings_from_arguments(arguments, ForegroundSettings),
-        "planting": settings_from_arguments(arguments, PlantSettings)
-        if arguments.feet
-        else None,
-        "progress": within(progress, 0.02, 0.98),
-    }
-    if arguments.people != 1:
-        n_people = arguments.people or None
-        people = capture_every_person(recordings[0], n_people=n_people, **options)
-        return _write_people(people, task, messages, within(progress, 0.98, 1.0))
-    if arguments.camera:
-        alignment = settings_from_arguments(arguments, AlignmentSettings)
-        found = capture_from_cameras(recordings, prepared, alignment=alignment, **options)
+    found: CapturedMotion | FollowedMotion
+    if arguments.follow:
+        found = follow_recording(task.source, arguments, prepared, within(progress, 0.0, 0.98))
+    elif arguments.people == 1:
+        found = _capture_actor(task, prepared, messages, within(progress, 0.0, 0.98))
     else:
-        found = capture_recording(recordings[0], prepared, **options)
+        people = _capture_people(task, messages, within(progress, 0.0, 0.98))
+        return _write_people(people, task, messages, within(progress, 0.98, 1.0))
     if arguments.keep_body is not None:
         found.captured.body.save(arguments.keep_body)
     assert task.target is not None
@@ -166,6 +151,52 @@ class _Options(TypedDict):
     foreground: ForegroundSettings
     planting: PlantSettings | None
     progress: Progress
+
+
+def _options(arguments: argparse.Namespace, progress: Progress) -> _Options:
+    first, last = arguments.empty or (0, -1)
+    planting = settings_from_arguments(arguments, PlantSettings) if arguments.feet else None
+    return {
+        "empty": range(first, last + 1),
+        "settings": settings_from_arguments(arguments, CaptureSettings),
+        "foreground": settings_from_arguments(arguments, ForegroundSettings),
+        "planting": planting,
+        "progress": progress,
+    }
+
+
+def _read(
+    paths: Sequence[Path], task: Task, messages: list[Remark], progress: Progress
+) -> list[DepthRecording]:
+    """Open recordings."""
+    settings = settings_from_arguments(task.arguments, DepthSettings)
+    return [
+        read_depth(path, settings, progress=collect_remarks(progress, messages))
+        for path in paths
+    ]
+
+
+def _capture_actor(
+    task: Task, body: BodyModel | None, messages: list[Remark], progress: Progress
+) -> CapturedMotion:
+    """Capture one person, before one or several cameras."""
+    arguments = task.arguments
+    paths = task.source, *arguments.camera
+    recordings = _read(paths, task, messages, within(progress, 0.0, 0.02))
+    options = _options(arguments, within(progress, 0.02, 1.0))
+    if len(recordings) == 1:
+        return capture_recording(recordings[0], body, **options)
+    alignment = settings_from_arguments(arguments, AlignmentSettings)
+    return capture_from_cameras(recordings, body, alignment=alignment, **options)
+
+
+def _capture_people(
+    task: Task, messages: list[Remark], progress: Progress
+) -> Sequence[CapturedMotion]:
+    """Capture several people together."""
+    (recording,) = _read([task.source], task, messages, within(progress, 0.0, 0.02))
+    options = _options(task.arguments, within(progress, 0.02, 1.0))
+    return capture_every_person(recording, n_people=task.arguments.people or None, **options)
 
 
 def _write_people(
@@ -201,7 +232,7 @@ def path_of_person(target: Path, number: int) -> Path:
     return target if number == 1 else target.with_stem(f"{target.stem}_person{number}")
 
 
-def _write(found: CapturedMotion, target: Path, progress: Progress) -> None:
+def _write(found: CapturedMotion | FollowedMotion, target: Path, progress: Progress) -> None:
     if target.suffix.lower() == JOINTS:
         joints = JointRecording(found.captured.joints, None, Sensor.OTHER)
         write_joint_csv(joints, target, progress=progress)
@@ -209,7 +240,7 @@ def _write(found: CapturedMotion, target: Path, progress: Progress) -> None:
         write(found.motion, target, progress)
 
 
-def _outcome(found: CapturedMotion, messages: Sequence[Remark]) -> Outcome:
+def _outcome(found: CapturedMotion | FollowedMotion, messages: Sequence[Remark]) -> Outcome:
     captured, remarks = (
         found.captured,
         [*(f"{message.rstrip('.')}." for message in messages), *found.remarks],
@@ -233,7 +264,7 @@ def _outcome(found: CapturedMotion, messages: Sequence[Remark]) -> Outcome:
         "slide_before_m": found.planted and found.planted.slide_before,
         "slide_after_m": found.planted and found.planted.slide_after,
     }
-    if found.alignments:
+    if isinstance(found, CapturedMotion) and found.alignments:
         figures["cameras"] = [
             {
                 "first_from_camera": np.linalg.inv(each.camera_from_first).tolist(),
@@ -242,6 +273,13 @@ def _outcome(found: CapturedMotion, messages: Sequence[Remark]) -> Outcome:
             }
             for each in found.alignments
         ]
+    if isinstance(found, FollowedMotion):
+        figures |= {
+            "first_frame": found.first,
+            "n_images": len(found.delays),
+            "n_dropped": found.n_dropped,
+            "median_delay_s": float(np.median(found.delays)),
+        }
     return Outcome(" ".join([text, *remarks]), figures)
 
 

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from .bodies import label_components
     from .camera import Camera
     from .camera_checks import check_intrinsics
+    from .causal_actor import CausalActor
     from .find_people import SeparatedPeople, find_people
     from .floor import LEVEL, FloorPlane, find_floor
     from .follow_several_people import level_distances
@@ -21,6 +22,7 @@ __all__ = [
     "NO_OWNER",
     "Actor",
     "Camera",
+    "CausalActor",
     "ColorImage",
     "DepthImage",
     "DepthRecording",

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from .capture_every_person import capture_every_person, capture_separated_people
     from .capture_from_cameras import capture_from_cameras
     from .capture_recording import CapturedMotion, capture_actor, capture_recording
+    from .capture_remarks import capture_remarks
     from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
     from .fix_chains import ChainResult
     from .fix_report import (
@@ -72,6 +73,7 @@ __all__ = [
     "capture_every_person",
     "capture_from_cameras",
     "capture_recording",
+    "capture_remarks",
     "capture_separated_people",
     "clean_from_library",
     "describe_missing_points",

@@ -19,7 +19,9 @@ length changes how long and wide a body appears, but not how deep. Chosen by han
 `test_very_thick_body_is_reported_as_a_possible_wrong_focal_length`."""
 
 
-def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[str, ...]:
+def capture_remarks(
+    actor: Actor, captured: Capture, *, fitted: bool, live: bool = False
+) -> tuple[str, ...]:
     """Return sentences on the actor and on the quality of the tracking.
 
     Parameters
@@ -29,20 +31,32 @@ def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[s
     captured : Capture
     fitted : bool
         Whether the body was fitted to the recording rather than given.
+    live : bool
+        Whether each frame was tracked without those after it. Then frames of confidence 0,
+        most of which had no image, are not counted.
     """
     remarks = [*actor.remarks]
     if actor.floor is None:
         remarks.append("No floor is visible, so the camera is assumed to be level.")
-    occluded = float(captured.low_confidence.mean())
+    confidence = captured.joints.confidence
+    counted = np.ones(len(captured.residual), dtype=bool)
+    if live and confidence is not None and confidence.any():
+        counted = confidence.any(axis=1)
+    occluded = float(captured.low_confidence[counted].mean())
     if occluded > MAX_OCCLUDED_FRACTION:
         remarks.append(
             f"{100 * occluded:.0f} % of the joints were occluded or fitted poorly; they are"
-            " estimated from the frames before and after."
+            + (
+                " estimated from the frames before."
+                if live
+                else " estimated from the frames before and after."
+            )
         )
     tracked = np.isfinite(captured.residual)
-    if actor.visible.all() and not tracked.all():
+    missing = ~tracked[counted]
+    if actor.visible.all() and missing.any():
         remarks.append(
-            f"In {int((~tracked).sum())} of {len(tracked)} frames no person is detected."
+            f"In {int(missing.sum())} of {len(missing)} frames no person is detected."
         )
     ratio = relative_thickness(captured)
     if fitted and ratio > MAX_THICKNESS_RATIO:

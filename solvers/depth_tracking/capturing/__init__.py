@@ -11,8 +11,16 @@ from .capture import (
 )
 from .capture_method import CaptureMethod
 from .find_body import find_body
-from .passes import Pass, PassTracker, TrackingContext, prior_near
+from .passes import (
+    Pass,
+    PassTracker,
+    TrackingContext,
+    prior_near,
+    track_with_restarts,
+    unwrap_rotation,
+)
 from .refine_body import RefineBodySettings, refine_body
+from .restart_policies import RecoverySettings, RegularChecks
 from .retrack import Retracked, retrack
 from .retracked_path import RetrackSettings
 from .smooth_pass import acceleration_weights, smooth_in_windows, smooth_poses
@@ -27,7 +35,9 @@ __all__ = [
     "CaptureSettings",
     "Pass",
     "PassTracker",
+    "RecoverySettings",
     "RefineBodySettings",
+    "RegularChecks",
     "RetrackSettings",
     "Retracked",
     "TrackingContext",
@@ -43,5 +53,7 @@ __all__ = [
     "smooth_in_windows",
     "smooth_poses",
     "smooth_take",
+    "track_with_restarts",
     "unfinished_capture",
+    "unwrap_rotation",
 ]

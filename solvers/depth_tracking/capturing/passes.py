@@ -191,7 +191,7 @@ class PassTracker:
         if not observation.empty and policy.should_detect(quality if trajectory else None):
             detected = actor.detected(frame)
             if detected is not None and policy.accepts(detected[1].score, score):
-                unwrapped = _unwrap_rotation(
+                unwrapped = unwrap_rotation(
                     detected[0], trajectory[-1] if trajectory else detected[0]
                 )
                 if trajectory:
@@ -222,7 +222,7 @@ class PassTracker:
         return Pass(self._poses, self._scores, tuple(self._restarts))
 
 
-def _unwrap_rotation(pose: Array, before: Array) -> Array:
+def unwrap_rotation(pose: Array, before: Array) -> Array:
     """Return the pose with multiples of 360 degrees added, continuous with the frame before."""
     unwrapped = pose.copy()
     for index in (_YAW, _YAW + 2):

@@ -86,6 +86,10 @@ class Matroska:
         Content of each attached file.
     is_complete : bool
         Whether the file ends with its last element.
+    read_to : int, bytes
+        Where the next element begins, for a file that grows.
+    cluster : int
+        Time of the cluster there, in its unit.
     """
 
     tracks: dict[int, Track] = field(default_factory=dict)
@@ -93,6 +97,8 @@ class Matroska:
     files: dict[str, bytes] = field(default_factory=dict)
     is_complete: bool = True
     scale: int = DEFAULT_SCALE
+    read_to: int = 0
+    cluster: int = 0
 
 
 def is_matroska(head: bytes) -> bool:
@@ -100,8 +106,15 @@ def is_matroska(head: bytes) -> bool:
     return head[:4] == HEADER.to_bytes(4, "big")
 
 
-def index_matroska(path: Path, wanted: Callable[[Track], bool], progress: Progress) -> Matroska:
+def index_matroska(
+    path: Path,
+    wanted: Callable[[Track], bool],
+    progress: Progress,
+    index: Matroska | None = None,
+) -> Matroska:
     """Index a file, and the frames of the wanted tracks.
+
+    An index of the file when it was shorter is continued.
 
     Raises
     ------
@@ -110,7 +123,8 @@ def index_matroska(path: Path, wanted: Callable[[Track], bool], progress: Progre
     SolveCancelled
         Raised by `progress`.
     """
-    index = Matroska()
+    index = index or Matroska()
+    index.is_complete = True
     try:
         with open_regular(path) as file:
             _scan(file, path.stat().st_size, index, wanted, progress)
@@ -131,27 +145,28 @@ def _scan(
     progress: Progress,
 ) -> None:
     """Scan all elements; those that contain frames are entered, so their size is not needed."""
-    at, cluster, n_elements = 0, 0, 0
-    while at < end:
-        head = _next_head(file, at, index)
+    n_elements = 0
+    while index.read_to < end:
+        head = _next_head(file, index.read_to, index)
         if head is None:
             return
-        at += head.length
+        at = index.read_to + head.length
         if head.number in ENTERED:
+            index.read_to = at
             continue
         if head.size is None or at + head.size > end:
             index.is_complete = False
             return
         if head.number == TIMESTAMP:
-            cluster = unsigned(_content(file, at, head.size))
+            index.cluster = unsigned(_content(file, at, head.size))
         elif head.number in {SIMPLE_BLOCK, BLOCK}:
-            _add_block(file, at, head.size, cluster, index, wanted)
+            _add_block(file, at, head.size, index.cluster, index, wanted)
         else:
             _describe(file, at, head, index)
-        at += head.size
+        index.read_to = at + head.size
         n_elements += 1
         if not n_elements % PROGRESS_INTERVAL:
-            progress(at / end, "Reading")
+            progress(index.read_to / end, "Reading")
 
 
 def _describe(file: IO[bytes], at: int, head: Head, index: Matroska) -> None:

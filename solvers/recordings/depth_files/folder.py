@@ -72,7 +72,7 @@ def read_depth_folder(
     if layout is None:
         raise InvalidFileError(f"{path} is a folder without depth images.")
     is_good, header = _check_images(layout, progress)
-    meters, camera = _resolve_camera(path, layout, settings, header)
+    meters, camera = resolve_camera(path, layout, settings, header)
     frames = _frames(path, layout, settings)
     images = np.where(frames.images != NO_IMAGE, frames.images, 0)
     image_indices = np.where(
@@ -119,11 +119,12 @@ def _check_images(layout: Layout, progress: Progress) -> tuple[NDArray[np.bool_]
         )
     most_common = max(set(headers_found), key=headers_found.count)
     for name, header in zip(layout.depth, headers, strict=True):
-        _check(layout.root / name, header, most_common)
+        check_depth_header(layout.root / name, header, most_common)
     return np.array([header is not None for header in headers]), most_common
 
 
-def _check(path: Path, header: PngHeader | None, most_common: PngHeader) -> None:
+def check_depth_header(path: Path, header: PngHeader | None, most_common: PngHeader) -> None:
+    """Raise InvalidFileError unless a header is that of depth, and equal to the most common."""
     if header is None:
         return
     if header.bits != BITS or not header.gray:
@@ -140,7 +141,7 @@ def _check(path: Path, header: PngHeader | None, most_common: PngHeader) -> None
     check_size(path, header.height, header.width)
 
 
-def _resolve_camera(
+def resolve_camera(
     path: Path, layout: Layout, settings: DepthSettings, header: PngHeader
 ) -> tuple[float, Camera]:
     """Return meters per unit and the camera; raise InvalidFileError if one is unknown."""

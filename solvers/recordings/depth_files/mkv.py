@@ -82,8 +82,8 @@ def read_depth_mkv(
     Dropped images become empty frames.
     """
     path = Path(path)
-    index = index_matroska(path, _is_video, within(progress, 0.0, 0.9))
-    track, (width, height) = _depth_track(path, index)
+    index = index_matroska(path, is_video, within(progress, 0.0, 0.9))
+    track, (width, height) = depth_track(path, index)
     check_size(path, height, width)
     lens = _lens(path, index, settings, width, height)
     camera = lens.camera if lens else settings.camera(width, height)
@@ -123,11 +123,13 @@ def read_depth_mkv(
     return recording
 
 
-def _is_video(track: Track) -> bool:
+def is_video(track: Track) -> bool:
+    """Return whether a track may hold raw depth."""
     return track.codec == VIDEO
 
 
-def _depth_track(path: Path, index: Matroska) -> tuple[Track, tuple[int, int]]:
+def depth_track(path: Path, index: Matroska) -> tuple[Track, tuple[int, int]]:
+    """Return the track of depth, and the width and height of its images."""
     uid = index.tags.get("K4A_DEPTH_TRACK", "")
     raw = [track for track in index.tracks.values() if _fourcc(track) == RAW]
     named = [track for track in raw if track.name == DEPTH or str(track.uid) == uid]

@@ -2,10 +2,11 @@
 
     make bench-live
     make bench-live ARGUMENTS=--docs    # into docs/benchmarks/live.md
+    make bench-live ARGUMENTS="--only depth"
 
 Takes of depth cameras are sent frame by frame to a `LiveTake` and then to a rig, without a
-socket. Then streams are sent over a socket in each protocol, and timed by stage. Takes whose
-path is missing are left out.
+socket. Then streams are sent over a socket in each protocol, and timed by stage. Last, depth
+images are tracked while they are written. Takes whose path is missing are left out.
 """
 
 import argparse
@@ -24,9 +25,10 @@ from solvers.retargeting import LiveRetargeting
 from solvers.samples import GaitSettings, walker_skeleton, walking_gait
 from solvers.workflows import LiveTake
 
+from ..depth.depth_sequences import TRUTH
 from ..shared.report import DOCS, Report
 from ..shared.tables import table
-from .delay import measure_delay
+from .followed_depth import followed
 from .held_feet import HEADER, HeldFeet, drifting, hold_feet
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "kinect"
@@ -49,11 +51,22 @@ class LiveFigures(NamedTuple):
     feet: HeldFeet
 
 
+PARTS = ("joints", "delay", "depth")
+
+
 def main() -> None:
-    """Print the table."""
+    """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks/live.md")
+    parser.add_argument("--only", choices=PARTS, help="measure one part")
     arguments = parser.parse_args()
+    report = Report(arguments.docs, DOCS / "benchmarks" / "live.md")
+    for part, measure_part in zip(PARTS, (_joints, _delay, _depth), strict=True):
+        if arguments.only in {None, part}:
+            measure_part(report)
+
+
+def _joints(report: Report) -> None:
     started = perf_counter()
     measured = {name: measure(path) for name, path in TAKES.items() if path.exists()}
     rows = {name: _row(figures) for name, figures in measured.items()}
@@ -61,17 +74,27 @@ def main() -> None:
         "take", "joints and rotations, ms", "95th percentile", "rig, ms", "95th percentile",
         "measuring the actor, s", "distance from offline, cm",
     ]  # fmt: skip
-    report = Report(arguments.docs, DOCS / "benchmarks" / "live.md")
     report.part("live", [table(header, rows) + "\n"], perf_counter() - started)
     feet = {name: figures.feet for name, figures in measured.items()} | walks()
     rows = {name: each.cells() for name, each in feet.items()}
     report.part("feet", [table(HEADER, rows) + "\n"], perf_counter() - started)
+
+
+def _delay(report: Report) -> None:
+    from .delay import measure_delay  # imports bpy, which workers of the next part cannot
+
     started = perf_counter()
     rows = {
         name: measure_delay(*stream, walker_skeleton()).cells() for name, stream in streams()
     }
     header = ["stream", "receive", "solve", "rig", "to Blender", "at most behind"]
     report.part("delay", [table(header, rows) + "\n"], perf_counter() - started)
+
+
+def _depth(report: Report) -> None:
+    started = perf_counter()
+    if TRUTH.exists():
+        report.part("depth", [followed().markdown()], perf_counter() - started)
 
 
 def streams() -> Iterator[tuple[str, tuple[Motion | JointRecording, StreamProtocol]]]:

@@ -1,0 +1,294 @@
+"""Track a depth recording while a recorder writes it."""
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from time import monotonic, sleep, time
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ...denoising import Planted, PlantSettings
+from ...depth_scene import DepthImage, ForegroundSettings
+from ...depth_tracking.body import BodyModel, MotionPrior, load_motion_prior
+from ...depth_tracking.capturing import Capture, CaptureMethod, CaptureSettings
+from ...depth_tracking.following import PoseDetector
+from ...depth_tracking.tracking import PoseCallback, ignore_pose
+from ...errors import InvalidMotionError, InvalidSettingError
+from ...motion import Motion
+from ...progress import Progress, unwatched
+from ...recordings.growing import GrowingDepth, NewImage
+from ...workflows import capture_remarks, plant_feet_if_possible
+from .follow_settings import FollowSettings
+from .followed_take import TOO_EARLY, FollowedTake, TakeSettings, WaitingImage
+
+POLL_INTERVAL_S = 0.004
+"""Seconds between two looks at the recording. It bounds the delay, and the processor's load."""
+COUNT_CYCLE = 100
+"""Number of images after which the progress begins again: how many come is unknown."""
+FOLLOW_SETTINGS, CAPTURE_SETTINGS = FollowSettings(), CaptureSettings()
+FOREGROUND_SETTINGS = ForegroundSettings()
+
+
+class Clock(NamedTuple):
+    """The time; a benchmark has one of its own."""
+
+    now: Callable[[], float]
+    """Returns seconds that always rise."""
+    written: Callable[[], float]
+    """Returns seconds as file systems count them."""
+    sleep: Callable[[float], None]
+
+
+SYSTEM_CLOCK = Clock(monotonic, time, sleep)
+
+
+@dataclass(frozen=True, eq=False)
+class FollowedMotion:
+    """The motion of a recording that was followed.
+
+    Attributes
+    ----------
+    motion : Motion
+        Z up, without gaps; feet are planted if requested and possible.
+    captured : Capture
+    planted : Planted or None
+    first : int
+        Frame of the recording at which the motion begins.
+    n_dropped : int
+        Number of images that were dropped, as newer ones waited.
+    delays : shape (n_tracked,), seconds
+        From the time of each image's file to its pose.
+    detection_delays : tuple of int
+        Number of frames from each request of a detection to its pose.
+    remarks : tuple of str
+        Sentences the animator should read.
+    """
+
+    motion: Motion
+    captured: Capture
+    planted: Planted | None
+    first: int
+    n_dropped: int
+    delays: Array
+    detection_delays: tuple[int, ...]
+    remarks: tuple[str, ...]
+
+
+def never() -> bool:
+    """Return that following should not end yet."""
+    return False
+
+
+def follow_depth(
+    source: GrowingDepth,
+    detector: PoseDetector,
+    body: BodyModel | None = None,
+    *,
+    motion_prior: MotionPrior | None = None,
+    empty: range = range(0),
+    settings: FollowSettings = FOLLOW_SETTINGS,
+    capture: CaptureSettings = CAPTURE_SETTINGS,
+    foreground: ForegroundSettings = FOREGROUND_SETTINGS,
+    planting: PlantSettings | None = None,
+    on_pose: PoseCallback = ignore_pose,
+    is_ended: Callable[[], bool] = never,
+    clock: Clock = SYSTEM_CLOCK,
+    progress: Progress = unwatched,
+) -> FollowedMotion:
+    """Track the actor of a depth recording while it is written, until nothing more comes.
+
+    The actor is measured in the first images. Then each image is tracked when it is there,
+    from those before it alone. Images that wait too long are dropped while newer ones come.
+    Poses between tracked ones are interpolated, with confidence 0.
+
+    Parameters
+    ----------
+    source : GrowingDepth
+    detector : PoseDetector
+    body : BodyModel, optional
+        By default it is fitted to the first images.
+    motion_prior : MotionPrior, optional
+        Default: the shipped motions if `capture.recorded`, otherwise none.
+    empty : range
+        Images of the empty room.
+    settings : FollowSettings
+    capture : CaptureSettings
+        `backward` and `smoothing` need later images and have no effect.
+    foreground : ForegroundSettings
+    planting : PlantSettings, optional
+        None skips planting; so does a depth image that ends above the feet.
+    on_pose : PoseCallback
+        Called with each pose as soon as it is tracked.
+    is_ended : callable
+        Returns whether to end now; the motion so far is kept.
+    clock : Clock
+    progress : Progress
+        While images come, the fraction does not rise.
+
+    Raises
+    ------
+    InvalidMotionError
+        No image came, or no person was detected.
+    InvalidFileError
+        The images are no depth, or the camera or scale is unknown.
+    InvalidSettingError
+        A published method is chosen.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    if capture.method is not CaptureMethod.DEFAULT:
+        raise InvalidSettingError(
+            "Published methods track complete recordings. Leave out the method to follow one."
+        )
+    if motion_prior is None and capture.recorded:
+        motion_prior = load_motion_prior()
+    wanted = TakeSettings(settings.calibration, capture, foreground, body, motion_prior, empty)
+    following = _Following(
+        source, detector, settings, wanted, on_pose, is_ended, clock, progress
+    )
+    while following.step():
+        continue
+    return following.result(planting)
+
+
+class _Following:
+    """The state of `follow_depth`."""
+
+    def __init__(
+        self,
+        source: GrowingDepth,
+        detector: PoseDetector,
+        settings: FollowSettings,
+        wanted: TakeSettings,
+        on_pose: PoseCallback,
+        is_ended: Callable[[], bool],
+        clock: Clock,
+        progress: Progress,
+    ) -> None:
+        self._source, self._detector, self._settings = source, detector, settings
+        self._wanted, self._on_pose = wanted, on_pose
+        self._is_ended, self._progress, self._clock = is_ended, progress, clock
+        self._take: FollowedTake | None = None
+        self._waiting: deque[WaitingImage] = deque()
+        self._last_image = self._clock.now()
+        self._measured_at: float | None = None
+        """When images came for the first time after the measurement."""
+        self._n_while_measuring, self._n_dropped = 0, 0
+        self._delays: list[float] = []
+
+    def step(self) -> bool:
+        """Take the next image, or wait for it; return whether more may come."""
+        if new := self._source.poll():
+            self._drop()
+            self._last_image = self._clock.now()
+            self._waiting.extend(WaitingImage(each, self._last_image) for each in new)
+        if not self._waiting:
+            return self._wait()
+        image, _, depth = waiting = self._waiting.popleft()
+        if self._take is None:
+            self._take = FollowedTake(self._source, self._detector, self._wanted)
+        if depth is None and (full := self._source.read(image)) is not None:
+            depth = self._take.coarse(full)
+        if depth is None:
+            return True
+        if self._take.is_measured:
+            self._track(self._take, image, depth)
+        elif (fraction := self._take.collect(waiting._replace(depth=depth))) >= 1.0:
+            self._measure(self._take)
+        else:
+            self._progress(fraction, "Waiting until the actor can be measured")
+        return not self._is_ended()
+
+    def _track(self, take: FollowedTake, image: NewImage, depth: DepthImage) -> None:
+        pose = take.add(image, depth)
+        self._delays.append(self._clock.written() - image.written)
+        if pose is not None:
+            self._on_pose(pose)
+        count = len(self._delays)
+        self._progress(count % COUNT_CYCLE / COUNT_CYCLE, f"Tracking image {count}")
+
+    def _drop(self) -> None:
+        """Drop images that have waited too long, as newer ones come.
+
+        Those that came during the measurement wait until more come: it may have been the end.
+        """
+        take, now, max_delay = self._take, self._clock.now(), self._settings.max_delay
+        if take is None or not take.is_measured or not max_delay:
+            return
+        if self._measured_at is None:
+            self._measured_at = now
+            return
+        n_late, begins_again = 0, False
+        while self._waiting and now - self._waiting[0].came_at > max_delay:
+            begins_again |= self._waiting.popleft().came_at <= self._measured_at
+            n_late += 1
+            take.skip()
+        if begins_again:
+            self._n_while_measuring += n_late + len(self._delays)
+            self._delays.clear()
+            take.begin_again()
+        else:
+            self._n_dropped += n_late
+
+    def _wait(self) -> bool:
+        """Wait a moment for an image; return False once none is expected any more."""
+        silence_s, settings = self._clock.now() - self._last_image, self._settings
+        limit_s = settings.max_wait if self._take is None else settings.max_silence
+        if self._source.is_gone or silence_s > limit_s:
+            take = self._take
+            return take is not None and not take.is_measured and self._measure(take)
+        self._progress(0.0, "Waiting for images")
+        self._clock.sleep(POLL_INTERVAL_S)
+        return not self._is_ended()
+
+    def _measure(self, take: FollowedTake) -> bool:
+        """Measure the actor; return whether the first images wait to be tracked."""
+        self._waiting.extendleft(reversed(take.measure(self._measuring)))
+        return take.is_measured
+
+    def _measuring(self, fraction: float, message: str = "") -> None:
+        self._progress(fraction, message)
+        if self._is_ended():
+            raise InvalidMotionError(TOO_EARLY)
+
+    def result(self, planting: PlantSettings | None) -> FollowedMotion:
+        """Return the motion so far."""
+        take = self._take
+        if take is None:
+            raise InvalidMotionError(self._why_no_image())
+        first, captured = take.finish()
+        planted = plant_feet_if_possible(
+            captured.motion, planting if take.actor.feet_visible else None
+        )
+        fitted = self._wanted.body is None
+        remarks = (
+            *capture_remarks(take.actor, captured, fitted=fitted, live=True),
+            *self._dropped(),
+            *self._source.remarks(),
+            *planted.remarks,
+        )
+        return FollowedMotion(
+            planted.motion, captured, planted.planted, first, self._n_dropped,
+            np.array(self._delays), take.detection_delays, remarks,
+        )  # fmt: skip
+
+    def _dropped(self) -> Iterator[str]:
+        if self._detector.issue:
+            yield self._detector.issue
+        if self._n_while_measuring:
+            yield (
+                f"The first {self._n_while_measuring} images came before the actor was measured"
+                " and are not in the motion."
+            )
+        if self._n_dropped:
+            yield f"{self._n_dropped} images were dropped, as newer ones waited."
+
+    def _why_no_image(self) -> str:
+        if self._source.issue or self._source.is_gone:
+            return self._source.issue or self._source.remarks()[-1]
+        return (
+            "No depth image came. Check the folder that the recorder writes to, and that it"
+            " writes 16-bit PNG files."
+        )
