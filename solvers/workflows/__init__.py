@@ -5,11 +5,16 @@ from typing import TYPE_CHECKING
 from ..import_on_demand import import_on_demand
 
 if TYPE_CHECKING:
-    from .capture_every_person import capture_every_person, capture_separated_people
-    from .capture_from_cameras import capture_from_cameras
-    from .capture_recording import CapturedMotion, capture_actor, capture_recording
-    from .capture_remarks import capture_remarks
     from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
+    from .depth_capture import (
+        CapturedMotion,
+        capture_actor,
+        capture_every_person,
+        capture_from_cameras,
+        capture_recording,
+        capture_remarks,
+        capture_separated_people,
+    )
     from .fix_chains import ChainResult
     from .fix_report import (
         UNKNOWN,

@@ -20,7 +20,7 @@ from ..motion import (
     motion_from_points,
 )
 from ..progress import Progress, within
-from .capture_recording import CapturedMotion
+from .depth_capture import CapturedMotion
 from .fix_report import MotionFromJoints, Take, TakeOrigin, find_origin
 from .motion_from_markers import MarkerMotion, motion_from_markers
 from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible

@@ -214,7 +214,7 @@ REASONS: dict[str, tuple[str, ...]] = BOUNDS | {
     ),
     "decides what is drawn only": DRAWN,
     "fraction of a bar of progress": (
-        "workflows/capture_recording.FOREGROUND_FRACTION",
+        "workflows/depth_capture/capture_recording.FOREGROUND_FRACTION",
         "workflows/following/follow_depth.COUNT_CYCLE",
         "workflows/following/measure_followed.ACTOR_FRACTION",
         "mocap_assist/track/solve_*.ACTOR_FRACTION",

@@ -17,7 +17,7 @@ from solvers.depth_tracking.capturing.capture import CaptureSettings
 from solvers.errors import InvalidMotionError
 from solvers.recordings import read_depth
 from solvers.workflows import capture_recording
-from solvers.workflows.capture_remarks import relative_thickness
+from solvers.workflows.depth_capture.capture_remarks import relative_thickness
 
 BODY = default_body()
 FAST = CaptureSettings(backward=False, refine=False, check_every=1000)

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..depth_scene import Actor
-from ..depth_tracking.body import default_body
-from ..depth_tracking.capturing import Capture
+from ...depth_scene import Actor
+from ...depth_tracking.body import default_body
+from ...depth_tracking.capturing import Capture
 
 MAX_OCCLUDED_FRACTION = 0.2
 """Fraction of occluded joints above which the report mentions them. Chosen by hand: 3 of 17

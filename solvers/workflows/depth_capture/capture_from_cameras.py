@@ -4,17 +4,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..denoising import PlantSettings
-from ..depth_scene import Actor, DepthRecording, ForegroundSettings, find_actor
-from ..depth_tracking.body import BodyModel, MotionPrior
-from ..depth_tracking.capturing import CaptureSettings
-from ..depth_tracking.several_cameras import (
+from ...denoising import PlantSettings
+from ...depth_scene import Actor, DepthRecording, ForegroundSettings, find_actor
+from ...depth_tracking.body import BodyModel, MotionPrior
+from ...depth_tracking.capturing import CaptureSettings
+from ...depth_tracking.several_cameras import (
     AlignmentSettings,
     CapturedByCameras,
     capture_cameras,
 )
-from ..depth_tracking.tracking import PoseCallback, ignore_pose
-from ..progress import Progress, unwatched, within
+from ...depth_tracking.tracking import PoseCallback, ignore_pose
+from ...progress import Progress, unwatched, within
+from ..plant_feet_if_possible import plant_feet_if_possible
 from .capture_recording import (
     CAPTURE_SETTINGS,
     FOREGROUND_FRACTION,
@@ -23,7 +24,6 @@ from .capture_recording import (
     CapturedMotion,
 )
 from .capture_remarks import capture_remarks
-from .plant_feet_if_possible import plant_feet_if_possible
 
 ALIGNMENT_SETTINGS = AlignmentSettings()
 

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-from ..denoising import PlantSettings
-from ..depth_scene import DepthRecording, ForegroundSettings, SeparatedPeople, find_people
-from ..depth_tracking.body import BodyModel, MotionPrior
-from ..depth_tracking.capturing import CaptureSettings
-from ..depth_tracking.several_bodies import capture_people
-from ..depth_tracking.tracking import PoseCallback, ignore_pose
-from ..progress import Progress, unwatched, within
+from ...denoising import PlantSettings
+from ...depth_scene import DepthRecording, ForegroundSettings, SeparatedPeople, find_people
+from ...depth_tracking.body import BodyModel, MotionPrior
+from ...depth_tracking.capturing import CaptureSettings
+from ...depth_tracking.several_bodies import capture_people
+from ...depth_tracking.tracking import PoseCallback, ignore_pose
+from ...progress import Progress, unwatched, within
 from .capture_recording import (
     CAPTURE_SETTINGS,
     FOREGROUND_FRACTION,

@@ -3,16 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..denoising import Planted, PlantSettings
-from ..depth_scene import Actor, DepthRecording, ForegroundSettings, find_actor
-from ..depth_tracking.body import BodyModel, MotionPrior
-from ..depth_tracking.capturing import Capture, CaptureSettings, capture
-from ..depth_tracking.several_cameras import CameraAlignment
-from ..depth_tracking.tracking import PoseCallback, ignore_pose
-from ..motion import Motion
-from ..progress import Progress, unwatched, within
+from ...denoising import Planted, PlantSettings
+from ...depth_scene import Actor, DepthRecording, ForegroundSettings, find_actor
+from ...depth_tracking.body import BodyModel, MotionPrior
+from ...depth_tracking.capturing import Capture, CaptureSettings, capture
+from ...depth_tracking.several_cameras import CameraAlignment
+from ...depth_tracking.tracking import PoseCallback, ignore_pose
+from ...motion import Motion
+from ...progress import Progress, unwatched, within
+from ..plant_feet_if_possible import plant_feet_if_possible
 from .capture_remarks import capture_remarks
-from .plant_feet_if_possible import plant_feet_if_possible
 
 CAPTURE_SETTINGS = CaptureSettings()
 FOREGROUND_SETTINGS = ForegroundSettings()

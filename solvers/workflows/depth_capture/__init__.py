@@ -1,0 +1,26 @@
+"""The motion of actors in depth recordings: separated, captured, planted and reported."""
+
+from typing import TYPE_CHECKING
+
+from ...import_on_demand import import_on_demand
+
+if TYPE_CHECKING:
+    from .capture_every_person import capture_every_person, capture_separated_people
+    from .capture_from_cameras import capture_from_cameras
+    from .capture_recording import CapturedMotion, capture_actor, capture_recording
+    from .capture_remarks import capture_remarks, relative_thickness
+    from .fix_depth import track_depth
+
+__all__ = [
+    "CapturedMotion",
+    "capture_actor",
+    "capture_every_person",
+    "capture_from_cameras",
+    "capture_recording",
+    "capture_remarks",
+    "capture_separated_people",
+    "relative_thickness",
+    "track_depth",
+]
+
+import_on_demand(__name__)
