@@ -86,10 +86,8 @@ def apply_default_method(
     )
     take = _CompleteTake(channels, complete, is_good, noise, frame_rate)
     averaged, smoothing = _smooth(take, estimate)
-    spectrum, columns = WHITE, slice(0)
-    if len(noisy) >= window_length(bases, frame_rate):
-        spectrum, columns = _colored_noise(take)
-    if not spectrum.is_white:
+    colors = _colored_noise(take) if len(noisy) >= window_length(bases, frame_rate) else {}
+    for spectrum, columns in colors.items():
         colored, prior_used = _smooth_colored_noise(
             take, estimate, bases, spectrum, within(progress, 0.9, 0.95)
         )
@@ -105,11 +103,14 @@ def apply_default_method(
     return averaged, " ".join(filter(None, (prior_used, smoothing, filling)))
 
 
-def _colored_noise(take: _CompleteTake) -> tuple[NoiseSpectrum, slice]:
-    """Return the spectrum of the rotations' noise, and the columns that have it if not white:
-    with those of the position, if its noise is not white either."""
-    if not take.channels.n_rotations:
-        return WHITE, slice(0)
+def _colored_noise(take: _CompleteTake) -> dict[NoiseSpectrum, slice]:
+    """Return the spectra that are not white, and the columns that have them.
+
+    Those of the position have their own, if the noise of the rotations is not white either.
+    """
+    n_rotations = take.channels.n_rotations
+    if not n_rotations:
+        return {}
     shape = len(take.values), -1, N_CHANNELS
     samples, observed = take.values.reshape(shape), take.is_good.reshape(shape).all(axis=2)
 
@@ -121,9 +122,12 @@ def _colored_noise(take: _CompleteTake) -> tuple[NoiseSpectrum, slice]:
             samples[:, joints], own, observed[:, joints], take.frame_rate, load_motion_mixture()
         )
 
-    spectrum = spectrum_of(slice(None, -1))
-    has_path = not (spectrum.is_white or spectrum_of(slice(-1, None)).is_white)
-    return spectrum, slice(None) if has_path else slice(take.channels.n_rotations)
+    of_rotations = spectrum_of(slice(None, -1))
+    of_position = WHITE if of_rotations.is_white else spectrum_of(slice(-1, None))
+    if of_position == of_rotations:
+        return {} if of_rotations.is_white else {of_rotations: slice(None)}
+    colors = {of_rotations: slice(n_rotations), of_position: slice(n_rotations, None)}
+    return {spectrum: columns for spectrum, columns in colors.items() if not spectrum.is_white}
 
 
 def _smooth_colored_noise(

@@ -5,9 +5,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from ...arrays import Array, Flags
+from ...signals import DIFFERENCE_ORDER
 from ..window_priors import WHITE, NoiseSpectrum, Windows
 from .joint_noise import JointNoise
 from .motion_mixture import N_CHANNELS, MotionMixture
@@ -23,7 +25,7 @@ CUTOFFS_HZ = (6.0, 9.0)
 and half as much again. Jitter slower than 6 Hz cannot be distinguished from movement."""
 FACTORS = 2.0 ** -np.arange(-1.0, 3.1)
 """Factors of the deviation of the noise that are compared: third differences take fast movement
-for noise, so that most often it is less. By definition: a step is the factor 2."""
+for noise, and other filters leave other differences. By definition: a step is the factor 2."""
 N_IGNORED = 2
 """Number of the slowest coefficients of a window that do not count: they hold movement. Chosen
 by hand on the development takes of the first press: with all, 1/f noise looks whiter."""
@@ -35,6 +37,13 @@ MIN_FILTERED_EVIDENCE = 1.5
 """Lower quartile of the same mean logarithm over joints, from which noise was filtered. In a
 smooth take, fast movement of a few joints looks like filtered noise, that of others does not.
 Chosen by hand on the development takes: clean ones, filtered or not, have 1.0 at most."""
+MAX_REPETITION = 0.4
+"""Correlation of third differences with those after `MIN_LAG_S` or more, above which a take is
+fast movement that repeats itself, such as a shiver. Chosen by hand: takes with filtered noise
+have 0.2 at most, but fast runs, and a walk that is played three times as fast has 0.9."""
+MIN_LAG_S = 0.35
+"""Lag from which filtered noise is forgotten, seconds. Chosen by hand: twice the period of the
+lowest cutoff."""
 MIN_NOISE_DEG = 0.7
 """Standard deviation of noise, degrees, from which it may be colored: for power laws, of white
 noise with the same third differences. Chosen by hand: below it noise costs little, and short
@@ -42,6 +51,8 @@ errors may look like it."""
 MIN_RATE_RATIO = 0.75
 """Ratio of the frame rate from which noise may be colored to that of the mixture. Chosen by
 hand on the development takes at 24 Hz, where clean ones have an evidence of 0.07 at most."""
+MIN_STEP_DEG = 1e-9
+"""Guards a division: a joint that stands still has no third differences, degrees."""
 MAX_JOINTS = 12
 """Joints that are compared. It bounds the run time."""
 
@@ -79,7 +90,8 @@ def find_noise_spectrum(
         observed[:, joints], frame_rate, mixture,
     )  # fmt: skip
     length = evidence.smoother(WHITE).length
-    if not len(joints) or not MIN_RATE_RATIO * mixture.window <= length <= len(samples):
+    is_slow = frame_rate < MIN_RATE_RATIO * mixture.frame_rate
+    if not len(joints) or is_slow or length > len(samples):
         return WHITE
     if not evidence.is_known.any():
         return WHITE
@@ -87,7 +99,8 @@ def find_noise_spectrum(
     if evidence.deviation >= MIN_NOISE_DEG:
         laws = (NoiseSpectrum(exponent) for exponent in EXPONENTS)
         found = {law: mean for law, mean, _ in evidence.of(laws) if mean > MIN_EVIDENCE}
-    for filtered, mean, quartile in evidence.of(_filters(frame_rate)):
+    filters = _filters(frame_rate) if evidence.repetition <= MAX_REPETITION else ()
+    for filtered, mean, quartile in evidence.of(filters):
         deviation = evidence.deviation * filtered.deviation_ratio(length)
         if quartile > MIN_FILTERED_EVIDENCE and deviation >= MIN_NOISE_DEG:
             found[filtered] = mean
@@ -133,10 +146,10 @@ class _Evidence:
         its lower quartile over the joints."""
         for spectrum in spectra:
             likelihoods, factor = self._by_joint(spectrum)
-            gains = likelihoods - self._white
-            mean = float(gains.sum() / self.is_known.sum())
-            gains /= np.maximum(self.is_known.sum(axis=0), 1)
-            yield replace(spectrum, scale=factor), mean, float(np.quantile(gains, 0.25))
+            gains, n_known = likelihoods - self._white, self.is_known.sum(axis=0)
+            mean = float(gains.sum() / n_known.sum())
+            of_joints = gains[n_known > 0] / n_known[n_known > 0]
+            yield replace(spectrum, scale=factor), mean, float(np.quantile(of_joints, 0.25))
 
     def _by_joint(self, spectrum: NoiseSpectrum) -> tuple[Array, float]:
         """Return the log-likelihood of each joint with the best factor of the noise."""
@@ -144,6 +157,19 @@ class _Evidence:
         of_joints = np.where(self.is_known[..., None], found, 0.0).sum(axis=0)
         best = int(of_joints.sum(axis=0).argmax())
         return of_joints[:, best], float(FACTORS[best])
+
+    @cached_property
+    def repetition(self) -> float:
+        """Largest correlation of third differences with later ones, the mean of all joints."""
+        steps = np.diff(self.samples.reshape(len(self.samples), -1), DIFFERENCE_ORDER, axis=0)
+        steps /= np.maximum(steps.std(axis=0), MIN_STEP_DEG)
+        n_steps = len(steps)
+        size = scipy.fft.next_fast_len(2 * n_steps, real=True)
+        power = np.square(np.abs(scipy.fft.rfft(steps, size, axis=0))).sum(axis=1)
+        products = scipy.fft.irfft(power, size)[: n_steps // 2 + 1]
+        correlations = products / products[0] * n_steps / (n_steps - np.arange(len(products)))
+        later = correlations[int(np.ceil(MIN_LAG_S * self.frame_rate)) :]
+        return float(np.abs(later).max(initial=0.0))
 
     @cached_property
     def _white(self) -> Array:

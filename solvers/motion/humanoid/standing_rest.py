@@ -114,7 +114,7 @@ def _standing_frame(positions: Array, ankle: int, toes: int, usable: Flags) -> i
     that of a standing foot, and not of one with raised toes.
     """
     bone = positions[:, toes] - positions[:, ankle]
-    slope = np.arctan2(bone[:, 2], np.linalg.norm(bone[:, :2], axis=1))
+    slope = np.arctan2(bone[:, 2].copy(), np.linalg.norm(bone[:, :2], axis=1))
     height = np.where(usable, positions[:, ankle, 2], np.inf)
     low = height <= np.quantile(height[usable], STANDING_QUANTILE)
     return int(np.argmin(np.where(low, np.abs(slope - np.median(slope[low])), np.inf)))

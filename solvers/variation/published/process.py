@@ -157,7 +157,7 @@ def _likelihood(covariance: Array, values: Array) -> tuple[float, Array, Array]:
     factor = scipy.linalg.cho_factor(covariance, lower=True, check_finite=False)
     solved = scipy.linalg.cho_solve(factor, values, check_finite=False)
     inverse = scipy.linalg.cho_solve(factor, np.eye(n), check_finite=False)
-    cost = 0.5 * values @ solved + np.log(np.diag(factor[0])).sum()
+    cost = 0.5 * values @ solved + np.log(np.diag(factor[0]).copy()).sum()
     return float(cost), 0.5 * (inverse - np.outer(solved, solved)), solved
 
 
