@@ -46,17 +46,16 @@ def capture_remarks(
     if occluded > MAX_OCCLUDED_FRACTION:
         remarks.append(
             f"{100 * occluded:.0f} % of the joints were occluded or fitted poorly; they are"
-            + (
-                " estimated from the frames before."
-                if live
-                else " estimated from the frames before and after."
-            )
+            " estimated from the frames before."
+            if live
+            else f"{100 * occluded:.0f} % of the joints were occluded or fitted poorly; they"
+            " are estimated from the frames before and after."
         )
-    tracked = np.isfinite(captured.residual)
-    missing = ~tracked[counted]
-    if actor.visible.all() and missing.any():
+    has_pose = np.isfinite(captured.residual)
+    tracked = has_pose[counted]
+    if actor.visible.all() and not tracked.all():
         remarks.append(
-            f"In {int(missing.sum())} of {len(missing)} frames no person is detected."
+            f"In {int((~tracked).sum())} of {len(tracked)} frames no person is detected."
         )
     ratio = relative_thickness(captured)
     if fitted and ratio > MAX_THICKNESS_RATIO:
@@ -64,9 +63,10 @@ def capture_remarks(
             f"The actor would be {ratio:.1f} times as thick as the default body. Check the"
             " focal length of the camera, the scale, and whether the actor carries something."
         )
-    elif actor.feet_visible and tracked.any():
+    elif actor.feet_visible and has_pose.any():
         remarks += _fit_remarks(
-            float(np.median(captured.coverage[tracked])), np.median(captured.residual[tracked])
+            float(np.median(captured.coverage[has_pose])),
+            np.median(captured.residual[has_pose]),
         )
     return tuple(remarks)
 
