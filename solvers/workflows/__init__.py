@@ -38,7 +38,7 @@ if TYPE_CHECKING:
         SessionUpdate,
     )
     from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
-    from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
+    from .planting import PlantingResult, plant_feet_if_possible
     from .postures_from_clips import posture_library_from_clips
     from .reconstruct_from_library import (
         LibraryPostures,

@@ -23,7 +23,7 @@ from ..progress import Progress, within
 from .depth_capture import CapturedMotion
 from .fix_report import MotionFromJoints, Take, TakeOrigin, find_origin
 from .motion_from_markers import MarkerMotion, motion_from_markers
-from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
+from .planting import PlantingResult, plant_feet_if_possible
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 from .standard_joints import standardize_joint_names

@@ -17,7 +17,6 @@ from ..physics import NoPhysicsError, simulate
 from ..progress import Progress, unwatched, within
 from ..recordings.conventions import question_of_size
 from ..settings import Settings, setting
-from .depth_capture import track_depth
 from .fix_chains import (
     ChainResult,
     clean_motion,
@@ -27,6 +26,7 @@ from .fix_chains import (
     solve_markers,
     take_before,
 )
+from .fix_depth import track_depth
 from .fix_report import (
     MotionFromJoints,
     Take,

@@ -12,7 +12,7 @@ from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior,
 from ..reconstruction.joint_rotations import Reconstruction
 from ..recordings.conventions import keep_on_floor
 from .changed_joints import find_changed_joints, shift_remarks
-from .plant_feet_if_possible import plant_feet_if_possible
+from .planting import plant_feet_if_possible
 from .standard_joints import check_size, gap_remarks, standardize_joint_names
 
 PLANT_SETTINGS = PlantSettings()

@@ -38,9 +38,10 @@ MIN_FILTERED_EVIDENCE = 1.5
 smooth take, fast movement of a few joints looks like filtered noise, that of others does not.
 Chosen by hand on the development takes: clean ones, filtered or not, have 1.0 at most."""
 MAX_REPETITION = 0.4
-"""Correlation of third differences with those after `MIN_LAG_S` or more, above which a take is
-fast movement that repeats itself, such as a shiver. Chosen by hand: takes with filtered noise
-have 0.2 at most, but fast runs, and a walk that is played three times as fast has 0.9."""
+"""Correlation coefficient of third differences with those after `MIN_LAG_S` or more, a ratio,
+above which a take is fast movement that repeats itself, such as a shiver. Chosen by hand: takes
+with filtered noise have 0.2 at most, except fast runs, and a walk that is played three times as
+fast has 0.9."""
 MIN_LAG_S = 0.35
 """Lag from which filtered noise is forgotten, seconds. Chosen by hand: twice the period of the
 lowest cutoff."""

@@ -9,7 +9,6 @@ if TYPE_CHECKING:
     from .capture_from_cameras import capture_from_cameras
     from .capture_recording import CapturedMotion, capture_actor, capture_recording
     from .capture_remarks import capture_remarks, relative_thickness
-    from .fix_depth import track_depth
 
 __all__ = [
     "CapturedMotion",
@@ -20,7 +19,6 @@ __all__ = [
     "capture_remarks",
     "capture_separated_people",
     "relative_thickness",
-    "track_depth",
 ]
 
 import_on_demand(__name__)

@@ -15,7 +15,7 @@ from ...depth_tracking.several_cameras import (
 )
 from ...depth_tracking.tracking import PoseCallback, ignore_pose
 from ...progress import Progress, unwatched, within
-from ..plant_feet_if_possible import plant_feet_if_possible
+from ..planting import plant_feet_if_possible
 from .capture_recording import (
     CAPTURE_SETTINGS,
     FOREGROUND_FRACTION,

@@ -11,7 +11,7 @@ from ...depth_tracking.several_cameras import CameraAlignment
 from ...depth_tracking.tracking import PoseCallback, ignore_pose
 from ...motion import Motion
 from ...progress import Progress, unwatched, within
-from ..plant_feet_if_possible import plant_feet_if_possible
+from ..planting import plant_feet_if_possible
 from .capture_remarks import capture_remarks
 
 CAPTURE_SETTINGS = CaptureSettings()

@@ -19,7 +19,8 @@ from ...errors import InvalidMotionError, InvalidSettingError
 from ...motion import Motion
 from ...progress import Progress, unwatched
 from ...recordings.growing import GrowingDepth, NewImage
-from ...workflows import capture_remarks, plant_feet_if_possible
+from ..depth_capture import capture_remarks
+from ..planting import plant_feet_if_possible
 from .follow_settings import FollowSettings
 from .followed_take import TOO_EARLY, FollowedTake, TakeSettings, WaitingImage
 

@@ -8,7 +8,7 @@ from solvers.feet import find_legs
 from solvers.motion import Motion, forward_kinematics
 from solvers.rotations import multiply, quaternion_from_rotation_vector
 from solvers.samples import walker_skeleton
-from solvers.workflows.flatten_toes import DEFAULT_DROP, flatten_toes
+from solvers.workflows.planting.flatten_toes import DEFAULT_DROP, flatten_toes
 
 N_FRAMES = 60
 SKELETON = walker_skeleton()

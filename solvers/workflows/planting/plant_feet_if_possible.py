@@ -4,13 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Array, Flags
-from ..denoising import Planted, PlantSettings, plant_feet
-from ..errors import InvalidMotionError
-from ..feet import find_legs
-from ..motion import Motion
-from ..motion.humanoid import MIN_JOINT_RELIABILITY, SIDES, detect_contacts
-from ..progress import Progress, unwatched
+from ...arrays import Array, Flags
+from ...denoising import Planted, PlantSettings, plant_feet
+from ...errors import InvalidMotionError
+from ...feet import find_legs
+from ...motion import Motion
+from ...motion.humanoid import MIN_JOINT_RELIABILITY, SIDES, detect_contacts
+from ...progress import Progress, unwatched
 from .flatten_toes import flatten_toes
 
 RELIABLE_WEIGHT = 5.0

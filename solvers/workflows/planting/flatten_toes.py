@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
-from ..feet import LegJoints, find_legs
-from ..motion import Motion, WorldPoses, forward_kinematics
-from ..motion.humanoid import SIDES
-from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between, slerp
-from ..signals import smooth_gaussian
+from ...arrays import Array
+from ...feet import LegJoints, find_legs
+from ...motion import Motion, WorldPoses, forward_kinematics
+from ...motion.humanoid import SIDES
+from ...rotations import IDENTITY, inverse, multiply, rotate, rotation_between, slerp
+from ...signals import smooth_gaussian
 
 MAX_CORRECTED_RELIABILITY, MAX_MISSING_RELIABILITY = 0.8, 0.5
 """Reliability below which toes are flattened partly, and below which completely. Joints that a

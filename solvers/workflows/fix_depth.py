@@ -1,11 +1,11 @@
 """Step of `fix_take` for depth images: track the actor, then clean as any skeleton."""
 
-from ...denoising import PlantSettings
-from ...depth_scene import DepthRecording
-from ...depth_tracking.tracking import PoseCallback
-from ...progress import Progress, within
-from ..fix_chains import ChainResult, clean_motion
-from .capture_recording import CapturedMotion, capture_recording
+from ..denoising import PlantSettings
+from ..depth_scene import DepthRecording
+from ..depth_tracking.tracking import PoseCallback
+from ..progress import Progress, within
+from .depth_capture import CapturedMotion, capture_recording
+from .fix_chains import ChainResult, clean_motion
 
 TRACKED_FRACTION = 0.9
 """Fraction of the time until the actor is tracked. Chosen by hand on 6 images; it only moves
