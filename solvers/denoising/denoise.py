@@ -118,7 +118,7 @@ def denoise(
         raise InvalidMotionError(
             "Nothing was observed in this take; there is nothing to clean."
         )
-    settings = settings_at_rate(settings, recording.frame_rate)
+    settings, note = settings_at_rate(settings, recording.frame_rate)
     held, cuts = find_held_and_cuts(recording, settings)
     seen = hide_held_samples(recording, held)
     edge_poses = find_edge_poses(seen, cuts)
@@ -129,7 +129,10 @@ def denoise(
     kept = _strengths(recording, settings) == 0.0
     restored = restore_path_jumps(seen, result.recording, offsets, kept)
     complete, confidence = restore_edge_poses(seen, restored, result.confidence, edge_poses)
-    result = replace(result, recording=complete, confidence=confidence, edge_poses=edge_poses)
+    result = replace(
+        result, recording=complete, confidence=confidence, edge_poses=edge_poses,
+        prior_used=f"{note} {result.prior_used}".strip(),
+    )  # fmt: skip
     possible = recording
     if limits is not None and isinstance(recording, Motion) and held.any():
         possible = clamp_to_limits(recording, limits)

@@ -77,6 +77,15 @@ def joint_factors(skeleton: Skeleton, part_strengths: Mapping[str, float]) -> Ar
     return np.array([part_strengths[part] for part in joint_parts(skeleton)])
 
 
-def settings_at_rate(settings: DenoiseSettings, frame_rate: float) -> DenoiseSettings:
-    """Return the settings for a take: frames far apart are poses, of which only gaps change."""
-    return settings if frame_rate >= MIN_RATE_HZ else replace(settings, strength=0.0)
+def settings_at_rate(
+    settings: DenoiseSettings, frame_rate: float
+) -> tuple[DenoiseSettings, str]:
+    """Return the settings for a take and a sentence, which is empty at usual rates.
+
+    Frames that are far apart are poses, of which only gaps change.
+    """
+    if frame_rate >= MIN_RATE_HZ:
+        return settings, ""
+    return replace(settings, strength=0.0), (
+        f"At {frame_rate:.1f} frames a second, keys are poses: they stay, and gaps are filled."
+    )

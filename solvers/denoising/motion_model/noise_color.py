@@ -82,6 +82,8 @@ def find_noise_spectrum(
     mixture : MotionMixture
         Of joints.
     """
+    if frame_rate < MIN_RATE_RATIO * mixture.frame_rate:
+        return WHITE
     moves = np.ptp(samples, axis=0).max(axis=1) > MIN_MOVEMENT_DEG
     free = np.flatnonzero(moves & noise.is_free[: len(moves)])
     n_chosen = min(len(free), MAX_JOINTS)
@@ -91,10 +93,7 @@ def find_noise_spectrum(
         observed[:, joints], frame_rate, mixture,
     )  # fmt: skip
     length = evidence.smoother(WHITE).length
-    is_slow = frame_rate < MIN_RATE_RATIO * mixture.frame_rate
-    if not len(joints) or is_slow or length > len(samples):
-        return WHITE
-    if not evidence.is_known.any():
+    if not len(joints) or length > len(samples) or not evidence.is_known.any():
         return WHITE
     found: dict[NoiseSpectrum, float] = {}
     if evidence.deviation >= MIN_NOISE_DEG:
