@@ -49,6 +49,9 @@ MIN_NOISE_DEG = 0.7
 """Standard deviation of noise, degrees, from which it may be colored: for power laws, of white
 noise with the same third differences. Chosen by hand: below it noise costs little, and short
 errors may look like it."""
+MAX_FILTERED_NOISE_DEG = 6.0
+"""Standard deviation up to which noise may be filtered, degrees. Chosen by hand: 2 to 3 degrees
+of noise are estimated as 5 at most, and a shiver of 15 with white noise as more."""
 MIN_RATE_RATIO = 0.75
 """Ratio of the frame rate from which noise may be colored to that of the mixture. Chosen by
 hand on the development takes at 24 Hz, where clean ones have an evidence of 0.07 at most."""
@@ -102,7 +105,8 @@ def find_noise_spectrum(
     filters = _filters(frame_rate) if evidence.repetition <= MAX_REPETITION else ()
     for filtered, mean, quartile in evidence.of(filters):
         deviation = evidence.deviation * filtered.deviation_ratio(length)
-        if quartile > MIN_FILTERED_EVIDENCE and deviation >= MIN_NOISE_DEG:
+        is_plausible = MIN_NOISE_DEG <= deviation <= MAX_FILTERED_NOISE_DEG
+        if is_plausible and quartile > MIN_FILTERED_EVIDENCE:
             found[filtered] = mean
     return max(found, key=found.__getitem__, default=WHITE)
 

@@ -138,12 +138,19 @@ def test_fast_movement_that_repeats_itself_is_no_noise(rate):
     assert mean_error(cleaned.recording, fast) < 0.05
 
 
-def test_a_shiver_is_no_noise(walk):
-    seconds = np.arange(walk.n_frames) / RATE
-    phases = np.random.default_rng(8).uniform(0.0, 2.0 * np.pi, vectors_shape(walk)[1:])
-    shiver = 2.0 * np.sin(12.0 * np.pi * seconds[:, None, None] + phases)
+@pytest.mark.parametrize(("rate", "degrees", "noise"), [(30.0, 2.0, 0.0), (60.0, 15.0, 1.0)])
+def test_a_shiver_is_no_noise(rate, degrees, noise):
+    walk = walking_gait(GaitSettings(duration=6.0, frame_rate=rate))
+    rng, seconds = np.random.default_rng(8), np.arange(walk.n_frames) / rate
+    phases = rng.uniform(0.0, 2.0 * np.pi, vectors_shape(walk)[1:])
+    shiver = degrees * np.sin(10.0 * np.pi * seconds[:, None, None] + phases)
+    truth = with_vectors(walk, shiver)
+    noisy = with_vectors(truth, noise * rng.normal(size=shiver.shape))
 
-    assert COLORED not in denoise(with_vectors(walk, shiver)).prior_used
+    cleaned = denoise(noisy).recording
+
+    assert isinstance(cleaned, Motion)
+    assert mean_error(cleaned, truth) < mean_error(noisy, truth) + 0.05
 
 
 @pytest.mark.parametrize("degrees", [2.0, 4.0])
