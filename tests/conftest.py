@@ -29,6 +29,7 @@ ON_ONE_PYTHON = {
     "command_line/sharing/test_claims.py": (3, 11),
     "command_line/sharing/test_manifests_and_hooks.py": (3, 13),
     "command_line/sharing/test_shards.py": (3, 13),
+    "command_line/test_capture_people_and_cameras.py": (3, 11),
     "command_line/test_capture_verb.py": (3, 11),
     "command_line/test_command_line.py": (3, 11),
     "command_line/test_fix_verb.py": (3, 13),

@@ -68,12 +68,15 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     inside = find_recordings(others, list_recordings=depth_recordings_in)
     for path in [*takes, *(path for path, _ in inside)]:
         screen.title = path.name
+        before = {*bpy.data.objects}
         sentence = attempt(path, _import_and_track, path, arguments, settings, screen)
         if isinstance(sentence, Failure):
             failed.append(sentence.sentence)
             continue
         messages.append(sentence)
-        made.append(bpy.context.object)
+        others = {*bpy.data.objects} - before - {bpy.context.object}
+        people = [each for each in others if each.type == "ARMATURE"]
+        made += [bpy.context.object, *sorted(people, key=lambda each: each.name)]
     screen.clear()
     if made:
         save(target)

@@ -154,7 +154,7 @@ def build_tracked(
         floor,
         confidence,
         captured.residual,
-        float(captured.coverage.mean()),
+        captured.mean_coverage,
         captured.restarts,
         low_confidence_ranges(joints.names, captured.low_confidence),
         remarks,

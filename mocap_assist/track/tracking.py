@@ -176,6 +176,8 @@ def _add_armature(
     image_indices = result.first + np.arange(result.motion.n_frames)
     frames = shown.start + shown.step * image_indices
     name = f"{preview.name} tracked"
+    if result.person is not None:
+        name = f"{name} person {result.person + 1}"
     armature, bones = build_armature(
         context, name, result.motion.skeleton, meters_per_unit, MODE
     )

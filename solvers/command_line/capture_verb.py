@@ -1,7 +1,6 @@
 """`capture`: track the actor of a depth recording."""
 
 import argparse
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypedDict
@@ -10,10 +9,9 @@ import numpy as np
 
 from ..denoising import PlantSettings
 from ..depth_scene import DepthRecording, ForegroundSettings
-from ..depth_tracking.body import LENGTHS, BodyModel, load_body_model
+from ..depth_tracking.body import LENGTHS, BodyModel
 from ..depth_tracking.capturing import CaptureSettings
 from ..depth_tracking.several_cameras import AlignmentSettings
-from ..errors import InvalidSettingError
 from ..motion import JointRecording, Sensor
 from ..progress import Progress, Remark, collect_remarks, within
 from ..recordings import depth_takes_in, read_depth, write_joint_csv
@@ -30,101 +28,11 @@ from .arguments import (
     Outcome,
     Task,
     VerbWork,
-    arguments_from,
-    find_recordings,
     settings_from_arguments,
     write,
 )
-from .follow_recording import add_follow_options, check_follow, follow_recording
-
-ALL = "all"
-"""Of `--people`: as many as are visible at once."""
-
-
-def add_capture_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of `capture`."""
-    parser.add_argument(
-        "--body", type=Path, metavar="FILE",
-        help="Body of the actor, written by --keep-body [default: fitted to the recording]",
-    )  # fmt: skip
-    parser.add_argument(
-        "--keep-body", type=Path, metavar="FILE", help="Also write the fitted body"
-    )
-    parser.add_argument(
-        "--people", type=parse_people, default=1, metavar="N",
-        help="Number of people to track together, or all for as many as are visible at once."
-        " Of take.bvh, the second person is written to take_person2.bvh, and so on [default 1:"
-        " the most visible person]",
-    )  # fmt: skip
-    parser.add_argument(
-        "--camera", type=Path, metavar="FILE", action="append", default=[],
-        help="Recording of the same take by another depth camera; its place and time are found"
-        " by the actor. Repeat it for more cameras",
-    )  # fmt: skip
-    parser.add_argument(
-        "--empty", nargs=2, type=int, metavar=("FIRST", "LAST"),
-        help="Frames of the empty room, for background subtraction",
-    )  # fmt: skip
-    parser.add_argument(
-        "--joints", action="store_true",
-        help="With --output-folder: write joints with confidence as .csv, in camera space,"
-        " instead of the motion of a skeleton",
-    )  # fmt: skip
-    parser.add_argument(
-        "--feet", action=argparse.BooleanOptionalAction, default=True,
-        help="Plant standing feet [default: yes, where they are visible]",
-    )  # fmt: skip
-    add_follow_options(parser)
-    for title, settings in (
-        ("reading", DepthSettings), ("the actor", ForegroundSettings),
-        ("tracking", CaptureSettings), ("several cameras", AlignmentSettings),
-        ("planting feet", PlantSettings),
-    ):  # fmt: skip
-        arguments_from(parser.add_argument_group(title), settings)
-
-
-def parse_people(word: str) -> int:
-    """Return a number of people for argparse; 0 is all."""
-    if word == ALL:
-        return 0
-    if re.fullmatch(r"[1-9]\d?", word, re.ASCII) is None:
-        raise argparse.ArgumentTypeError(
-            f"{word!r} is no number of people; write a number from 1 to 99, or {ALL}"
-        )
-    return int(word)
-
-
-def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | None:
-    """Read the body for all files of a run, if one is given.
-
-    Raises
-    ------
-    InvalidSettingError
-        --keep-body or --body is combined with several people, --keep-body or --camera with
-        several takes, --camera with several people, or --follow with any of these.
-    """
-    check_follow(arguments)
-    if arguments.people != 1 and (arguments.body or arguments.keep_body) is not None:
-        raise InvalidSettingError(
-            "A body file holds one body. Leave out --body and --keep-body with --people."
-        )
-    if arguments.camera and arguments.people != 1:
-        raise InvalidSettingError(
-            "Several cameras track one person. Leave out --people or --camera."
-        )
-    if arguments.camera and arguments.output_folder is not None:
-        raise InvalidSettingError(
-            "--camera adds a recording to one take. Name one file to read and one to write."
-        )
-    many = arguments.output_folder is not None and len(
-        find_recordings(arguments.files, list_recordings=depth_takes_in)
-    )
-    if arguments.keep_body is not None and many > 1:
-        raise InvalidSettingError(
-            f"{arguments.keep_body} can hold one body. Capture one take with --keep-body,"
-            " and the others with --body."
-        )
-    return None if arguments.body is None else load_body_model(arguments.body)
+from .capture_options import add_capture_options, read_body
+from .follow_recording import follow_recording
 
 
 def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) -> Outcome:
@@ -245,18 +153,19 @@ def _outcome(found: CapturedMotion | FollowedMotion, messages: Sequence[Remark])
         found.captured,
         [*(f"{message.rstrip('.')}." for message in messages), *found.remarks],
     )
-    restarts = len(captured.restarts)
+    restarts, coverage = len(captured.restarts), captured.mean_coverage
     times = "once" if restarts == 1 else f"{restarts} times"
-    distance_cm, overlap = 100 * np.nanmean(captured.residual), 100 * captured.coverage.mean()
     text = (
-        f"{found.motion.n_frames} frames, {distance_cm:.1f} cm from the depth pixels"
-        f" on average, with {overlap:.0f} % overlap. The detector ran {times} after the start."
+        f"{found.motion.n_frames} frames, {100 * np.nanmean(captured.residual):.1f} cm from the"
+        f" depth pixels on average, with {100 * coverage:.0f} % overlap."
     )
+    if not (isinstance(found, CapturedMotion) and found.alignments):
+        text += f" The detector ran {times} after the start."
     figures: dict[str, Any] = {
         "n_frames": found.motion.n_frames,
         "frame_rate_hz": found.motion.frame_rate,
         "residual_m": float(np.nanmean(captured.residual)),
-        "coverage": float(captured.coverage.mean()),
+        "coverage": coverage,
         "restarts": list(captured.restarts),
         "doubtful_share": float(captured.low_confidence.mean()),
         "bone_lengths_m": dict(zip(LENGTHS, captured.body.lengths.tolist(), strict=True)),

@@ -102,6 +102,12 @@ class Capture:
     poses: Array
     low_confidence: NDArray[np.bool_]
 
+    @property
+    def mean_coverage(self) -> float:
+        """Mean coverage of the frames that show the actor; 0 without any."""
+        shown = self.coverage[np.isfinite(self.residual)]
+        return float(shown.mean()) if len(shown) else 0.0
+
 
 def capture(
     depth: DepthRecording,

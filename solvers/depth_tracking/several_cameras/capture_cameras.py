@@ -119,14 +119,14 @@ def capture_cameras(
     alone = []
     for number, recording in enumerate(recordings):
         bounds = first + (0.65 - first) * np.array([number, number + 1]) / len(recordings)
-        with _camera_named(number):
+        with camera_named(number):
             alone.append(
                 capture(recording, body, forest, motion_prior, settings=settings,
                         tracker=tracker, progress=within(progress, *bounds.tolist()))
             )  # fmt: skip
     alignments = [FIRST_CAMERA]
     for number, other in enumerate(alone[1:], start=1):
-        with _camera_named(number):
+        with camera_named(number):
             alignments.append(align_tracks(alone[0].joints, other.joints, settings=alignment))
     cameras = tuple(map(CameraTake, recordings, alignments))
     actor = ViewedActor(cameras, body, tracker, motion_prior, on_pose)
@@ -160,7 +160,7 @@ def _check(recordings: Sequence[DepthRecording], settings: CaptureSettings) -> N
 
 
 @contextmanager
-def _camera_named(number: int) -> Iterator[None]:
+def camera_named(number: int) -> Iterator[None]:
     """Name the camera in an error about its recording."""
     try:
         yield
@@ -179,7 +179,7 @@ def _shared_body(
     bodies = []
     for number, recording in enumerate(recordings):
         part = within(progress, number / len(recordings), (number + 1) / len(recordings))
-        with _camera_named(number):
+        with camera_named(number):
             bodies.append(
                 find_body(recording, forest, refine=settings.refine, tracker=tracker,
                           progress=part)

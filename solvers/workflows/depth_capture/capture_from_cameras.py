@@ -1,6 +1,7 @@
 """Capture the motion of an actor from the raw recordings of several depth cameras."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from ...depth_tracking.capturing import CaptureSettings
 from ...depth_tracking.several_cameras import (
     AlignmentSettings,
     CapturedByCameras,
+    camera_named,
     capture_cameras,
 )
 from ...depth_tracking.tracking import PoseCallback, ignore_pose
@@ -26,6 +28,9 @@ from .capture_recording import (
 from .capture_remarks import capture_remarks
 
 ALIGNMENT_SETTINGS = AlignmentSettings()
+MAX_MISMATCH_M = 0.05
+"""Mean distance of the skeletons of two cameras, meters, above which one of them is likely to
+be wrong. Chosen by hand: made sequences have 1 to 4 cm, and a wrong frame rate 10."""
 
 
 def capture_from_cameras(
@@ -68,14 +73,11 @@ def capture_from_cameras(
     SolveCancelled
         Raised by `progress`.
     """
-    step = FOREGROUND_FRACTION / len(recordings)
-    actors = [
-        find_actor(
-            recording, foreground, empty=empty,
-            progress=within(progress, step * number, step * (number + 1)),
-        )
-        for number, recording in enumerate(recordings)
-    ]  # fmt: skip
+    step, actors = FOREGROUND_FRACTION / len(recordings), []
+    for number, recording in enumerate(recordings):
+        part = within(progress, step * number, step * (number + 1))
+        with camera_named(number):
+            actors.append(find_actor(recording, foreground, empty=empty, progress=part))
     found = capture_cameras(
         [actor.recording for actor in actors], body, motion_prior=motion_prior,
         floors=[actor.floor for actor in actors], settings=settings, alignment=alignment,
@@ -86,8 +88,10 @@ def capture_from_cameras(
         found.captured.motion, planting if with_feet else None,
         progress=within(progress, 0.95, 1.0),
     )  # fmt: skip
+    floor = next((actor.floor for actor in actors if actor.floor is not None), None)
+    first = replace(actors[0], floor=floor)
     remarks = (
-        *capture_remarks(actors[0], found.captured, fitted=body is None),
+        *capture_remarks(first, found.captured, fitted=body is None),
         *_camera_remarks(actors, found),
         *result.remarks,
     )
@@ -109,5 +113,7 @@ def _camera_remarks(actors: Sequence[Actor], found: CapturedByCameras) -> list[s
             f" {abs(alignment.offset):.2f} s {when}; their skeletons differ by"
             f" {100 * alignment.mismatch:.1f} cm."
         )
+        if alignment.mismatch > MAX_MISMATCH_M:
+            remarks.append(f"Check the focal length, scale and frame rate of camera {number}.")
         remarks += [f"Camera {number}: {remark}" for remark in actor.remarks]
     return remarks

@@ -11,7 +11,9 @@ def test_each_person_has_an_armature_and_the_first_is_active(write_tracked, load
     armatures = [each for each in blank.data.objects if each.type == "ARMATURE"]
     assert sorted(read(each).person for each in armatures) == [0, 1, 2]
     assert read(made.armature).person == 0
-    assert all(each.name in made.message for each in armatures)
+    assert all(f"{each.name}:" in made.message for each in armatures)
+    ends = {read(each).person: each.name.rpartition(" tracked ")[2] for each in armatures}
+    assert ends == {0: "person 1", 1: "person 2", 2: "person 3"}
     actions = {each.animation_data.action for each in armatures}
     assert len(actions) == 3
 
