@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import logsumexp
+import scipy
 
 from ...arrays import Array
 from ..window_priors import WHITE, NoiseSpectrum, Windows
@@ -142,7 +142,7 @@ class GroupSmoother:
                 noise = np.square(factors)[:, None] * variance
                 total = basis.variances + noise[..., None, None]
                 log_density = _log_density(squares, total, self._density_at_zero(total))
-                found[block, group] = logsumexp(log_density, axis=0)
+                found[block, group] = scipy.special.logsumexp(log_density, axis=0)
         return np.asarray(found - of_units)
 
     def windows(self, n_frames: int, n_overlaps: int = N_OVERLAPS) -> Windows:
