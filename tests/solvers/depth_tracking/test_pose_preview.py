@@ -1,5 +1,7 @@
 """Previews show every pose, and the last ones are the result."""
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 from drawn_bodies import CAMERA, recorded, waving
@@ -7,7 +9,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.model import default_body
-from solvers.depth_tracking.capturing import find_body
 from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
 from solvers.depth_tracking.capturing.unfinished_capture import unfinished_capture
 from solvers.depth_tracking.tracking.pose_preview import offset_frames
@@ -28,7 +29,8 @@ def test_previews_cover_every_pass_and_end_with_the_result():
 
 def test_previews_have_recording_frames_during_body_estimation(monkeypatch):
     """The actor approaches and is visible from frame 4 on."""
-    monkeypatch.setattr(find_body, "CLIP_FRAMES", 4)
+    module = import_module("solvers.depth_tracking.capturing.find_body")
+    monkeypatch.setattr(module, "CLIP_FRAMES", 4)
     truth = waving(8)
     truth[:, 2] = np.linspace(3.2, 2.8, 8)
     drawn = recorded(truth)
