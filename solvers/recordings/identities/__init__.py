@@ -1,4 +1,4 @@
-"""Follow people by their positions where a tracker swaps their identities."""
+"""Follow people by their positions where a tracker switches their identities."""
 
 from .evidence import (
     BODY_TIMEOUT_S,

@@ -9,8 +9,8 @@ from .path import PersonPath
 
 Key = TypeVar("Key", bound=Hashable)
 MAX_HIDDEN_SPEED_M_S = 2.0
-"""Meters per second that a person may have moved since the last frame without a swap, in
-addition to `MIN_SWITCH_M`. It guards people who walk while they are hidden."""
+"""Meters per second that a person may have moved since the last frame, in addition to
+`MIN_SWITCH_M`. It guards people who walk while they are hidden."""
 
 
 class Claims(Generic[Key]):
@@ -60,9 +60,8 @@ class Claims(Generic[Key]):
 
         The identities of a group take each other's persons, or that of someone who is missing.
         """
-        if not self._missing and not any(map(self.jumps, self.claimed)):
-            return []
-        if len(self._own) == len(self.claimed) and not any(map(self.jumps, self.claimed)):
+        may_be_found_again = len(self._own) < len(self.claimed) and self._missing
+        if not may_be_found_again and not any(map(self.jumps, self.claimed)):
             return []
         return [group for group in self._groups(self._nearest()) if self._is_clear(group)]
 
@@ -114,7 +113,7 @@ class Claims(Generic[Key]):
         return groups
 
     def _is_clear(self, group: Mapping[Key, Key]) -> bool:
-        """Return whether nothing but a swap or a new identity explains a group."""
+        """Return whether nothing but a switch or a new identity explains a group."""
         if any(key in self._own and not self.jumps(key) for key in group):
             return False
         found = [(key, person) for key, person in group.items() if person in self._paths]
@@ -132,7 +131,7 @@ class Claims(Generic[Key]):
         return self._is_found_again(key, person, distance)
 
     def _is_found_again(self, key: Key, person: Key, distance: float) -> bool:
-        """Return whether a new identity is a missing person and nobody else can be it."""
+        """Return whether a new identity is a missing person and no one else can be it."""
         others = [self._distance(key, other) for other in self._missing if other != person]
         others += [
             self._distance(other, person)

@@ -1,4 +1,4 @@
-"""What shows that a tracker swapped people: the same for files and for live streams."""
+"""What shows that a tracker switched identities: the same for files and for live streams."""
 
 MAX_PEOPLE = 16
 """Number of people that are followed. It bounds time and memory."""

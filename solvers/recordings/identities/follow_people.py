@@ -1,4 +1,4 @@
-"""Follow people over the frames of a file, where a tracker may have swapped them."""
+"""Follow people over the frames of a file, where a tracker may switch their identities."""
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from itertools import combinations
@@ -33,25 +33,25 @@ class FollowedPeople(NamedTuple, Generic[Key]):
 
     persons: list[dict[Key, Key]]
     """Person by identity for each frame; persons are called by the identities of the file."""
-    swap_times: list[float]
-    """Seconds at which people were swapped."""
+    switch_times: list[float]
+    """Seconds at which identities were switched."""
     found_again: list[FoundAgain[Key]]
 
     @property
     def is_changed(self) -> bool:
         """Whether someone has another identity than in the file."""
-        return bool(self.swap_times or self.found_again)
+        return bool(self.switch_times or self.found_again)
 
 
 def follow_people(frames: Sequence[Mapping[Key, Array]], times: Array) -> FollowedPeople[Key]:
     """Return who is observed in each frame, by the paths of people instead of their identities.
 
-    A tracker that swaps two people continues the path of each under the identity of the other:
-    one cannot have moved so far, and is where the other one was. Joints, rather than centers,
-    are compared with the last ones and with those predicted by their velocity, so that people
-    may pass each other, or run. A new number where a person was just lost is that person, if
-    nobody else can be it and no frame has both. All else keeps its identity, as do people
-    whose joints are relative to their own hips.
+    A tracker that confuses two people continues the path of each under the identity of the
+    other: one cannot have moved so far, and is where the other one was. Joints, rather than
+    centers, are compared with the last ones and with those predicted by their velocity, so
+    that people may pass each other, or run. A new number where a person was just lost is that
+    person, if no one else can be it and no frame has both. All else keeps its identity, as do
+    people whose joints are relative to their own hips.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def follow_people(frames: Sequence[Mapping[Key, Array]], times: Array) -> Follow
         ]
     else:
         persons = [{key: key for key in frame} for frame in frames]
-    return FollowedPeople(persons, follower.swap_times, follower.found_again)
+    return FollowedPeople(persons, follower.switch_times, follower.found_again)
 
 
 class _Follower(Generic[Key]):
@@ -84,7 +84,7 @@ class _Follower(Generic[Key]):
     """
 
     def __init__(self, frames: list[dict[Key, Array]], meter: float) -> None:
-        self.swap_times: list[float] = []
+        self.switch_times: list[float] = []
         self.found_again: list[FoundAgain[Key]] = []
         self._persons = {key: key for frame in frames for key in frame}
         self._paths: dict[Key, PersonPath] = {}
@@ -92,7 +92,7 @@ class _Follower(Generic[Key]):
         self._companies = {frozenset(frame) for frame in frames}
         is_few = max(map(len, self._companies), default=0) <= MAX_PEOPLE
         self.is_possible = (
-            len(self._persons) > 1 and is_few and meter > 0.0 and _are_apart(frames, meter)
+            len(self._persons) > 1 and is_few and meter > 0.0 and _are_separate(frames, meter)
         )
 
     def add(self, bodies: dict[Key, Array], time: float, keys: Iterable[Key]) -> dict[Key, Key]:
@@ -117,7 +117,7 @@ class _Follower(Generic[Key]):
         if not others and self._persons[key] not in self._paths:
             self.found_again.append(FoundAgain(person, key, time))
         else:
-            self.swap_times.append(time)
+            self.switch_times.append(time)
         left = {self._persons[each] for each in group} - set(group.values())
         losers = [
             each
@@ -165,7 +165,7 @@ def _meter_of(frames: list[dict[Key, Array]]) -> float:
     return float(np.median(sizes)) / ADULT_EXTENT_M if sizes else 0.0
 
 
-def _are_apart(frames: list[dict[Key, Array]], meter: float) -> bool:
+def _are_separate(frames: list[dict[Key, Array]], meter: float) -> bool:
     """Return whether people have positions in the room, rather than all the same one."""
     distances = [
         float(np.linalg.norm(center(one) - center(other)))

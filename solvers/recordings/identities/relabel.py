@@ -33,7 +33,7 @@ def follow_bodies(
         Returns the points of a body, shape (n_joints, 3), NaN where not observed.
     times : shape (n_frames,), seconds; None or with NaN if unknown
     progress : Progress
-        Receives how many swaps were corrected, and who was found again.
+        Receives how many switches were undone, and who was found again.
     """
     kept = [dict(frame) for frame in frames]
     if len(set().union(*frames)) < 2:
@@ -60,7 +60,7 @@ def follow_arrays(
         Coordinates first.
     times : shape (n_frames,), seconds; None or with NaN if unknown
     progress : Progress
-        Receives how many swaps were corrected, and who was found again.
+        Receives how many switches were undone, and who was found again.
     """
     if len(bodies) < 2 or bodies[0].shape[-1] < 3:
         return bodies
@@ -134,19 +134,19 @@ def _increasing(times: Array | None, n_frames: int) -> Array:
 
 def _report(followed: FollowedPeople[Key], progress: Progress) -> None:
     """Report what was corrected, in a sentence each."""
-    swaps, found_again = followed.swap_times, followed.found_again
-    if swaps:
-        times = _listed([f"{time:.2f} s" for time in swaps])
+    switches, found_again = followed.switch_times, followed.found_again
+    if switches:
+        times = _listed([f"{time:.2f} s" for time in switches])
         progress(
             0.8,
-            Remark(f"People swapped by the tracker, and swapped back: {len(swaps)} ({times})"),
+            Remark(f"Identity switches of the tracker, undone: {len(switches)} ({times})"),
         )
     if found_again:
         people = _listed([
             f"{_text(each.new)} = {_text(each.person)} ({each.time:.2f} s)"
             for each in found_again
         ])
-        progress(0.8, Remark(f"People lost and found again under another identity: {people}"))
+        progress(0.8, Remark(f"People who were lost and have a new identity: {people}"))
 
 
 def _listed(texts: list[str]) -> str:

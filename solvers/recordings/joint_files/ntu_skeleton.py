@@ -47,7 +47,7 @@ def open_ntu_skeleton(
     """Open an NTU RGB+D `.skeleton` file [1]_, in meters, Z up; joints not tracked are NaN.
 
     Bodies are identified by their id, in any order, and numbered as they appear. Frames
-    without the body are gaps. A body that returns under another id counts as two. Image
+    without the body are gaps. Identity switches are undone (`follow_bodies`). Image
     coordinates, orientations, hand states and lean are not read. The files have no times; the
     Kinect v2 records 30 frames per second.
 
@@ -109,11 +109,11 @@ def open_ntu_skeleton(
 def _with_people_followed(
     lines: list[bytes], frames: Frames, path: Path | str, progress: Progress
 ) -> Frames:
-    """Return frames in which bodies that the sensor swapped are swapped back."""
+    """Return frames in which identity switches of the sensor are undone."""
     if len(set().union(*frames)) < 2:
         return frames
     found = [joints for frame in frames for joints in frame.values()]
-    rows = _read_joints(lines, found, path, progress)
+    rows = _read_joints(lines, found, path, within(progress, 0.0, 0.7))
     points = {joints.start: row[:, :3] for joints, row in zip(found, rows, strict=True)}
     return follow_bodies(frames, lambda joints: points[joints.start], None, progress)
 

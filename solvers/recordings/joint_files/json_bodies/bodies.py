@@ -115,12 +115,12 @@ def _points_by_name(frames: list[dict[str, BodyJoints]]) -> Callable[[BodyJoints
     found = [joints.names for frame in frames for joints in frame.values()]
     names = dict.fromkeys(name for each in dict.fromkeys(found) for name in each)
     columns = {name: column for column, name in enumerate(names)}
-    is_alike = len(columns) <= 2 * max(map(len, found), default=0)
+    has_same_names = len(columns) <= 2 * max(map(len, found), default=0)
 
     def points_of(joints: BodyJoints) -> Array:
         if not joints.names:
             return joints.positions
-        if not is_alike:
+        if not has_same_names:
             return joints.positions[:0]
         points = np.full((len(columns), 3), np.nan)
         points[[columns[name] for name in joints.names]] = joints.positions

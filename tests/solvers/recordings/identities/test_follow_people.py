@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from swapped_people import RATE_HZ, line, observed, person
+from exports.swapped_people import RATE_HZ, line, observed, person
 
 from solvers.recordings.identities.follow_people import follow_people
 
@@ -39,7 +39,7 @@ def assert_right(found, names=("anna", "ben", "cleo")):
 
 
 def test_positions_of_a_swap_are_those_of_the_other_person():
-    """By hand: two points apart by 4 m, which change places from frame 5 on."""
+    """By hand: two points apart by 4 m, which change indices from frame 5 on."""
     square = np.array([[0.0, 0, 0], [1.6, 0, 0], [0, 1.6, 0]])
     one, other = square + 1.0, square + np.array([5.0, 1.0, 1.0])
     frames = [{"a": one, "b": other}] * 5 + [{"a": other, "b": one}] * 5
@@ -47,7 +47,7 @@ def test_positions_of_a_swap_are_those_of_the_other_person():
     followed = follow_people(frames, np.arange(10) / 10.0)
 
     assert followed.persons == [{"a": "a", "b": "b"}] * 5 + [{"a": "b", "b": "a"}] * 5
-    assert followed.swap_times == [0.5] and followed.found_again == []
+    assert followed.switch_times == [0.5] and followed.found_again == []
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e3, 39.37])
@@ -57,7 +57,7 @@ def test_a_swap_is_undone_in_any_unit(unit):
     found, followed = names_found(people, [AS_THEY_ARE] * 40 + [SWAPPED] * 50)
 
     assert_right(found)
-    assert followed.swap_times == [pytest.approx(40 / RATE_HZ)]
+    assert followed.switch_times == [pytest.approx(40 / RATE_HZ)]
 
 
 def test_two_swaps_are_undone():
@@ -66,14 +66,14 @@ def test_two_swaps_are_undone():
     found, followed = names_found(two_people(), given)
 
     assert_right(found)
-    assert followed.swap_times == pytest.approx([30 / RATE_HZ, 50 / RATE_HZ])
+    assert followed.switch_times == pytest.approx([30 / RATE_HZ, 50 / RATE_HZ])
 
 
 def test_a_swap_of_people_face_to_face_shows_in_their_joints():
     """Hips are 0.3 m from each other, and joints farther."""
     found, followed = names_found(two_people(0.3, np.pi), [AS_THEY_ARE] * 40 + [SWAPPED] * 50)
 
-    assert_right(found) if followed.swap_times else pytest.fail("not found")
+    assert_right(found) if followed.switch_times else pytest.fail("not found")
 
 
 @pytest.mark.parametrize("speed", [1.0, 3.0, 8.0])
@@ -121,7 +121,7 @@ def test_three_people_rotate_their_identities():
     found, followed = names_found(people, [first] * 40 + [then] * 50)
 
     assert_right(found)
-    assert len(followed.swap_times) == 1
+    assert len(followed.switch_times) == 1
 
 
 def test_the_third_person_keeps_the_identity_while_two_are_swapped():
@@ -137,14 +137,14 @@ def test_the_third_person_keeps_the_identity_while_two_are_swapped():
 @pytest.mark.parametrize("absent", [1, 10, 60])
 def test_a_list_closes_up_while_someone_is_missing(absent):
     """The second place becomes the first one, and back."""
-    places = {"anna": "0", "ben": "1"}
+    indices = {"anna": "0", "ben": "1"}
     alone = {"ben": "0"}
-    given = [places] * 20 + [alone] * absent + [places] * (N - 20 - absent)
+    given = [indices] * 20 + [alone] * absent + [indices] * (N - 20 - absent)
 
     found, followed = names_found(two_people(), given)
 
     assert_right(found)
-    assert len(followed.swap_times) == 2
+    assert len(followed.switch_times) == 2
 
 
 def test_a_person_who_enters_first_in_the_list_is_new():
@@ -183,7 +183,7 @@ def test_a_new_number_is_the_person_who_was_lost_there(absent):
     assert_right(found)
     ((person_, new, time),) = followed.found_again
     assert (person_, new, time) == ("1", "3", pytest.approx((30 + absent) / RATE_HZ))
-    assert followed.swap_times == []
+    assert followed.switch_times == []
 
 
 def test_a_new_number_is_new_if_two_people_could_be_it():
@@ -251,7 +251,7 @@ def test_joints_at_the_origin_are_missing():
     found, followed = names_found(people, [AS_THEY_ARE] * 70 + [SWAPPED] * 20)
 
     assert_right(found)
-    assert len(followed.swap_times) == 1
+    assert len(followed.switch_times) == 1
 
 
 @pytest.mark.parametrize("n_frames", [0, 1])

@@ -4,9 +4,9 @@ import json
 
 import numpy as np
 import pytest
+from exports.swapped_people import NAMES, RATE_HZ, line, observed, person
 from joint_files import azure_json, azure_lines, npy, ntu
 from numpy.testing import assert_array_equal
-from swapped_people import NAMES, RATE_HZ, line, observed, person
 
 from solvers.motion import SENSOR_JOINTS, Sensor
 from solvers.motion.skeletons import NUITRACK, ZED_BODIES
@@ -16,7 +16,7 @@ from solvers.recordings import open_bodies
 N = 80
 RIGHT = {"anna": "1", "ben": "2"}
 SWAPPED = {"anna": "2", "ben": "1"}
-SWAP = "swapped back"
+SWITCHES = "Identity switches"
 
 
 def people(names=NAMES):
@@ -186,15 +186,15 @@ def test_swaps_change_nothing(tmp_path, write):
     for one, other in zip(expected, found, strict=True):
         assert one.tracks.names == other.tracks.names
         assert_array_equal(one.tracks.positions, other.tracks.positions)
-    assert not [each for each in quiet if SWAP in each]
-    (sentence,) = [each for each in remarks if SWAP in each]
+    assert not [each for each in quiet if SWITCHES in each]
+    (sentence,) = [each for each in remarks if SWITCHES in each]
     assert ": 3 (" in sentence
 
 
 def test_the_report_states_when(tmp_path):
     _, _, remarks = read_all(tmp_path / "take.json", json_people([RIGHT] * 30 + [SWAPPED] * 50))
 
-    assert "People swapped by the tracker, and swapped back: 1 (1.00 s)" in remarks
+    assert "Identity switches of the tracker, undone: 1 (1.00 s)" in remarks
 
 
 def test_the_report_lists_the_first_of_many_swaps(tmp_path):
@@ -202,7 +202,7 @@ def test_the_report_lists_the_first_of_many_swaps(tmp_path):
 
     _, _, remarks = read_all(tmp_path / "take.json", json_people(given))
 
-    (sentence,) = [each for each in remarks if SWAP in each]
+    (sentence,) = [each for each in remarks if SWITCHES in each]
     assert sentence.endswith(": 7 (0.33 s, 0.67 s, 1.00 s, 1.33 s, 1.67 s, ...)")
 
 
@@ -213,7 +213,7 @@ def test_a_person_found_again_is_one_body(tmp_path):
 
     assert [body.n_frames for body in bodies.listed] == [75, 80]
     assert np.isfinite(anna.tracks.positions).all(axis=(1, 2)).sum() == 75
-    assert "People lost and found again under another identity: 7 = 1 (1.17 s)" in remarks
+    assert "People who were lost and have a new identity: 7 = 1 (1.17 s)" in remarks
 
 
 def test_swapped_joints_keep_their_states(tmp_path):
