@@ -39,6 +39,7 @@ class Claims(Generic[Key]):
         self.claimed = {key: persons[key] for key in bodies}
         self._bodies, self._time, self._meter = bodies, time, meter
         self._may_be_new = may_be_new
+        self._all_paths = paths
         self._paths = {
             person: path for person, path in paths.items() if time - path.time <= BODY_TIMEOUT_S
         }
@@ -52,8 +53,13 @@ class Claims(Generic[Key]):
         """Return whether an identity is farther from its person than people move."""
         if key not in self._own:
             return False
-        gap = self._time - self._paths[self.claimed[key]].time
-        return self._own[key] > self._meter * (MIN_SWITCH_M + MAX_HIDDEN_SPEED_M_S * gap)
+        reach = MIN_SWITCH_M * self._meter + self._walked(self._paths[self.claimed[key]])
+        return self._own[key] > reach
+
+    def _walked(self, path: PersonPath) -> float:
+        """Return how far a person may have walked since the last observation."""
+        gap = self._time - path.time
+        return MAX_HIDDEN_SPEED_M_S * self._meter * gap
 
     def changes(self) -> list[dict[Key, Key]]:
         """Return groups of identities with the other persons whose paths they clearly continue.
@@ -132,7 +138,12 @@ class Claims(Generic[Key]):
 
     def _is_found_again(self, key: Key, person: Key, distance: float) -> bool:
         """Return whether a new identity is a missing person and no one else can be it."""
-        others = [self._distance(key, other) for other in self._missing if other != person]
+        claimed = {*self.claimed.values(), person}
+        others = [
+            path.distance(self._bodies[key], self._time) - self._walked(path)
+            for other, path in self._all_paths.items()
+            if other not in claimed
+        ]
         others += [
             self._distance(other, person)
             for other in self.claimed

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Array
 from .claims import Claims
-from .evidence import MAX_PEOPLE, MIN_SWITCH_M
+from .evidence import MAX_PEOPLE, MIN_SWITCH_M, continues_other_path
 from .path import PersonPath, center
 
 Key = TypeVar("Key", bound=Hashable)
@@ -87,7 +87,10 @@ class _Follower(Generic[Key]):
         self.switch_times: list[float] = []
         self.found_again: list[FoundAgain[Key]] = []
         self._persons = {key: key for frame in frames for key in frame}
+        self._stated = dict(self._persons)
+        self._doubts: dict[Key, set[Key]] = {}
         self._paths: dict[Key, PersonPath] = {}
+        self._time = -np.inf
         self._meter = meter
         self._companies = {frozenset(frame) for frame in frames}
         is_few = max(map(len, self._companies), default=0) <= MAX_PEOPLE
@@ -97,11 +100,14 @@ class _Follower(Generic[Key]):
 
     def add(self, bodies: dict[Key, Array], time: float, keys: Iterable[Key]) -> dict[Key, Key]:
         """Add the people of the next frame; return the persons of all its identities."""
+        self._restore(bodies, time)
         claims = Claims(bodies, time, self._persons, self._paths, self._meter, self._may_be_new)
         changed: set[Key] = set()
         for group in claims.changes():
-            self._apply(group, time)
-            changed |= group.keys()
+            if self._is_certain(group):
+                self._apply(group, time)
+                changed |= group.keys()
+        self._doubt(bodies, time)
         for key, points in bodies.items():
             person = self._persons[key]
             is_continuous = key in changed or not claims.jumps(key)
@@ -109,15 +115,76 @@ class _Follower(Generic[Key]):
                 self._paths[person].add(points, time, is_continuous=is_continuous)
             else:
                 self._paths[person] = PersonPath(points, time)
+        self._time = time
         return {key: self._persons.setdefault(key, key) for key in keys}
 
+    def _rivals(self, key: Key, bodies: Mapping[Key, Array], time: float) -> set[Key]:
+        """Return absent persons whose paths an identity may continue as well as the own one."""
+        person, points = self._persons[key], bodies[key]
+        if person not in self._paths:
+            return set()
+        own = self._paths[person].distance(points, time)
+        present = {self._persons[each] for each in bodies}
+        return {
+            other
+            for other, path in self._paths.items()
+            if other not in present
+            and not continues_other_path(own, path.distance(points, time))
+        }
+
+    def _restore(self, bodies: Mapping[Key, Array], time: float) -> None:
+        """Give those who were missing their identity in the file, if it fits as well.
+
+        What follows a gap is less certain than what the file states.
+        """
+        for key in bodies:
+            path = self._paths.get(self._persons[key])
+            was_missing = path is None or path.time < self._time
+            is_stated = self._persons[key] == self._stated[key]
+            if was_missing and not is_stated and self._may_be_stated(key, bodies, time):
+                self._give({key: self._stated[key]})
+                self.switch_times.append(time)
+
+    def _may_be_stated(self, key: Key, bodies: Mapping[Key, Array], time: float) -> bool:
+        """Return whether an identity may be whom the file states, after a gap."""
+        person, stated = self._persons[key], self._stated[key]
+        holder = next((each for each in bodies if self._persons[each] == stated), None)
+        if holder is None:
+            return person not in self._paths or stated in self._rivals(key, bodies, time)
+        path = self._paths.get(stated)
+        if path is None:
+            return False
+        own, held = (path.distance(bodies[each], time) for each in (key, holder))
+        return own < held or person in self._doubts[stated]
+
+    def _doubt(self, bodies: Mapping[Key, Array], time: float) -> None:
+        """Note whom each person may be instead, until both are observed together."""
+        present = {self._persons[each] for each in bodies}
+        for key in bodies:
+            doubts = self._doubts.setdefault(self._persons[key], set())
+            doubts |= self._rivals(key, bodies, time)
+            doubts -= present
+
+    def _is_certain(self, group: Mapping[Key, Key]) -> bool:
+        """Return whether the paths of a group are those of its persons, or it is as stated."""
+        if all(person == self._stated[key] for key, person in group.items()):
+            return True
+        persons = {*group.values(), *(self._persons[key] for key in group)}
+        return not any(self._doubts.get(person) for person in persons)
+
     def _apply(self, group: Mapping[Key, Key], time: float) -> None:
-        """Give identities other persons; those who lose theirs get what is left."""
+        """Give identities other persons, and note when."""
         ((key, person), *others) = group.items()
         if not others and self._persons[key] not in self._paths:
             self.found_again.append(FoundAgain(person, key, time))
+            holder = next(each for each, owned in self._persons.items() if owned == person)
+            self._stated |= {key: person, holder: self._persons[key]}
         else:
             self.switch_times.append(time)
+        self._give(group)
+
+    def _give(self, group: Mapping[Key, Key]) -> None:
+        """Give identities other persons; those who lose theirs get what is left."""
         left = {self._persons[each] for each in group} - set(group.values())
         losers = [
             each

@@ -156,6 +156,39 @@ def test_a_person_who_enters_first_in_the_list_is_new():
     assert found[0] == {"0": "ben"} and found[-1] == {"1": "anna", "0": "ben"}
 
 
+def test_a_list_is_as_in_the_file_after_an_uncertain_gap():
+    """Ben alone is the first one; where Anna comes back, the file's order is the best guess."""
+    both, ben = {"anna": "0", "ben": "1"}, {"ben": "0"}
+    given = [both] * 20 + [{}] * 25 + [ben] * 15 + [both] * 30
+
+    found, _ = names_found(two_people(0.8), given)
+
+    assert found[0] == found[-1] == {"0": "anna", "1": "ben"}
+
+
+def test_close_people_in_a_list_are_as_in_the_file_when_both_are_back():
+    both, ben = {"anna": "0", "ben": "1"}, {"ben": "0"}
+    given = [both] * 20 + [ben] * 40 + [both] * 30
+
+    found, _ = names_found(two_people(0.25), given)
+
+    assert found[-1] == {"0": "anna", "1": "ben"}
+
+
+@pytest.mark.parametrize("distance", [0.2, 0.6, 1.7])
+def test_right_identities_stay_with_any_gaps(distance, rng):
+    gaps = rng.random((2, N // 5)) < 0.4
+    given = [
+        {who: key for (who, key), is_gap in zip(AS_THEY_ARE.items(), gaps[:, at], strict=True)
+         if not is_gap}
+        for at in range(N // 5) for _ in range(5)
+    ]  # fmt: skip
+
+    _, followed = names_found(two_people(distance), given)
+
+    assert not followed.is_changed
+
+
 def test_people_swapped_while_both_are_missing_are_swapped_back():
     given = [AS_THEY_ARE] * 30 + [{}] * 10 + [SWAPPED] * 50
 
