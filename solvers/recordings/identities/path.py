@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import Array
 
-MAX_VELOCITY_GAP_S = 0.2
+MAX_VELOCITY_GAP_S = 0.25
 """Duration in seconds between frames up to which they have a velocity. It guards against the
 mean velocity of a long gap."""
 

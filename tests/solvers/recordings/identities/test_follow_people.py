@@ -90,11 +90,12 @@ def test_people_who_cross_are_not_swapped(speed, offset):
     assert not followed.is_changed and found[0] == found[-1] == {"1": "anna", "2": "ben"}
 
 
-def test_people_who_cross_in_a_file_of_few_frames_are_not_swapped():
+@pytest.mark.parametrize("offset", [0.0, 0.1, 0.4])
+def test_people_who_cross_in_a_file_of_few_frames_are_not_swapped(offset):
     """At 5 Hz runners pass each other between two frames."""
     people = {
-        "anna": person(line((-4.0, 0.0), (4.0, 0.0), 12), np.pi / 2, 1),
-        "ben": person(line((4.0, 0.4), (-4.0, 0.4), 12), -np.pi / 2, 2),
+        "anna": person(line((-5.0, 0.0), (5.0, 0.0), 12), np.pi / 2, 1),
+        "ben": person(line((5.0, offset), (-5.0, offset), 12), -np.pi / 2, 2),
     }
 
     _, followed = names_found(people, [AS_THEY_ARE] * 12, np.arange(12) / 5.0)
@@ -167,11 +168,16 @@ def test_a_list_is_as_in_the_file_after_an_uncertain_gap():
 
 
 def test_close_people_in_a_list_are_as_in_the_file_when_both_are_back():
+    """Ben is followed to the first place; Anna comes back closer to him than people jump."""
     both, ben = {"anna": "0", "ben": "1"}, {"ben": "0"}
-    given = [both] * 20 + [ben] * 40 + [both] * 30
+    people = {
+        "anna": person(line((-0.6, 0.0), (-0.1, 0.0), N), 0.0, 1),
+        "ben": person(line((0.6, 0.0), (0.1, 0.0), N), 0.0, 2),
+    }
 
-    found, _ = names_found(two_people(0.25), given)
+    found, _ = names_found(people, [both] * 20 + [ben] * 62 + [both] * 8)
 
+    assert found[30] == {"1": "ben"}
     assert found[-1] == {"0": "anna", "1": "ben"}
 
 
