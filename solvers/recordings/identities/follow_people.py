@@ -102,17 +102,14 @@ class _Follower(Generic[Key]):
         """Add the people of the next frame; return the persons of all its identities."""
         self._restore(bodies, time)
         claims = Claims(bodies, time, self._persons, self._paths, self._meter, self._may_be_new)
-        changed: set[Key] = set()
         for group in claims.changes():
             if self._is_certain(group):
                 self._apply(group, time)
-                changed |= group.keys()
         self._doubt(bodies, time)
         for key, points in bodies.items():
             person = self._persons[key]
-            is_continuous = key in changed or not claims.jumps(key)
             if person in self._paths:
-                self._paths[person].add(points, time, is_continuous=is_continuous)
+                self._paths[person].add(points, time)
             else:
                 self._paths[person] = PersonPath(points, time)
         self._time = time

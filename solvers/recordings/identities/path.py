@@ -23,11 +23,11 @@ class PersonPath:
         self._points = points
         self._velocity: Array | None = None
 
-    def add(self, points: Array, time: float, *, is_continuous: bool = True) -> None:
-        """Continue the path; a jump that stays unexplained has no velocity."""
+    def add(self, points: Array, time: float) -> None:
+        """Continue the path."""
         gap = time - self.time
         is_near = 0.0 < gap <= MAX_VELOCITY_GAP_S and points.shape == self._points.shape
-        velocity = (points - self._points) / gap if is_near and is_continuous else None
+        velocity = (points - self._points) / gap if is_near else None
         self.time, self._points, self._velocity = time, points, velocity
 
     def distance(self, points: Array, time: float) -> float:
