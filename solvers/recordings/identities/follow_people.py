@@ -88,7 +88,7 @@ class _Follower(Generic[Key]):
         self.found_again: list[FoundAgain[Key]] = []
         self._persons = {key: key for frame in frames for key in frame}
         self._stated = dict(self._persons)
-        self._doubts: dict[Key, set[Key]] = {}
+        self._possible_persons: dict[Key, set[Key]] = {}
         self._paths: dict[Key, PersonPath] = {}
         self._time = -np.inf
         self._meter = meter
@@ -105,7 +105,7 @@ class _Follower(Generic[Key]):
         for group in claims.changes():
             if self._is_certain(group):
                 self._apply(group, time)
-        self._doubt(bodies, time)
+        self._note_rivals(bodies, time)
         for key, points in bodies.items():
             person = self._persons[key]
             if person in self._paths:
@@ -152,22 +152,22 @@ class _Follower(Generic[Key]):
         if path is None:
             return False
         own, held = (path.distance(bodies[each], time) for each in (key, holder))
-        return own < held or person in self._doubts[stated]
+        return own < held or person in self._possible_persons[stated]
 
-    def _doubt(self, bodies: Mapping[Key, Array], time: float) -> None:
+    def _note_rivals(self, bodies: Mapping[Key, Array], time: float) -> None:
         """Note whom each person may be instead, until both are observed together."""
         present = {self._persons[each] for each in bodies}
         for key in bodies:
-            doubts = self._doubts.setdefault(self._persons[key], set())
-            doubts |= self._rivals(key, bodies, time)
-            doubts -= present
+            possible = self._possible_persons.setdefault(self._persons[key], set())
+            possible |= self._rivals(key, bodies, time)
+            possible -= present
 
     def _is_certain(self, group: Mapping[Key, Key]) -> bool:
         """Return whether the paths of a group are those of its persons, or it is as stated."""
         if all(person == self._stated[key] for key, person in group.items()):
             return True
         persons = {*group.values(), *(self._persons[key] for key in group)}
-        return not any(self._doubts.get(person) for person in persons)
+        return not any(self._possible_persons.get(person) for person in persons)
 
     def _apply(self, group: Mapping[Key, Key], time: float) -> None:
         """Give identities other persons, and note when."""

@@ -20,7 +20,7 @@ def two_people(distance=1.7, heading=0.0):
 
 
 def names_found(people, identities, times=TIMES):
-    """Return which person stands under each identity in each frame after following, and it."""
+    """Return who has each identity in each frame, once followed, and the result."""
     followed = follow_people(observed(people, identities), times)
     found = [
         {persons[identity]: name for name, identity in given.items()}
@@ -71,9 +71,9 @@ def test_two_swaps_are_undone():
 
 def test_a_swap_of_people_face_to_face_shows_in_their_joints():
     """Hips are 0.3 m from each other, and joints farther."""
-    found, followed = names_found(two_people(0.3, np.pi), [AS_THEY_ARE] * 40 + [SWAPPED] * 50)
+    found, _ = names_found(two_people(0.3, np.pi), [AS_THEY_ARE] * 40 + [SWAPPED] * 50)
 
-    assert_right(found) if followed.switch_times else pytest.fail("not found")
+    assert_right(found)
 
 
 @pytest.mark.parametrize("speed", [1.0, 3.0, 8.0])
@@ -204,7 +204,6 @@ def test_people_swapped_while_both_are_missing_are_swapped_back():
 
 
 def test_people_who_were_away_for_long_keep_what_the_tracker_says():
-    """Behind a wall they may have gone anywhere."""
     given = [AS_THEY_ARE] * 20 + [{}] * 40 + [SWAPPED] * 30
 
     _, followed = names_found(two_people(), given)
@@ -272,7 +271,7 @@ def test_people_relative_to_their_own_hips_are_not_followed():
 
 
 def test_one_jump_is_no_swap():
-    """A tracker that sees Anna at a chair for a frame, or hears noise, has not swapped her."""
+    """A tracker that finds Anna in a chair for three frames has not swapped her."""
     people = two_people()
     people["anna"][40:43] += (0.9, 0.0, 0.0)
     people["ben"][60, :5] += 3.0
@@ -296,7 +295,6 @@ def test_joints_at_the_origin_are_missing():
 @pytest.mark.parametrize("n_frames", [0, 1])
 def test_hardly_any_frames(n_frames):
     frames = observed(two_people(), [AS_THEY_ARE] * n_frames)
-
     followed = follow_people(frames, TIMES[:n_frames])
 
     assert followed.persons == [{"1": "1", "2": "2"}] * n_frames
