@@ -53,7 +53,7 @@ def open_matlab_points(
     joints = min(found, key=lambda array: rank_of_array(array.name))
     progress(0.5, "Reading")
     stated = Stated(_rate(arrays), None, ())
-    return open_points(path, _over_time(_numbers(joints)), scale, stated)
+    return open_points(path, _over_time(_numbers(joints)), scale, stated, progress)
 
 
 def _may_be_joints(array: MatlabArray) -> bool:

@@ -16,6 +16,7 @@ from .containers import (
     read_array,
 )
 from .conventions import DEFAULT_FRAME_RATE, Bodies, JointSamples, check_scale, observed_body
+from .identities import follow_arrays
 from .joint_files import read_freemocap_points
 from .point_bodies import (
     body_of_named_points,
@@ -99,7 +100,7 @@ def open_npy(
         )
     if _is_frame(array):
         array = _read_frames(path, array.shape, progress)
-    return open_points(path, array, scale)
+    return open_points(path, array, scale, progress=progress)
 
 
 def is_frame_npy(path: Path | str) -> bool:
@@ -136,18 +137,21 @@ def open_points(
     array: Array,
     scale: float | None,
     stated: Stated = NOTHING_STATED,
+    progress: Progress = unwatched,
 ) -> Bodies[JointRecording | Tracks]:
     """List the bodies of an array; several are on its first or second axis."""
     _refuse_rotations(path, array)
-    bodies = _bodies_of(array)
+    separate = _bodies_of(array)
+    numbers = [str(number) for number in range(1, len(separate) + 1)]
+    bodies = follow_arrays(numbers, separate, None, progress)
     listed = tuple(
         observed_body(
-            str(number),
+            number,
             np.flatnonzero(np.isfinite(points).all(axis=2).any(axis=1)),
             len(points),
             len(points) / (stated.rate or DEFAULT_FRAME_RATE),
         )
-        for number, points in enumerate(bodies, start=1)
+        for number, points in zip(numbers, bodies, strict=True)
         if len(bodies) > 1
     )
 

@@ -48,7 +48,7 @@ def open_point_archive(
     if found is None:
         raise InvalidFileError(f"{path} has no array of joints. Export it again.")
     stated = Stated(_stated_rate(path), _root_path(path, progress), _stated_names(path))
-    return open_points(path, found, scale, stated)
+    return open_points(path, found, scale, stated, progress)
 
 
 def _stated_names(path: Path | str) -> tuple[str, ...]:

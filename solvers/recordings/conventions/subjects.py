@@ -1,6 +1,7 @@
 """Split named points into subjects: persons and props whose names begin the labels."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import combinations
 from typing import NamedTuple, TypeVar
 
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...motion import JointRecording, Tracks
 from ...progress import Progress
+from ..identities import follow_columns
 from .axes import MIN_BODY_JOINTS
 from .bodies import Bodies, observed_body
 from .points import point_names
@@ -118,15 +120,38 @@ def bodies_of_markers(path: object, tracks: Tracks, labels: Sequence[str]) -> Bo
     return _bodies(path, tracks, tracks, split_subjects(labels), is_person, _marker_columns)
 
 
-def bodies_of_joints(path: object, recording: JointRecording) -> Bodies[JointRecording]:
+def bodies_of_joints(
+    path: object, recording: JointRecording, progress: Progress
+) -> Bodies[JointRecording]:
     """Return the subjects of named joints; where only one is a person, all are together."""
 
     def is_person(subject: MarkerSubject) -> bool:
         return subject.name != UNLABELED and len(subject.columns) >= MIN_BODY_JOINTS
 
+    subjects = split_subjects(recording.names)
+    recording = _with_people_followed(recording, list(filter(is_person, subjects)), progress)
     tracks = recording.tracks
-    subjects = split_subjects(tracks.names)
     return _bodies(path, recording, tracks, subjects, is_person, _joint_columns)
+
+
+def _with_people_followed(
+    recording: JointRecording, people: list[MarkerSubject], progress: Progress
+) -> JointRecording:
+    """Return a recording in which swapped people are swapped back (`follow_columns`)."""
+    tracks, states = recording.tracks, recording.tracking_state
+    others = [each[..., None] for each in (tracks.confidence, states) if each is not None]
+    values = np.concatenate([tracks.positions, *others], axis=2)
+    times = np.arange(tracks.n_frames) / tracks.frame_rate
+    followed = follow_columns(people, values, times, progress)
+    if followed is values:
+        return recording
+    columns = iter(np.moveaxis(np.nan_to_num(followed[..., 3:]), 2, 0))
+    confidence = None if tracks.confidence is None else next(columns)
+    return JointRecording(
+        replace(tracks, positions=followed[..., :3], confidence=confidence),
+        None if states is None else next(columns).astype(states.dtype),
+        recording.sensor,
+    )
 
 
 def _bodies(

@@ -1,7 +1,7 @@
 """Read tables of Azure Kinect joints: a line per joint, or a line per frame."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -24,11 +24,13 @@ from ..conventions import (
     Bodies,
     Body,
     JointSamples,
+    bodies_of_frames,
     check_scale,
     from_azure_space,
     joint_recording,
     observed_body,
 )
+from ..identities import follow_bodies
 
 NAMES = SENSOR_JOINTS[Sensor.AZURE_KINECT]
 PER_JOINT = re.compile(rb"(?i)[^\n]*\n?[ \t]*body id\s*,\s*joint #\s*,\s*x\s*,\s*y\s*,\s*z")
@@ -140,18 +142,27 @@ def _read_joint_lines(
         progress(block.stop, "Reading")
     if not bodies:
         raise InvalidFileError(f"{path} has a header but no joints.")
-    n_frames, found = frame + 1, list(bodies.values())
-    for body in found:
+    return _listed_bodies(bodies, frame + 1, progress)
+
+
+def _listed_bodies(
+    bodies: Mapping[bytes, "_BodyTable"], n_frames: int, progress: Progress
+) -> tuple[tuple[Body, ...], Callable[[int], NDArray[np.float64]]]:
+    """Return people, swapped back where they were swapped, and a function with their joints."""
+    separate: list[dict[bytes, NDArray[np.float64]]] = [{} for _ in range(n_frames)]
+    for key, body in bodies.items():
         body.end_frame()
-    return tuple(
-        observed_body(
-            printable(key.decode("latin-1")),
-            np.array(body.frames),
-            n_frames,
-            n_frames / DEFAULT_FRAME_RATE,
-        )
-        for key, body in bodies.items()
-    ), lambda index: found[index].values(n_frames)
+        for at, joints in zip(body.frames, body.joints(), strict=True):
+            separate[at][key] = joints
+    frames = follow_bodies(separate, lambda joints: joints[:, :3], None, progress)
+    keys, listed = bodies_of_frames(
+        frames,
+        n_frames / DEFAULT_FRAME_RATE,
+        lambda number, key: printable(key.decode("latin-1")),
+    )
+    return listed, lambda index: np.stack([
+        found.get(keys[index], NOT_OBSERVED) for found in frames
+    ])
 
 
 class _BodyTable:
@@ -176,11 +187,9 @@ class _BodyTable:
         self._frame[joint] = values
         self._last = joint
 
-    def values(self, n_frames: int) -> NDArray[np.float64]:
-        """Return all frames of the recording, shape (n_frames, n_joints, 4)."""
-        values = np.tile(NOT_OBSERVED, (n_frames, 1, 1))
-        values[self.frames] = self._table.rows().reshape(-1, len(NAMES), 4)
-        return values
+    def joints(self) -> NDArray[np.float64]:
+        """Return the joints in these frames, shape (n_frames, n_joints, 4)."""
+        return self._table.rows().reshape(-1, len(NAMES), 4)
 
     def end_frame(self) -> None:
         """Keep the joints of the present frame."""

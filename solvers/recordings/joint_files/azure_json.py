@@ -97,7 +97,9 @@ def open_azure_json(
             " file is damaged; export it again."
         )
 
-    def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
+    def read(
+        frames: list[BodiesFrame], body: str, times: Array | None, progress: Progress
+    ) -> JointRecording:
         positions, _ = stack_body(body, frames)
         return joint_recording(
             path,
@@ -107,7 +109,7 @@ def open_azure_json(
             progress=progress,
         )
 
-    return open_frames(path, frames, MICROSECOND, read)
+    return open_frames(path, frames, MICROSECOND, read, progress)
 
 
 def _read_frame(frame: Any, done: float, location: str) -> BodiesFrame:

@@ -22,6 +22,7 @@ from ..conventions import (
     recorded_seconds,
     stack_body_frames,
 )
+from ..identities import follow_bodies
 
 STATES = {b"NotTracked": 0, b"Inferred": 1, b"Tracked": 2}
 HEAD = re.compile(
@@ -95,6 +96,7 @@ def open_irds(
     if not observed:
         raise InvalidFileError(f"{path} is not an IRDS recording: no line has joints.")
     times, frames = _frames(observed)
+    frames = follow_bodies(frames, lambda joints: joints[:, :3], times, progress)
     keys, bodies = bodies_of_frames(frames, recorded_seconds(times))
 
     def read(index: int, progress: Progress) -> JointRecording:

@@ -95,7 +95,7 @@ def open_joint_csv(
         scale=scale,
         progress=progress,
     )
-    return bodies_of_joints(path, recording)
+    return bodies_of_joints(path, recording, progress)
 
 
 def write_joint_csv(

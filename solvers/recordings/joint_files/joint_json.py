@@ -99,7 +99,7 @@ def open_joint_json(
         scale=scale,
         progress=progress,
     )
-    return bodies_of_joints(path, recording)
+    return bodies_of_joints(path, recording, progress)
 
 
 def write_joint_json(

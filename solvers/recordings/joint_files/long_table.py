@@ -27,6 +27,7 @@ from ..conventions import (
     observed_body,
     recorded_seconds,
 )
+from ..identities import follow_arrays
 from ..point_bodies import (
     N_POINTS,
     landmark_columns,
@@ -127,7 +128,8 @@ def open_long_table(
             f"{path} holds 2D points of a picture, without depth. Save their positions in 3D."
         )
     names, order = table.joints.in_order()
-    people, points = _points(path, table, frames, order)
+    people, separate = _points(path, table, frames, order)
+    points = follow_arrays(people, [*separate], times, progress)
     seconds = len(points[0]) / (rate or DEFAULT_FRAME_RATE)
     duration = seconds if times is None else recorded_seconds(times)
     listed = tuple(

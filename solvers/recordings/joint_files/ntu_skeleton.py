@@ -21,6 +21,7 @@ from ..conventions import (
     no_body_error,
     stack_body_frames,
 )
+from ..identities import follow_bodies
 from .kinect_csv import checked_states
 
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
@@ -46,7 +47,7 @@ def open_ntu_skeleton(
     """Open an NTU RGB+D `.skeleton` file [1]_, in meters, Z up; joints not tracked are NaN.
 
     Bodies are identified by their id, in any order, and numbered as they appear. Frames
-    without the body are gaps. A body that returns under another id counts as two. Image
+    without the body are gaps. Identity switches are undone (`follow_bodies`). Image
     coordinates, orientations, hand states and lean are not read. The files have no times; the
     Kinect v2 records 30 frames per second.
 
@@ -82,6 +83,7 @@ def open_ntu_skeleton(
     frames = _find_bodies(lines, line_indices, path)
     if not any(frames):
         raise no_body_error(path)
+    frames = _with_people_followed(lines, frames, path, progress)
     keys, bodies = bodies_of_frames(
         frames, len(frames) / DEFAULT_FRAME_RATE, lambda number, key: str(number)
     )
@@ -104,18 +106,39 @@ def open_ntu_skeleton(
     return Bodies(str(path), bodies, read)
 
 
-def _read_body(
-    lines: list[bytes], frames: Frames, body: bytes, path: Path | str, progress: Progress
+def _with_people_followed(
+    lines: list[bytes], frames: Frames, path: Path | str, progress: Progress
+) -> Frames:
+    """Return frames in which identity switches of the sensor are undone."""
+    if len(set().union(*frames)) < 2:
+        return frames
+    found = [joints for frame in frames for joints in frame.values()]
+    rows = _read_joints(lines, found, path, within(progress, 0.0, 0.7))
+    points = {joints.start: row[:, :3] for joints, row in zip(found, rows, strict=True)}
+    return follow_bodies(frames, lambda joints: points[joints.start], None, progress)
+
+
+def _read_joints(
+    lines: list[bytes], joints: list[range], path: Path | str, progress: Progress
 ) -> NDArray[np.float64]:
-    """Return x, y, z and state of the joints of a body, shape (n_frames, n_joints, 4)."""
-    used = [index for frame in frames for index in frame.get(body, ())]
+    """Return all words of the joints in these lines, shape (n_frames, n_joints, n_words)."""
+    used = [index for each in joints for index in each]
     rows = read_rows(
         [lines[index] for index in used],
         JOINT_WORDS,
         path,
         [index + 1 for index in used],
         progress,
-    ).reshape(-1, len(NAMES), JOINT_WORDS)
+    )
+    return rows.reshape(-1, len(NAMES), JOINT_WORDS)
+
+
+def _read_body(
+    lines: list[bytes], frames: Frames, body: bytes, path: Path | str, progress: Progress
+) -> NDArray[np.float64]:
+    """Return x, y, z and state of the joints of a body, shape (n_frames, n_joints, 4)."""
+    found = [frame[body] for frame in frames if body in frame]
+    rows = _read_joints(lines, found, path, progress)
     tracked = iter(np.concatenate([rows[..., :3], rows[..., -1:]], axis=-1))
     joints = stack_body_frames(
         body, [{body: next(tracked)} if body in frame else {} for frame in frames]

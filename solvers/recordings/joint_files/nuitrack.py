@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...errors import InvalidFileError
@@ -23,6 +24,7 @@ from ..conventions import (
     observed_body,
     recorded_seconds,
 )
+from ..identities import follow_bodies
 from .json_bodies import (
     BodiesFrame,
     BodyJoints,
@@ -115,6 +117,8 @@ def open_nuitrack_csv(
     times = MICROSECOND * rows[:, titles.index("TIMESTAMP")] if "TIMESTAMP" in titles else None
     instants = np.arange(len(rows)) if times is None else times
     n_frames = len(np.unique(instants))
+    points = rows[:, list(columns.values())]
+    users = _followed_users(users, instants, points, times is not None, progress)
     duration = n_frames / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
     people = tuple(
         observed_body(
@@ -135,6 +139,34 @@ def open_nuitrack_csv(
     return Bodies(str(path), people, read)
 
 
+def _followed_users(
+    users: Array,
+    instants: NDArray[np.generic],
+    points: Array,
+    has_times: bool,
+    progress: Progress,
+) -> Array:
+    """Return the user of each row, those that the tracker swapped swapped back.
+
+    Parameters
+    ----------
+    users, instants : shape (n_rows,)
+    points : shape (n_rows, n_joints, 3)
+    has_times : whether instants are seconds, rather than numbers of frames
+    progress : Progress
+    """
+    stamps, frames = np.unique(np.asarray(instants, np.float64), return_inverse=True)
+    found: list[dict[str, int]] = [{} for _ in stamps]
+    for row in np.flatnonzero(np.isfinite(users)).tolist():
+        found[frames[row]].setdefault(f"{users[row]:.17g}", row)
+    times = stamps if has_times else None
+    users = users.copy()
+    for frame in follow_bodies(found, lambda row: points[row], times, progress):
+        for user, row in frame.items():
+            users[row] = float(user)
+    return users
+
+
 def open_nuitrack_json(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> Bodies[JointRecording]:
@@ -153,14 +185,16 @@ def open_nuitrack_json(
         frames.append(_read_frame(value, done, f"{path}, frame {len(frames) + 1}"))
         progress(done, "Reading")
 
-    def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
+    def read(
+        frames: list[BodiesFrame], body: str, times: Array | None, progress: Progress
+    ) -> JointRecording:
         positions, confidence = stack_body(body, frames)
         names = list(NUITRACK.values())
         return _recording(
             path, names, positions, confidence, times, scale, MILLIMETER, progress
         )
 
-    return open_frames(path, frames, MICROSECOND, read)
+    return open_frames(path, frames, MICROSECOND, read, progress)
 
 
 def _read_frame(value: Mapping[str, Any], done: float, location: str) -> BodiesFrame:

@@ -24,6 +24,7 @@ from ..conventions import (
     split_subjects,
     step_between,
 )
+from ..identities import follow_columns
 from ..point_bodies import (
     Coordinate,
     TimeCells,
@@ -146,6 +147,7 @@ def open_point_table(
         times, rate = _numbered_times(rows, columns, header.rate, progress)
     unit = columns.unit if scale is None else scale
     people = _people(columns.names, points, progress) if np.isfinite(points).any() else []
+    points = follow_columns(people, points, times, progress)
     seconds = len(points) / (rate or DEFAULT_FRAME_RATE)
     duration = seconds if times is None else recorded_seconds(times)
     listed = tuple(

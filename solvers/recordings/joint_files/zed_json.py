@@ -82,14 +82,14 @@ def open_zed_json(
         frames.append(_read_frame(key, value, done, f"{path}, frame {len(frames) + 1}"))
         progress(done, "Reading")
     return open_frames(
-        path, frames, NANOSECOND, lambda *found: _recording(path, frames, scale, *found)
+        path, frames, NANOSECOND, lambda *found: _recording(path, scale, *found), progress
     )
 
 
 def _recording(
     path: Path | str,
-    frames: list[BodiesFrame],
     scale: float | None,
+    frames: list[BodiesFrame],
     body: str,
     times: Array | None,
     progress: Progress,

@@ -19,6 +19,7 @@ from ...conventions import (
     path_from_camera,
     recorded_seconds,
 )
+from ...identities import follow_bodies
 from ...point_bodies import as_fractions
 
 
@@ -67,9 +68,10 @@ def open_frames(
     path: Path | str,
     frames: list[BodiesFrame],
     second: float,
-    read: Callable[[str, Array | None, Progress], JointRecording],
+    read: Callable[[list[BodiesFrame], str, Array | None, Progress], JointRecording],
+    progress: Progress,
 ) -> Bodies[JointRecording]:
-    """List the bodies of the frames of a file.
+    """List the bodies of the frames of a file, whose identities may be swapped.
 
     Parameters
     ----------
@@ -78,8 +80,9 @@ def open_frames(
     second : float
         Seconds per unit of the time stamps.
     read : callable
-        Returns the recording of a body, by its identity and the times in seconds, which are
-        None where the file has none.
+        Returns the recording of a body, by the frames, its identity and the times in seconds,
+        which are None where the file has none.
+    progress : Progress
 
     Raises
     ------
@@ -92,10 +95,38 @@ def open_frames(
     stamps = second * np.array([frame.time for frame in frames])
     times = None if np.isnan(stamps).all() else stamps
     duration = len(frames) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(stamps)
+    found = follow_bodies(found, _points_by_name(found), times, progress)
+    followed = [
+        frame._replace(bodies=bodies) for frame, bodies in zip(frames, found, strict=True)
+    ]
     identities, people = bodies_of_frames(found, duration)
     return Bodies(
-        str(path), people, lambda index, progress: read(identities[index], times, progress)
+        str(path),
+        people,
+        lambda index, progress: read(followed, identities[index], times, progress),
     )
+
+
+def _points_by_name(frames: list[dict[str, BodyJoints]]) -> Callable[[BodyJoints], Array]:
+    """Return a function that gives each joint of a body the same index in all frames.
+
+    Bodies with ever other names have no points.
+    """
+    found = [joints.names for frame in frames for joints in frame.values()]
+    names = dict.fromkeys(name for each in dict.fromkeys(found) for name in each)
+    columns = {name: column for column, name in enumerate(names)}
+    has_same_names = len(columns) <= 2 * max(map(len, found), default=0)
+
+    def points_of(joints: BodyJoints) -> Array:
+        if not joints.names:
+            return joints.positions
+        if not has_same_names:
+            return joints.positions[:0]
+        points = np.full((len(columns), 3), np.nan)
+        points[[columns[name] for name in joints.names]] = joints.positions
+        return points
+
+    return points_of
 
 
 def checked_objects(value: Any, location: str) -> list[Any]:

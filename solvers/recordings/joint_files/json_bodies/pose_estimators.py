@@ -118,13 +118,15 @@ def open_frames_json(
     if second is None:
         second = second_of_times(np.array([frame.time for frame in frames]), progress)
 
-    def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
+    def read(
+        frames: list[BodiesFrame], body: str, times: Array | None, progress: Progress
+    ) -> JointRecording:
         names, placed = in_columns(path, body, frames)
         return recording_of_body(
             path, names or listed_names, body, placed, times, rate, scale, progress
         )
 
-    return open_frames(path, frames, second, read)
+    return open_frames(path, frames, second, read, progress)
 
 
 def _refuse_rotations(path: Path | str) -> None:
@@ -245,8 +247,8 @@ def _numbers(rows: list[_Row]) -> list[float]:
 
 def _remark_of_unidentified(n_several: int) -> Remark:
     return Remark(
-        f"{n_several} frames have more than one person without an identity; they may be"
-        " swapped. Use a tracker that identifies people"
+        f"{n_several} frames have more than one person without an identity; they are"
+        " followed by their positions. Check the frames with people close to each other"
     )
 
 

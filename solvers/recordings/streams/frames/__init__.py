@@ -1,5 +1,6 @@
 """Frames of a stream, of joints or of bones, and the order that they come in."""
 
+from ...identities import MAX_PEOPLE
 from .joint_frames import (
     FORMAT,
     MAX_JOINTS,
@@ -8,7 +9,6 @@ from .joint_frames import (
     encode_frame,
     frames_from_recording,
 )
-from .people import MAX_PEOPLE
 from .pose_frames import PoseFrame, joints_from_pose, measured_rate, motion_from_poses
 from .stream_reader import (
     FrameDecoder,

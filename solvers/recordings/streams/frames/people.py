@@ -5,25 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...identities import (
+    BODY_TIMEOUT_S,
+    MAX_PEOPLE,
+    MAX_RETURN_M,
+    MIN_SWITCH_M,
+    continues_other_path,
+)
 from .joint_frames import LiveFrame
 from .pose_frames import PoseFrame
 
-MAX_PEOPLE = 16
-"""Number of people that are followed. It bounds time and memory."""
-BODY_TIMEOUT_S = 1.0
-"""Duration in seconds without a person after which another one may have the number."""
 NEW_STREAM_S = 2.0
 """Minimum backward jump in time that starts a new stream, seconds. It guards packets that
 arrive in another order, which are a fraction of a second late."""
-MIN_SWITCH_M = 0.25
-"""Meters: a person who jumps as far to where another one was has the other's identity. It
-guards people whose positions differ by less than sensors err."""
-SWITCH_RATIO = 0.5
-"""Distance to the other's position over that to the own one, below which identities were
-switched. It guards people who pass each other."""
-MAX_RETURN_M = 0.5
-"""Meters from the last position within which a new identity is that of someone who was just
-missing. It guards people who come in where another one went."""
 MIN_ABSENCE_S = 0.1
 """Seconds after which someone counts as missing. It guards against frames that come in another
 order; three frames at 30 Hz."""
@@ -102,10 +96,8 @@ class StreamPeople:
         if jump < MIN_SWITCH_M:
             return person
         for other_identity, other in self._by_identity.items():
-            if (
-                other is not person
-                and math.dist(position, other.position) < SWITCH_RATIO * jump
-            ):
+            distance = math.dist(position, other.position)
+            if other is not person and continues_other_path(distance, jump):
                 self._by_identity[identity] = other
                 self._by_identity[other_identity] = person
                 return other

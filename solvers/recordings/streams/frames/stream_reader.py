@@ -11,8 +11,9 @@ from ....errors import InvalidFileError, MocapAssistError
 from ....motion import JointRecording
 from ....progress import unwatched
 from ...conventions import JointSamples, joint_recording
+from ...identities import BODY_TIMEOUT_S
 from .joint_frames import LiveFrame, decode_frame
-from .people import BODY_TIMEOUT_S, NEW_STREAM_S, Person, StreamPeople
+from .people import NEW_STREAM_S, Person, StreamPeople
 from .pose_frames import PoseFrame
 
 N_RESTART_FRAMES = 5

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.recordings.streams import LiveFrame, StreamReader, encode_frame
-from solvers.recordings.streams.frames.people import MAX_PEOPLE, StreamPeople
+from solvers.recordings.streams import MAX_PEOPLE, LiveFrame, StreamReader, encode_frame
+from solvers.recordings.streams.frames.people import StreamPeople
 
 NAMES, RATE = ("Head", "HipCenter"), 30.0
 
