@@ -189,7 +189,9 @@ class _Following:
             return self._wait()
         image, _, depth = waiting = self._waiting.popleft()
         if self._take is None:
-            self._take = FollowedTake(self._source, self._detector, self._wanted)
+            self._take = FollowedTake(
+                self._source, self._detector, self._wanted, now=self._clock.now
+            )
         if depth is None and (full := self._source.read(image)) is not None:
             depth = self._take.coarse(full)
         if depth is None:
@@ -223,9 +225,10 @@ class _Following:
             return
         n_late, begins_again = 0, False
         while self._waiting and now - self._waiting[0].came_at > max_delay:
-            begins_again |= self._waiting.popleft().came_at <= self._measured_at
+            late = self._waiting.popleft()
+            begins_again |= late.came_at <= self._measured_at
             n_late += 1
-            take.skip()
+            take.skip(late.image)
         if begins_again:
             self._n_while_measuring += n_late + len(self._delays)
             self._delays.clear()

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from time import monotonic
 from typing import NamedTuple
 
 import numpy as np
@@ -65,13 +66,21 @@ class FollowedTake:
         Its first image is there.
     detector : PoseDetector
     settings : TakeSettings
+    now : callable
+        Returns seconds.
     """
 
     def __init__(
-        self, source: GrowingDepth, detector: PoseDetector, settings: TakeSettings
+        self,
+        source: GrowingDepth,
+        detector: PoseDetector,
+        settings: TakeSettings,
+        *,
+        now: Callable[[], float] = monotonic,
     ) -> None:
         assert source.camera is not None
         self._source, self._settings, self._detector = source, settings, detector
+        self._now = now
         self._step = subsampling_step(source.camera, DEFAULT_TRACKER.image_width)
         self._camera = source.camera.every(self._step)
         self._first: list[WaitingImage] = []
@@ -133,8 +142,9 @@ class FollowedTake:
         )  # fmt: skip
         first, self._first = self._first, []
         self._started = _StartedFollowing(
-            actor, new_tracker, positions, first[0].image.position, self._n_forgotten
-        )
+            actor, new_tracker, positions, first[0].image.position, self._n_forgotten,
+            self._now,
+        )  # fmt: skip
         return first
 
     def _forget(self, first: int, stop: int) -> None:
@@ -149,10 +159,10 @@ class FollowedTake:
         assert self._started is not None
         return self._started.add(image, depth)
 
-    def skip(self) -> None:
-        """Leave out an image; without numbers and times, the later ones keep their time."""
+    def skip(self, image: NewImage) -> None:
+        """Leave out the next image; the later ones keep their time."""
         assert self._started is not None
-        self._started.skip()
+        self._started.number(image)
 
     def begin_again(self) -> None:
         """Forget the motion so far: it begins with the next image."""
@@ -182,18 +192,23 @@ class _StartedFollowing:
         positions: ImagePositions,
         first_position: float,
         n_before: int,
+        now: Callable[[], float],
     ) -> None:
         self.actor, self.frame_rate = actor, positions.frame_rate
         self._new_tracker = new_tracker
         self.tracker, self._causal_actor = new_tracker(), CausalActor(actor)
         self._seconds = positions.seconds_per_unit
         start = first_position * self._seconds - 1.0 / self.frame_rate
-        self._slots = TimeSlots(start, self.frame_rate)
+        self._slots = TimeSlots(start, self.frame_rate, now=now)
         self._n_before, self._n_images = n_before, 0
         self._previews: list[PosePreview] = []
 
-    def skip(self) -> None:
+    def number(self, image: NewImage) -> int | None:
+        """Return the number of the image's frame; None if another image has its time."""
         self._n_images += 1
+        if not self._seconds:
+            return self._n_images
+        return self._slots.next(image.position * self._seconds)
 
     def begin_again(self) -> None:
         self.tracker = self._new_tracker(waits=False)
@@ -201,11 +216,8 @@ class _StartedFollowing:
         self._previews.clear()
 
     def add(self, image: NewImage, depth: DepthImage) -> PosePreview | None:
-        self._n_images += 1
-        slot: int | None = self._n_images
-        if self._seconds:
-            slot = self._slots.next(image.position * self._seconds)
-        if slot is None:  # Another image has its time.
+        slot = self.number(image)
+        if slot is None:
             return None
         preview = self.tracker.update(
             self._n_before + slot - 1, self._causal_actor.cut_out(depth)

@@ -130,6 +130,23 @@ def test_images_that_wait_too_long_are_dropped_and_their_poses_interpolated(
     assert np.isfinite(found.captured.poses).all()
 
 
+@pytest.mark.parametrize("seconds_per_unit", [1.0 / 30.0, 0.0])
+def test_many_dropped_images_keep_the_time_of_the_later_ones(images, seconds_per_unit):
+    """200 images, more than six seconds, come at once after the calibration."""
+    n_images, n_dropped = 15 + 200 + N_FRAMES, 200
+    source = Written((images * 10)[:n_images], per_poll=[*[1] * 15, n_dropped, 1])
+    source.seconds_per_unit = seconds_per_unit
+    elapsed = []
+    clock = Clock(lambda: 0.2 * len(elapsed), lambda: 0.0, elapsed.append)
+
+    found = follow(
+        source, settings=replace(FAST, max_delay=0.1), clock=clock, on_pose=elapsed.append
+    )
+
+    assert 15 + n_dropped <= found.first <= 15 + n_dropped + 2
+    assert found.first + found.motion.n_frames == n_images
+
+
 def test_images_that_come_in_bursts_are_not_dropped(images, followed):
     """As those of k4arecorder: all of a second at once, and the next ones after these."""
     source = Written(images, per_poll=[8, *[0] * 20, 8, *[0] * 30, 8])
