@@ -187,24 +187,32 @@ class _Following:
             self._waiting.extend(WaitingImage(each, self._last_image) for each in new)
         if not self._waiting:
             return self._wait()
-        image, _, depth = waiting = self._waiting.popleft()
+        waiting = self._waiting.popleft()
         if self._take is None:
             self._take = FollowedTake(
                 self._source, self._detector, self._wanted, now=self._clock.now
             )
-        if depth is None and (full := self._source.read(image)) is not None:
-            depth = self._take.coarse(full)
-        if depth is None:
-            return True
+        waiting = self._read(self._take, waiting)
         if self._take.is_measured:
-            self._track(self._take, image, depth)
-        elif (fraction := self._take.collect(waiting._replace(depth=depth))) >= 1.0:
+            self._track(self._take, waiting)
+        elif (fraction := self._take.collect(waiting)) >= 1.0:
             self._measure(self._take)
         else:
             self._progress(fraction, "Waiting until the actor can be measured")
         return not self._is_ended()
 
-    def _track(self, take: FollowedTake, image: NewImage, depth: DepthImage) -> None:
+    def _read(self, take: FollowedTake, waiting: WaitingImage) -> WaitingImage:
+        """Return an image with its depth, or left out if it is damaged."""
+        if waiting.depth is not None or waiting.is_left_out:
+            return waiting
+        full = self._source.read(waiting.image)
+        return waiting.left_out() if full is None else waiting._replace(depth=take.coarse(full))
+
+    def _track(self, take: FollowedTake, waiting: WaitingImage) -> None:
+        image, _, depth, _ = waiting
+        if depth is None:
+            take.skip(image)
+            return
         pose = take.add(image, depth)
         self._delays.append(self._clock.written() - image.written)
         if pose is not None:

@@ -54,7 +54,13 @@ class WaitingImage(NamedTuple):
     came_at: float
     """Time at which it was found, seconds."""
     depth: DepthImage | None = None
-    """Coarse; None if it was not read yet."""
+    """Coarse; None if it was not read yet, or is not to be tracked."""
+    is_left_out: bool = False
+    """Whether it only has its time: it is damaged, or nobody is visible in it."""
+
+    def left_out(self) -> "WaitingImage":
+        """Return the image without its depth."""
+        return self._replace(depth=None, is_left_out=True)
 
 
 class FollowedTake:
@@ -84,7 +90,6 @@ class FollowedTake:
         self._step = subsampling_step(source.camera, DEFAULT_TRACKER.image_width)
         self._camera = source.camera.every(self._step)
         self._first: list[WaitingImage] = []
-        self._n_forgotten = 0
         self._started: _StartedFollowing | None = None
         self.fault = ""
         """Why the actor could not be measured yet."""
@@ -118,23 +123,24 @@ class FollowedTake:
         """Keep one of the first images, coarse; return which fraction of them is there."""
         self._first.append(image)
         wanted = self._settings.calibration_s * self._positions().frame_rate
-        return len(self._first) / (max(round(wanted), 2) + self._settings.empty.stop)
+        n_wanted = max(round(wanted), 2) + self._settings.empty.stop
+        return len(self._with_depth()) / n_wanted
 
     def measure(self, progress: Progress = unwatched) -> list[WaitingImage]:
         """Return the first images, which are to be tracked, once the actor is measured in them.
 
         Without an actor none is returned, and more are needed; half of them are forgotten.
         """
-        given, positions = self._settings, self._positions()
+        given, positions, there = self._settings, self._positions(), self._with_depth()
         try:
             actor, body = measure_followed(
-                [each.depth for each in self._first if each.depth is not None],
-                self._camera, positions.frame_rate, given.body, empty=given.empty,
+                [each for _, each in there], self._camera, positions.frame_rate, given.body,
+                empty=[index for index, (n, _) in enumerate(there) if n in given.empty],
                 foreground=given.foreground, refine=given.capture.refine, progress=progress,
             )  # fmt: skip
         except InvalidMotionError as error:
             self.fault = str(error)
-            self._forget(given.empty.stop, max(len(self._first) // 2, 1))
+            self._forget([n for n, _ in there if n >= given.empty.stop])
             return []
         new_tracker = partial(
             LiveTracker, self._camera, positions.frame_rate, body, self._detector,
@@ -142,17 +148,24 @@ class FollowedTake:
         )  # fmt: skip
         first, self._first = self._first, []
         self._started = _StartedFollowing(
-            actor, new_tracker, positions, first[0].image.position, self._n_forgotten,
-            self._now,
-        )  # fmt: skip
+            actor, new_tracker, positions, first[0].image.position, self._now
+        )
         return first
 
-    def _forget(self, first: int, stop: int) -> None:
-        self._n_forgotten += len(self._first[first:stop])
-        del self._first[first:stop]
+    def _with_depth(self) -> list[tuple[int, DepthImage]]:
+        """Return the images to measure the actor in, with their numbers in the recording."""
+        return [
+            (n, each.depth) for n, each in enumerate(self._first) if each.depth is not None
+        ]
+
+    def _forget(self, numbers: list[int]) -> None:
+        """Forget the first half of these images; they keep their time."""
+        for number in numbers[: max(len(numbers) // 2, 1)]:
+            self._first[number] = self._first[number].left_out()
 
     def _positions(self) -> ImagePositions:
-        return self._source.positions([each.image.position for each in self._first])
+        there = [each for each in self._first if not each.is_left_out]
+        return self._source.positions([each.image.position for each in there])
 
     def add(self, image: NewImage, depth: DepthImage) -> PosePreview | None:
         """Track the next image, coarse; return None before the first pose is detected."""
@@ -191,7 +204,6 @@ class _StartedFollowing:
         new_tracker: Callable[..., LiveTracker],
         positions: ImagePositions,
         first_position: float,
-        n_before: int,
         now: Callable[[], float],
     ) -> None:
         self.actor, self.frame_rate = actor, positions.frame_rate
@@ -200,7 +212,7 @@ class _StartedFollowing:
         self._seconds = positions.seconds_per_unit
         start = first_position * self._seconds - 1.0 / self.frame_rate
         self._slots = TimeSlots(start, self.frame_rate, now=now)
-        self._n_before, self._n_images = n_before, 0
+        self._n_images = 0
         self._previews: list[PosePreview] = []
 
     def number(self, image: NewImage) -> int | None:
@@ -219,9 +231,7 @@ class _StartedFollowing:
         slot = self.number(image)
         if slot is None:
             return None
-        preview = self.tracker.update(
-            self._n_before + slot - 1, self._causal_actor.cut_out(depth)
-        )
+        preview = self.tracker.update(slot - 1, self._causal_actor.cut_out(depth))
         if preview is not None:
             self._previews.append(preview)
         return preview

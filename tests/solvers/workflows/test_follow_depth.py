@@ -27,7 +27,9 @@ from solvers.workflows.following import (
     DetectorProcess,
     FollowSettings,
     follow_depth,
+    followed_take,
 )
+from solvers.workflows.following.measure_followed import measure_followed
 
 BODY = default_body()
 FOREST = load_pixel_forest()
@@ -189,10 +191,14 @@ def test_gaps_in_numbering_stay_in_time_and_jumps_of_the_clock_do_not(images, fo
     assert lengths == [N_FRAMES + 5, N_FRAMES, N_FRAMES]
 
 
-def test_damaged_images_are_gaps(images):
+@pytest.mark.parametrize("seconds_per_unit", [1.0 / 30.0, 0.0])
+def test_damaged_images_are_gaps(images, seconds_per_unit):
     damaged = [None if number in {3, 19, 20} else each for number, each in enumerate(images)]
 
-    found = follow(Written(damaged))
+    source = Written(damaged)
+    source.seconds_per_unit = seconds_per_unit
+
+    found = follow(source)
 
     assert found.motion.n_frames == N_FRAMES
     is_tracked = found.captured.joints.confidence.any(axis=1)
@@ -215,6 +221,42 @@ def test_actor_who_comes_later_is_measured_then(images):
 
     assert found.first + found.motion.n_frames == 30 + N_FRAMES
     assert 23 <= found.first <= 30
+
+
+@pytest.mark.parametrize(("n_empty", "seconds_per_unit"), [(5, 1.0 / 30.0), (30, 0.0)])
+def test_actor_who_comes_late_after_the_empty_room_keeps_his_time(
+    images, monkeypatch, n_empty, seconds_per_unit
+):
+    """Images are forgotten after those of the empty room, which are needed again."""
+    nothing = np.zeros_like(images[0])
+    source = Written([*[nothing] * 60, *images])
+    source.seconds_per_unit = seconds_per_unit
+    n_measured = []
+
+    def measure(given, *words, empty=(), **options):
+        assert list(empty) == list(range(n_empty))
+        n_measured.append(len(given))
+        return measure_followed(given, *words, empty=empty, **options)
+
+    monkeypatch.setattr(followed_take, "measure_followed", measure)
+    found = follow(source, empty=range(n_empty))
+
+    assert 53 <= found.first <= 60
+    assert found.first + found.motion.n_frames == 60 + N_FRAMES
+    assert max(n_measured) == n_empty + 15 and len(n_measured) < 10
+
+
+def test_damaged_images_end_with_the_recording_too(images):
+    read = []
+
+    class Damaged(Written):
+        def read(self, image):
+            read.append(image)
+            return None if len(read) > 18 else super().read(image)
+
+    found = follow(Damaged(images * 5), is_ended=lambda: len(read) >= 30)
+
+    assert len(read) == 30 and found.motion.n_frames == 18
 
 
 @pytest.mark.parametrize(
