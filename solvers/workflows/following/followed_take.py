@@ -208,7 +208,7 @@ class _StartedFollowing:
     ) -> None:
         self.actor, self.frame_rate = actor, positions.frame_rate
         self._new_tracker = new_tracker
-        self.tracker, self._causal_actor = new_tracker(), CausalActor(actor)
+        self.tracker, self._causal_actor = new_tracker(), CausalActor(actor, from_start=True)
         self._seconds = positions.seconds_per_unit
         start = first_position * self._seconds - 1.0 / self.frame_rate
         self._slots = TimeSlots(start, self.frame_rate, now=now)

@@ -179,6 +179,17 @@ def test_short_recording_is_tracked_too(images, followed):
     assert_array_equal(found.captured.poses, followed.captured.poses)
 
 
+def test_actor_who_crosses_the_room_is_tracked_from_the_start():
+    poses = waving(N_FRAMES)
+    poses[:, 0] = np.linspace(-1.2, 1.2, N_FRAMES)
+    take = recorded(poses)
+    moving = [take.frame(frame) for frame in range(N_FRAMES)]
+
+    found = follow(Written(moving), settings=replace(FAST, calibration=20.0))
+
+    assert (found.first, found.motion.n_frames) == (0, N_FRAMES)
+
+
 def test_gaps_in_numbering_stay_in_time_and_jumps_of_the_clock_do_not(images, followed):
     numbers = np.arange(N_FRAMES)
     gap, ahead, back = (numbers.astype(float) for _ in range(3))
