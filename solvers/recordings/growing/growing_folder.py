@@ -87,7 +87,10 @@ class GrowingFolder:
         self._last_position = -np.inf
         self._scanned_at, self._folder_time = -np.inf, 0
         self.is_gone = False
-        self.issue = ""
+        self.issue = (
+            f"No depth image came. Check the folder {path} that the recorder writes to, and"
+            " that it writes 16-bit PNG files."
+        )
         self.camera: Camera | None = None
 
     def poll(self) -> list[NewImage]:

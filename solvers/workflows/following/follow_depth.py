@@ -58,7 +58,7 @@ class FollowedMotion:
     first : int
         Frame of the recording at which the motion begins.
     n_dropped : int
-        Number of images that were dropped, as newer ones waited.
+        Number of images that were dropped since then, as newer ones waited.
     delays : shape (n_tracked,), seconds
         From the time of each image's file to its pose.
     detection_delays : tuple of int
@@ -176,7 +176,7 @@ class _Following:
         self._last_image = self._clock.now()
         self._measured_at: float | None = None
         """When images came for the first time after the measurement."""
-        self._n_while_measuring, self._n_dropped = 0, 0
+        self._n_dropped = 0
         self._delays: list[float] = []
 
     def step(self) -> bool:
@@ -214,8 +214,8 @@ class _Following:
             take.skip(image)
             return
         pose = take.add(image, depth)
-        self._delays.append(self._clock.written() - image.written)
         if pose is not None:
+            self._delays.append(self._clock.written() - image.written)
             self._on_pose(pose)
         count = len(self._delays)
         self._progress(count % COUNT_CYCLE / COUNT_CYCLE, f"Tracking image {count}")
@@ -238,11 +238,9 @@ class _Following:
             n_late += 1
             take.skip(late.image)
         if begins_again:
-            self._n_while_measuring += n_late + len(self._delays)
             self._delays.clear()
             take.begin_again()
-        else:
-            self._n_dropped += n_late
+        self._n_dropped = self._n_dropped + n_late if self._delays else 0
 
     def _wait(self) -> bool:
         """Wait a moment for an image; return False once none is expected any more."""
@@ -277,7 +275,7 @@ class _Following:
         fitted = self._wanted.body is None
         remarks = (
             *capture_remarks(take.actor, captured, fitted=fitted, live=True),
-            *self._dropped(),
+            *self._dropped(first, captured.motion.frame_rate),
             *self._source.remarks(),
             *planted.remarks,
         )
@@ -286,21 +284,16 @@ class _Following:
             np.array(self._delays), take.detection_delays, remarks,
         )  # fmt: skip
 
-    def _dropped(self) -> Iterator[str]:
+    def _dropped(self, first: int, frame_rate: float) -> Iterator[str]:
         if self._detector.issue:
             yield self._detector.issue
-        if self._n_while_measuring:
+        if first:
             yield (
-                f"The first {self._n_while_measuring} images came before the actor was measured"
-                " and are not in the motion."
+                f"The motion begins with frame {first} ({first / frame_rate:.1f} s) of the"
+                " recording."
             )
         if self._n_dropped:
-            yield f"{self._n_dropped} images were dropped, as newer ones waited."
+            yield f"{self._n_dropped} later images were dropped, as newer ones waited."
 
     def _why_no_image(self) -> str:
-        if self._source.issue or self._source.is_gone:
-            return self._source.issue or self._source.remarks()[-1]
-        return (
-            "No depth image came. Check the folder that the recorder writes to, and that it"
-            " writes 16-bit PNG files."
-        )
+        return self._source.remarks()[-1] if self._source.is_gone else self._source.issue

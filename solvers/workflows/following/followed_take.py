@@ -20,7 +20,9 @@ from ...recordings.growing import GrowingDepth, ImagePositions, NewImage
 from ..live import TimeSlots
 from .measure_followed import measure_followed
 
-TOO_EARLY = "It ended before the actor was measured."
+TOO_EARLY = (
+    "The recording ended before the actor was measured. Capture it without --follow."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +190,7 @@ class FollowedTake:
         Raises
         ------
         InvalidMotionError
-            No pose was tracked.
+            The actor was not measured, or no pose was tracked.
         """
         if self._started is None:
             raise InvalidMotionError(self.fault or TOO_EARLY)
@@ -214,6 +216,7 @@ class _StartedFollowing:
         self._slots = TimeSlots(start, self.frame_rate, now=now)
         self._n_images = 0
         self._previews: list[PosePreview] = []
+        self._is_tracking = True
 
     def number(self, image: NewImage) -> int | None:
         """Return the number of the image's frame; None if another image has its time."""
@@ -226,17 +229,21 @@ class _StartedFollowing:
         self.tracker = self._new_tracker(waits=False)
         self._causal_actor = CausalActor(self.actor)
         self._previews.clear()
+        self._is_tracking = False
 
     def add(self, image: NewImage, depth: DepthImage) -> PosePreview | None:
         slot = self.number(image)
         if slot is None:
             return None
+        self._is_tracking = True
         preview = self.tracker.update(slot - 1, self._causal_actor.cut_out(depth))
         if preview is not None:
             self._previews.append(preview)
         return preview
 
     def finish(self, settings: CaptureSettings) -> tuple[int, Capture]:
+        if not self._is_tracking:
+            raise InvalidMotionError(TOO_EARLY)
         return assemble_followed(
             self._previews, self.frame_rate, restarts=self.tracker.restarts,
             floor=self.actor.floor, settings=settings,

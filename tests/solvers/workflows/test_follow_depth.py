@@ -42,7 +42,7 @@ class Written:
     """Images that a recorder has written by each poll."""
 
     def __init__(self, images, positions=None, per_poll=(1,)):
-        self.camera, self.is_gone, self.issue = CAMERA, False, ""
+        self.camera, self.is_gone, self.issue = CAMERA, False, "No depth image came."
         self._images, self._per_poll = images, [*per_poll]
         self.seconds_per_unit = 1.0 / 30.0
         positions = range(len(images)) if positions is None else positions
@@ -123,8 +123,11 @@ def test_images_that_wait_too_long_are_dropped_and_their_poses_interpolated(
 
     assert 15 < found.first <= 15 + 8 + 6
     assert found.first + found.motion.n_frames == 3 * N_FRAMES
-    assert f"The first {found.first} images came before" in found.remarks[-2]
-    assert found.remarks[-1].startswith(f"{found.n_dropped} images were dropped")
+    assert found.remarks[-2] == (
+        f"The motion begins with frame {found.first} ({found.first / 30.0:.1f} s) of the"
+        " recording."
+    )
+    assert found.remarks[-1].startswith(f"{found.n_dropped} later images were dropped")
     n_left = found.motion.n_frames - found.n_dropped
     assert len(found.delays) == n_left < 0.8 * found.motion.n_frames
     is_tracked = found.captured.joints.confidence.any(axis=1)
@@ -146,6 +149,7 @@ def test_many_dropped_images_keep_the_time_of_the_later_ones(images, seconds_per
     )
 
     assert 15 + n_dropped <= found.first <= 15 + n_dropped + 2
+    assert found.remarks[-1].startswith(f"The motion begins with frame {found.first} (7.")
     assert found.first + found.motion.n_frames == n_images
 
 
@@ -273,14 +277,28 @@ def test_damaged_images_end_with_the_recording_too(images):
 @pytest.mark.parametrize(
     ("n_images", "is_ended", "words"),
     [
-        (0, False, "No depth image came. Check the folder"),
+        (0, False, "No depth image came"),
         (0, True, "No depth image came"),
-        (3, True, "It ended before the actor was measured"),
+        (3, True, "The recording ended before the actor was measured. Capture it without"),
     ],
 )
 def test_nothing_to_track_is_one_sentence(images, n_images, is_ended, words):
     with pytest.raises(InvalidMotionError, match=words):
         follow(Written(images[:n_images]), is_ended=lambda: is_ended)
+
+
+def test_recording_that_ended_during_the_measurement_is_one_sentence(images):
+    """Those that came during it are dropped for newer ones, which are damaged."""
+    source = Written([*images, *[None] * 3], per_poll=[*[1] * 15, 9, *[0] * 15, 1])
+    elapsed = []
+    clock = Clock(lambda: 0.2 * len(elapsed), lambda: 0.0, elapsed.append)
+    settings = replace(FAST, max_delay=0.1, max_silence=9.0)
+
+    def show(fraction, message):
+        elapsed.append(message)
+
+    with pytest.raises(InvalidMotionError, match="The recording ended before the actor was"):
+        follow(source, settings=settings, clock=clock, progress=show)
 
 
 def test_images_without_a_person_are_one_sentence(images):
