@@ -31,9 +31,7 @@ class CausalActor:
         assert isinstance(images, ActorImages) and images.trajectory is not None
         self._images, self._camera = images, actor.recording.camera
         self._frame_rate = actor.recording.frame_rate
-        self._position: Array | None = images.trajectory[actor.visible][
-            0 if from_start else -1
-        ]
+        self._position: Array | None = images.trajectory[actor.visible][0 if from_start else -1]
         self._n_missing = 0
 
     def cut_out(self, depth: DepthImage) -> DepthImage:

@@ -3,14 +3,12 @@
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from time import monotonic, sleep, time
-from typing import NamedTuple
 
 import numpy as np
 
 from ...arrays import Array
 from ...denoising import Planted, PlantSettings
-from ...depth_scene import DepthImage, ForegroundSettings
+from ...depth_scene import ForegroundSettings
 from ...depth_tracking.body import BodyModel, MotionPrior, load_motion_prior
 from ...depth_tracking.capturing import Capture, CaptureMethod, CaptureSettings
 from ...depth_tracking.following import PoseDetector
@@ -18,9 +16,10 @@ from ...depth_tracking.tracking import PoseCallback, ignore_pose
 from ...errors import InvalidMotionError, InvalidSettingError
 from ...motion import Motion
 from ...progress import Progress, unwatched
-from ...recordings.growing import GrowingDepth, NewImage
+from ...recordings.growing import GrowingDepth
 from ..depth_capture import capture_remarks
 from ..planting import plant_feet_if_possible
+from .clock import SYSTEM_CLOCK, Clock
 from .follow_settings import FollowSettings
 from .followed_take import TOO_EARLY, FollowedTake, TakeSettings, WaitingImage
 
@@ -30,19 +29,6 @@ COUNT_CYCLE = 100
 """Number of images after which the progress begins again: how many come is unknown."""
 FOLLOW_SETTINGS, CAPTURE_SETTINGS = FollowSettings(), CaptureSettings()
 FOREGROUND_SETTINGS = ForegroundSettings()
-
-
-class Clock(NamedTuple):
-    """The time; a benchmark has one of its own."""
-
-    now: Callable[[], float]
-    """Returns seconds that always rise."""
-    written: Callable[[], float]
-    """Returns seconds as file systems count them."""
-    sleep: Callable[[float], None]
-
-
-SYSTEM_CLOCK = Clock(monotonic, time, sleep)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +46,8 @@ class FollowedMotion:
     n_dropped : int
         Number of images that were dropped since then, as newer ones waited.
     delays : shape (n_tracked,), seconds
-        From the time of each image's file to its pose.
+        From the time of each image's file to its pose. Files that were there before following
+        began count from then.
     detection_delays : tuple of int
         Number of frames from each request of a detection to its pose.
     remarks : tuple of str
@@ -173,7 +160,7 @@ class _Following:
         self._is_ended, self._progress, self._clock = is_ended, progress, clock
         self._take: FollowedTake | None = None
         self._waiting: deque[WaitingImage] = deque()
-        self._last_image = self._clock.now()
+        self._last_image, self._began_at = self._clock.now(), self._clock.written()
         self._measured_at: float | None = None
         """When images came for the first time after the measurement."""
         self._n_dropped = 0
@@ -215,7 +202,8 @@ class _Following:
             return
         pose = take.add(image, depth)
         if pose is not None:
-            self._delays.append(self._clock.written() - image.written)
+            written = max(image.written, self._began_at)
+            self._delays.append(self._clock.written() - written)
             self._on_pose(pose)
         count = len(self._delays)
         self._progress(count % COUNT_CYCLE / COUNT_CYCLE, f"Tracking image {count}")

@@ -20,9 +20,7 @@ from ...recordings.growing import GrowingDepth, ImagePositions, NewImage
 from ..live import TimeSlots
 from .measure_followed import measure_followed
 
-TOO_EARLY = (
-    "The recording ended before the actor was measured. Capture it without --follow."
-)
+TOO_EARLY = "The recording ended before the actor was measured. Capture it without --follow."
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,9 +154,7 @@ class FollowedTake:
 
     def _with_depth(self) -> list[tuple[int, DepthImage]]:
         """Return the images to measure the actor in, with their numbers in the recording."""
-        return [
-            (n, each.depth) for n, each in enumerate(self._first) if each.depth is not None
-        ]
+        return [(n, each.depth) for n, each in enumerate(self._first) if each.depth is not None]
 
     def _forget(self, numbers: list[int]) -> None:
         """Forget the first half of these images; they keep their time."""
