@@ -56,7 +56,7 @@ class WaitingImage(NamedTuple):
     depth: DepthImage | None = None
     """Coarse; None if it was not read yet, or is not to be tracked."""
     is_left_out: bool = False
-    """Whether it only has its time: it is damaged, or nobody is visible in it."""
+    """Whether it only has its time: it is damaged, or forgotten until the actor comes."""
 
     def left_out(self) -> "WaitingImage":
         """Return the image without its depth."""
