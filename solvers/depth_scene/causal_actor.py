@@ -22,14 +22,16 @@ class CausalActor:
     ----------
     actor : Actor
         Of the first images.
+    from_start : bool
+        Whether these first images are cut out again, before those after them.
     """
 
-    def __init__(self, actor: Actor) -> None:
+    def __init__(self, actor: Actor, *, from_start: bool = False) -> None:
         images = actor.recording.read_depth
         assert isinstance(images, ActorImages) and images.trajectory is not None
         self._images, self._camera = images, actor.recording.camera
         self._frame_rate = actor.recording.frame_rate
-        self._position: Array | None = images.trajectory[actor.visible][-1]
+        self._position: Array | None = images.trajectory[actor.visible][0 if from_start else -1]
         self._n_missing = 0
 
     def cut_out(self, depth: DepthImage) -> DepthImage:

@@ -27,6 +27,7 @@ from ..depth_files import (
 from .growing_source import ImagePositions, NewImage, measure_positions
 from .image_names import ImageName, PositionKind, parse_image_name
 from .left_out_images import LeftOutImages, Why
+from .written_rate import WrittenRate
 
 MAX_HOLD_S = 0.1
 """Seconds for which complete images wait for an earlier one that is still being written. It
@@ -82,12 +83,18 @@ class GrowingFolder:
         self._path, self._settings, self._now = path, settings, now
         self._format: _Format | None = None
         self._left_out = LeftOutImages()
+        self._written_rate = WrittenRate()
+        self._assumed: ImagePositions | None = None
+        """Rate of images whose files do not state it."""
         self._seen: set[str] = set()
         self._half_written: dict[str, float] = {}
         self._last_position = -np.inf
         self._scanned_at, self._folder_time = -np.inf, 0
         self.is_gone = False
-        self.issue = ""
+        self.issue = (
+            f"No depth image came. Check the folder {path} that the recorder writes to, and"
+            " that it writes 16-bit PNG files."
+        )
         self.camera: Camera | None = None
 
     def poll(self) -> list[NewImage]:
@@ -100,7 +107,12 @@ class GrowingFolder:
             self.camera = self._format.upright(zeros).camera
         if self.is_gone or not (self._half_written or self._may_have_grown()):
             return []
-        return self._finished(self._format, self._list_new(self._format))
+        has_begun = self._last_position > -np.inf
+        finished = self._finished(self._format, self._list_new(self._format))
+        if has_begun:
+            for image in finished:
+                self._written_rate.add(image)
+        return finished
 
     def read(self, image: NewImage) -> DepthImage | None:
         """Return the depth of an image, meters; None if it is damaged or was removed."""
@@ -121,15 +133,26 @@ class GrowingFolder:
         kind = self._format.name.kind
         if kind is PositionKind.TIMES and self._settings.frame_rate:
             kind = PositionKind.ORDER
-        return measure_positions(kind, positions, rate)
+        found = measure_positions(kind, positions, rate)
+        is_known = kind is PositionKind.TIMES or self._settings.frame_rate
+        self._assumed = None if is_known else found
+        return found
 
     def remarks(self) -> tuple[str, ...]:
-        """Return a sentence on each kind of image that was left out; nothing follows."""
+        """Return a sentence on each kind of image that was left out, and on an unlikely rate.
+
+        Nothing follows.
+        """
         for name in self._half_written:
             self._left_out.add(Why.HALF_WRITTEN, name)
         self._half_written.clear()
         gone = f"{self._path} was removed while it was followed. The motion ends there."
-        return (*self._left_out.sentences(), *((gone,) if self.is_gone else ()))
+        rate = "" if self._assumed is None else self._written_rate.remark(self._assumed)
+        return (
+            *self._left_out.sentences(),
+            *((rate,) if rate else ()),
+            *((gone,) if self.is_gone else ()),
+        )
 
     def _find_format(self) -> _Format | None:
         """Return what the first complete image says; None without one."""

@@ -48,7 +48,7 @@ class GrowingMkv:
         self._left_out = LeftOutImages()
         self._was_cut_off = False
         self.is_gone = False
-        self.issue = ""
+        self.issue = f"No file {path} came. Check the file that the recorder writes to."
         self.camera: Camera | None = None
 
     def poll(self) -> list[NewImage]:
@@ -60,6 +60,11 @@ class GrowingMkv:
             return []
         except OSError as error:
             raise unreadable(self._path, error) from None
+        if not self._size:
+            self.issue = (
+                f"{self._path} contains no image yet. Check that the recorder writes depth to"
+                " it."
+            )
         if state.st_size < self._size:
             self.is_gone = self._was_cut_off = True
         if self.is_gone or state.st_size == self._size:

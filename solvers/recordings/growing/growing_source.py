@@ -46,7 +46,7 @@ class GrowingDepth(Protocol):
 
     @property
     def issue(self) -> str:
-        """Why no image was found yet; empty if there is no other reason than their absence."""
+        """Why no image was found yet, in a sentence or two."""
 
     def poll(self) -> list[NewImage]:
         """Return the images that were finished since the last call, in their order.

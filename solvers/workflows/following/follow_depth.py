@@ -3,14 +3,12 @@
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from time import monotonic, sleep, time
-from typing import NamedTuple
 
 import numpy as np
 
 from ...arrays import Array
 from ...denoising import Planted, PlantSettings
-from ...depth_scene import DepthImage, ForegroundSettings
+from ...depth_scene import ForegroundSettings
 from ...depth_tracking.body import BodyModel, MotionPrior, load_motion_prior
 from ...depth_tracking.capturing import Capture, CaptureMethod, CaptureSettings
 from ...depth_tracking.following import PoseDetector
@@ -18,9 +16,10 @@ from ...depth_tracking.tracking import PoseCallback, ignore_pose
 from ...errors import InvalidMotionError, InvalidSettingError
 from ...motion import Motion
 from ...progress import Progress, unwatched
-from ...recordings.growing import GrowingDepth, NewImage
+from ...recordings.growing import GrowingDepth
 from ..depth_capture import capture_remarks
 from ..planting import plant_feet_if_possible
+from .clock import SYSTEM_CLOCK, Clock
 from .follow_settings import FollowSettings
 from .followed_take import TOO_EARLY, FollowedTake, TakeSettings, WaitingImage
 
@@ -30,19 +29,6 @@ COUNT_CYCLE = 100
 """Number of images after which the progress begins again: how many come is unknown."""
 FOLLOW_SETTINGS, CAPTURE_SETTINGS = FollowSettings(), CaptureSettings()
 FOREGROUND_SETTINGS = ForegroundSettings()
-
-
-class Clock(NamedTuple):
-    """The time; a benchmark has one of its own."""
-
-    now: Callable[[], float]
-    """Returns seconds that always rise."""
-    written: Callable[[], float]
-    """Returns seconds as file systems count them."""
-    sleep: Callable[[float], None]
-
-
-SYSTEM_CLOCK = Clock(monotonic, time, sleep)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +44,10 @@ class FollowedMotion:
     first : int
         Frame of the recording at which the motion begins.
     n_dropped : int
-        Number of images that were dropped, as newer ones waited.
+        Number of images that were dropped since then, as newer ones waited.
     delays : shape (n_tracked,), seconds
-        From the time of each image's file to its pose.
+        From the time of each image's file to its pose. Files that were there before following
+        began count from then.
     detection_delays : tuple of int
         Number of frames from each request of a detection to its pose.
     remarks : tuple of str
@@ -173,10 +160,10 @@ class _Following:
         self._is_ended, self._progress, self._clock = is_ended, progress, clock
         self._take: FollowedTake | None = None
         self._waiting: deque[WaitingImage] = deque()
-        self._last_image = self._clock.now()
+        self._last_image, self._began_at = self._clock.now(), self._clock.written()
         self._measured_at: float | None = None
         """When images came for the first time after the measurement."""
-        self._n_while_measuring, self._n_dropped = 0, 0
+        self._n_dropped = 0
         self._delays: list[float] = []
 
     def step(self) -> bool:
@@ -187,25 +174,36 @@ class _Following:
             self._waiting.extend(WaitingImage(each, self._last_image) for each in new)
         if not self._waiting:
             return self._wait()
-        image, _, depth = waiting = self._waiting.popleft()
+        waiting = self._waiting.popleft()
         if self._take is None:
-            self._take = FollowedTake(self._source, self._detector, self._wanted)
-        if depth is None and (full := self._source.read(image)) is not None:
-            depth = self._take.coarse(full)
-        if depth is None:
-            return True
+            self._take = FollowedTake(
+                self._source, self._detector, self._wanted, now=self._clock.now
+            )
+        waiting = self._read(self._take, waiting)
         if self._take.is_measured:
-            self._track(self._take, image, depth)
-        elif (fraction := self._take.collect(waiting._replace(depth=depth))) >= 1.0:
+            self._track(self._take, waiting)
+        elif (fraction := self._take.collect(waiting)) >= 1.0:
             self._measure(self._take)
         else:
             self._progress(fraction, "Waiting until the actor can be measured")
         return not self._is_ended()
 
-    def _track(self, take: FollowedTake, image: NewImage, depth: DepthImage) -> None:
+    def _read(self, take: FollowedTake, waiting: WaitingImage) -> WaitingImage:
+        """Return an image with its depth, or left out if it is damaged."""
+        if waiting.depth is not None or waiting.is_left_out:
+            return waiting
+        full = self._source.read(waiting.image)
+        return waiting.left_out() if full is None else waiting._replace(depth=take.coarse(full))
+
+    def _track(self, take: FollowedTake, waiting: WaitingImage) -> None:
+        image, _, depth, _ = waiting
+        if depth is None:
+            take.skip(image)
+            return
         pose = take.add(image, depth)
-        self._delays.append(self._clock.written() - image.written)
         if pose is not None:
+            written = max(image.written, self._began_at)
+            self._delays.append(self._clock.written() - written)
             self._on_pose(pose)
         count = len(self._delays)
         self._progress(count % COUNT_CYCLE / COUNT_CYCLE, f"Tracking image {count}")
@@ -223,15 +221,14 @@ class _Following:
             return
         n_late, begins_again = 0, False
         while self._waiting and now - self._waiting[0].came_at > max_delay:
-            begins_again |= self._waiting.popleft().came_at <= self._measured_at
+            late = self._waiting.popleft()
+            begins_again |= late.came_at <= self._measured_at
             n_late += 1
-            take.skip()
+            take.skip(late.image)
         if begins_again:
-            self._n_while_measuring += n_late + len(self._delays)
             self._delays.clear()
             take.begin_again()
-        else:
-            self._n_dropped += n_late
+        self._n_dropped = self._n_dropped + n_late if self._delays else 0
 
     def _wait(self) -> bool:
         """Wait a moment for an image; return False once none is expected any more."""
@@ -266,7 +263,7 @@ class _Following:
         fitted = self._wanted.body is None
         remarks = (
             *capture_remarks(take.actor, captured, fitted=fitted, live=True),
-            *self._dropped(),
+            *self._dropped(first, captured.motion.frame_rate),
             *self._source.remarks(),
             *planted.remarks,
         )
@@ -275,21 +272,16 @@ class _Following:
             np.array(self._delays), take.detection_delays, remarks,
         )  # fmt: skip
 
-    def _dropped(self) -> Iterator[str]:
+    def _dropped(self, first: int, frame_rate: float) -> Iterator[str]:
         if self._detector.issue:
             yield self._detector.issue
-        if self._n_while_measuring:
+        if first:
             yield (
-                f"The first {self._n_while_measuring} images came before the actor was measured"
-                " and are not in the motion."
+                f"The motion begins with frame {first} ({first / frame_rate:.1f} s) of the"
+                " recording."
             )
         if self._n_dropped:
-            yield f"{self._n_dropped} images were dropped, as newer ones waited."
+            yield f"{self._n_dropped} later images were dropped, as newer ones waited."
 
     def _why_no_image(self) -> str:
-        if self._source.issue or self._source.is_gone:
-            return self._source.issue or self._source.remarks()[-1]
-        return (
-            "No depth image came. Check the folder that the recorder writes to, and that it"
-            " writes 16-bit PNG files."
-        )
+        return self._source.remarks()[-1] if self._source.is_gone else self._source.issue

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from time import monotonic
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +20,7 @@ from ...recordings.growing import GrowingDepth, ImagePositions, NewImage
 from ..live import TimeSlots
 from .measure_followed import measure_followed
 
-TOO_EARLY = "It ended before the actor was measured."
+TOO_EARLY = "The recording ended before the actor was measured. Capture it without --follow."
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +54,13 @@ class WaitingImage(NamedTuple):
     came_at: float
     """Time at which it was found, seconds."""
     depth: DepthImage | None = None
-    """Coarse; None if it was not read yet."""
+    """Coarse; None if it was not read yet, or is not to be tracked."""
+    is_left_out: bool = False
+    """Whether it only has its time: it is damaged, or forgotten until the actor comes."""
+
+    def left_out(self) -> "WaitingImage":
+        """Return the image without its depth."""
+        return self._replace(depth=None, is_left_out=True)
 
 
 class FollowedTake:
@@ -65,17 +72,24 @@ class FollowedTake:
         Its first image is there.
     detector : PoseDetector
     settings : TakeSettings
+    now : callable
+        Returns seconds.
     """
 
     def __init__(
-        self, source: GrowingDepth, detector: PoseDetector, settings: TakeSettings
+        self,
+        source: GrowingDepth,
+        detector: PoseDetector,
+        settings: TakeSettings,
+        *,
+        now: Callable[[], float] = monotonic,
     ) -> None:
         assert source.camera is not None
         self._source, self._settings, self._detector = source, settings, detector
+        self._now = now
         self._step = subsampling_step(source.camera, DEFAULT_TRACKER.image_width)
         self._camera = source.camera.every(self._step)
         self._first: list[WaitingImage] = []
-        self._n_forgotten = 0
         self._started: _StartedFollowing | None = None
         self.fault = ""
         """Why the actor could not be measured yet."""
@@ -109,23 +123,24 @@ class FollowedTake:
         """Keep one of the first images, coarse; return which fraction of them is there."""
         self._first.append(image)
         wanted = self._settings.calibration_s * self._positions().frame_rate
-        return len(self._first) / (max(round(wanted), 2) + self._settings.empty.stop)
+        n_wanted = max(round(wanted), 2) + self._settings.empty.stop
+        return len(self._with_depth()) / n_wanted
 
     def measure(self, progress: Progress = unwatched) -> list[WaitingImage]:
         """Return the first images, which are to be tracked, once the actor is measured in them.
 
         Without an actor none is returned, and more are needed; half of them are forgotten.
         """
-        given, positions = self._settings, self._positions()
+        given, positions, there = self._settings, self._positions(), self._with_depth()
         try:
             actor, body = measure_followed(
-                [each.depth for each in self._first if each.depth is not None],
-                self._camera, positions.frame_rate, given.body, empty=given.empty,
+                [each for _, each in there], self._camera, positions.frame_rate, given.body,
+                empty=[index for index, (n, _) in enumerate(there) if n in given.empty],
                 foreground=given.foreground, refine=given.capture.refine, progress=progress,
             )  # fmt: skip
         except InvalidMotionError as error:
             self.fault = str(error)
-            self._forget(given.empty.stop, max(len(self._first) // 2, 1))
+            self._forget([n for n, _ in there if n >= given.empty.stop])
             return []
         new_tracker = partial(
             LiveTracker, self._camera, positions.frame_rate, body, self._detector,
@@ -133,26 +148,32 @@ class FollowedTake:
         )  # fmt: skip
         first, self._first = self._first, []
         self._started = _StartedFollowing(
-            actor, new_tracker, positions, first[0].image.position, self._n_forgotten
+            actor, new_tracker, positions, first[0].image.position, self._now
         )
         return first
 
-    def _forget(self, first: int, stop: int) -> None:
-        self._n_forgotten += len(self._first[first:stop])
-        del self._first[first:stop]
+    def _with_depth(self) -> list[tuple[int, DepthImage]]:
+        """Return the images to measure the actor in, with their numbers in the recording."""
+        return [(n, each.depth) for n, each in enumerate(self._first) if each.depth is not None]
+
+    def _forget(self, numbers: list[int]) -> None:
+        """Forget the first half of these images; they keep their time."""
+        for number in numbers[: max(len(numbers) // 2, 1)]:
+            self._first[number] = self._first[number].left_out()
 
     def _positions(self) -> ImagePositions:
-        return self._source.positions([each.image.position for each in self._first])
+        there = [each for each in self._first if not each.is_left_out]
+        return self._source.positions([each.image.position for each in there])
 
     def add(self, image: NewImage, depth: DepthImage) -> PosePreview | None:
         """Track the next image, coarse; return None before the first pose is detected."""
         assert self._started is not None
         return self._started.add(image, depth)
 
-    def skip(self) -> None:
-        """Leave out an image; without numbers and times, the later ones keep their time."""
+    def skip(self, image: NewImage) -> None:
+        """Leave out the next image; the later ones keep their time."""
         assert self._started is not None
-        self._started.skip()
+        self._started.number(image)
 
     def begin_again(self) -> None:
         """Forget the motion so far: it begins with the next image."""
@@ -165,7 +186,7 @@ class FollowedTake:
         Raises
         ------
         InvalidMotionError
-            No pose was tracked.
+            The actor was not measured, or no pose was tracked.
         """
         if self._started is None:
             raise InvalidMotionError(self.fault or TOO_EARLY)
@@ -181,40 +202,44 @@ class _StartedFollowing:
         new_tracker: Callable[..., LiveTracker],
         positions: ImagePositions,
         first_position: float,
-        n_before: int,
+        now: Callable[[], float],
     ) -> None:
         self.actor, self.frame_rate = actor, positions.frame_rate
         self._new_tracker = new_tracker
-        self.tracker, self._causal_actor = new_tracker(), CausalActor(actor)
+        self.tracker, self._causal_actor = new_tracker(), CausalActor(actor, from_start=True)
         self._seconds = positions.seconds_per_unit
         start = first_position * self._seconds - 1.0 / self.frame_rate
-        self._slots = TimeSlots(start, self.frame_rate)
-        self._n_before, self._n_images = n_before, 0
+        self._slots = TimeSlots(start, self.frame_rate, now=now)
+        self._n_images = 0
         self._previews: list[PosePreview] = []
+        self._is_tracking = True
 
-    def skip(self) -> None:
+    def number(self, image: NewImage) -> int | None:
+        """Return the number of the image's frame; None if another image has its time."""
         self._n_images += 1
+        if not self._seconds:
+            return self._n_images
+        return self._slots.next(image.position * self._seconds)
 
     def begin_again(self) -> None:
         self.tracker = self._new_tracker(waits=False)
         self._causal_actor = CausalActor(self.actor)
         self._previews.clear()
+        self._is_tracking = False
 
     def add(self, image: NewImage, depth: DepthImage) -> PosePreview | None:
-        self._n_images += 1
-        slot: int | None = self._n_images
-        if self._seconds:
-            slot = self._slots.next(image.position * self._seconds)
-        if slot is None:  # Another image has its time.
+        slot = self.number(image)
+        if slot is None:
             return None
-        preview = self.tracker.update(
-            self._n_before + slot - 1, self._causal_actor.cut_out(depth)
-        )
+        self._is_tracking = True
+        preview = self.tracker.update(slot - 1, self._causal_actor.cut_out(depth))
         if preview is not None:
             self._previews.append(preview)
         return preview
 
     def finish(self, settings: CaptureSettings) -> tuple[int, Capture]:
+        if not self._is_tracking:
+            raise InvalidMotionError(TOO_EARLY)
         return assemble_followed(
             self._previews, self.frame_rate, restarts=self.tracker.restarts,
             floor=self.actor.floor, settings=settings,

@@ -103,7 +103,7 @@ def test_ctrl_c_writes_the_motion_so_far(call, folder, options, tmp_path, monkey
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["take.bvh"], "No depth image came. Check the folder"),
+        (["take.bvh"], "No depth image came. Check the folder "),
         (["take.bvh", "--method", "wei"], "Published methods track complete recordings"),
     ],
 )
@@ -115,6 +115,22 @@ def test_what_cannot_be_followed_is_one_sentence(call, tmp_path, options, words,
 
     assert status == 2 and err.count("\n") == 1 and sentence in err
     assert not (tmp_path / "take.bvh").exists()
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [(None, "No file {} came. Check the file"), (b"", "{} contains no image yet.")],
+)
+def test_mkv_without_images_is_not_taken_for_a_folder(
+    call, tmp_path, options, content, sentence
+):
+    path = tmp_path / "take.mkv"
+    if content is not None:
+        path.write_bytes(content)
+
+    status, _, err = call("capture", path, tmp_path / "out.bvh", *options)
+
+    assert status == 2 and err.count("\n") == 1 and sentence.format(path) in err
 
 
 def test_several_recordings_are_not_followed(call, folder, options, tmp_path):

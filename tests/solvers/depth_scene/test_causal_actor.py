@@ -30,6 +30,17 @@ def test_later_images_show_the_actor_that_the_complete_recording_shows(in_a_room
         assert (found & true).sum() > 0.97 * (found | true).sum()
 
 
+def test_first_images_are_cut_out_again_from_the_first_position_on():
+    """The actor crosses 2.4 m, twice the distance at which a body is another person."""
+    poses = waving(N_FRAMES)
+    poses[:, 0] = np.linspace(-1.2, 1.2, N_FRAMES)
+    alone = recorded(poses)
+    live = CausalActor(find_actor(alone), from_start=True)
+
+    for frame in range(N_FRAMES):
+        assert_array_equal(live.cut_out(alone.frame(frame)), alone.frame(frame))
+
+
 def test_recording_of_the_actor_alone_is_unchanged():
     alone = recorded(waving(N_FRAMES))
     live = CausalActor(find_actor(replace(alone, n_frames=N_FIRST)))
