@@ -129,10 +129,9 @@ def denoise(
     kept = _strengths(recording, settings) == 0.0
     restored = restore_path_jumps(seen, result.recording, offsets, kept)
     complete, confidence = restore_edge_poses(seen, restored, result.confidence, edge_poses)
-    result = replace(
-        result, recording=complete, confidence=confidence, edge_poses=edge_poses,
-        prior_used=f"{note} {result.prior_used}".strip(),
-    )  # fmt: skip
+    report = f"{note} {result.prior_used}".strip()
+    result = replace(result, recording=complete, confidence=confidence, edge_poses=edge_poses,
+                     prior_used=report)  # fmt: skip
     possible = recording
     if limits is not None and isinstance(recording, Motion) and held.any():
         possible = clamp_to_limits(recording, limits)
