@@ -74,8 +74,8 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
             failed.append(sentence.sentence)
             continue
         messages.append(sentence)
-        others = {*bpy.data.objects} - before - {bpy.context.object}
-        people = [each for each in others if each.type == "ARMATURE"]
+        added = {*bpy.data.objects} - before - {bpy.context.object}
+        people = [each for each in added if each.type == "ARMATURE"]
         made += [bpy.context.object, *sorted(people, key=lambda each: each.name)]
     screen.clear()
     if made:
