@@ -39,7 +39,7 @@ def capture_remarks(
     if actor.floor is None:
         remarks.append("No floor is visible, so the camera is assumed to be level.")
     confidence = captured.joints.confidence
-    counted = np.isfinite(captured.residual) | actor.visible
+    counted = np.ones(len(captured.residual), dtype=bool) if live else actor.visible
     if live and confidence is not None and confidence.any():
         counted = confidence.any(axis=1)
     occluded = float(captured.low_confidence[counted].mean())
