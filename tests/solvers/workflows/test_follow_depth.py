@@ -52,7 +52,7 @@ def test_detector_of_another_process_gives_what_its_delays_give_here(images):
 
     again = follow(Written(images), DelayedDetector(FOREST, live.detection_delays))
 
-    assert len(live.detection_delays) >= 2
+    assert live.detection_delays  # their number depends on the speed of the machine
     # Linear algebra may have more threads in this process, which round in another order.
     assert_allclose(live.captured.poses, again.captured.poses, atol=1e-9)
 
