@@ -17,15 +17,14 @@ from ...depth_tracking.several_cameras import (
 )
 from ...depth_tracking.tracking import PoseCallback, ignore_pose
 from ...progress import Progress, unwatched, within
-from ..planting import plant_feet_if_possible
 from .capture_recording import (
     CAPTURE_SETTINGS,
     FOREGROUND_FRACTION,
     FOREGROUND_SETTINGS,
     PLANT_SETTINGS,
     CapturedMotion,
+    finish_capture,
 )
-from .capture_remarks import capture_remarks
 
 ALIGNMENT_SETTINGS = AlignmentSettings()
 MAX_MISMATCH_M = 0.05
@@ -83,21 +82,18 @@ def capture_from_cameras(
         floors=[actor.floor for actor in actors], settings=settings, alignment=alignment,
         on_pose=on_pose, progress=within(progress, FOREGROUND_FRACTION, 0.95),
     )  # fmt: skip
-    with_feet = any(actor.feet_visible for actor in actors)
-    result = plant_feet_if_possible(
-        found.captured.motion, planting if with_feet else None,
+    floors = (actor.floor for actor in actors if actor.floor is not None)
+    seen_by_all = replace(
+        actors[0],
+        floor=next(floors, None),
+        feet_visible=any(actor.feet_visible for actor in actors),
+    )
+    done = finish_capture(
+        seen_by_all, found.captured, planting, fitted=body is None,
         progress=within(progress, 0.95, 1.0),
     )  # fmt: skip
-    floor = next((actor.floor for actor in actors if actor.floor is not None), None)
-    first = replace(actors[0], floor=floor)
-    remarks = (
-        *capture_remarks(first, found.captured, fitted=body is None),
-        *_camera_remarks(actors, found),
-        *result.remarks,
-    )
-    return CapturedMotion(
-        result.motion, found.captured, actors[0], result.planted, remarks, found.alignments
-    )
+    remarks = (*done.remarks, *_camera_remarks(actors, found))
+    return replace(done, remarks=remarks, alignments=found.alignments)
 
 
 def _camera_remarks(actors: Sequence[Actor], found: CapturedByCameras) -> list[str]:
