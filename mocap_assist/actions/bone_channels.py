@@ -19,8 +19,8 @@ Curves = Mapping[tuple[str, int], Channel]
 
 REDUNDANT_CHANGE_RAD = np.radians(1.0)
 """Radians or quaternion components by which a bone may differ across keys that an exporter
-removed as redundant. Chosen by hand: Blender's FBX exporter left up to 0.01 across three keys
-or more in eight takes of six makers."""
+removed as redundant. Measured: Blender's FBX exporter left up to 0.01 across three keys or more
+in eight takes of six makers."""
 REDUNDANT_CHANGE_FRACTION = 1e-3
 """Fraction of a location's largest value or of the bone's length, likewise. By definition of
 Blender's FBX exporter, which tolerates as much of the value."""

@@ -18,8 +18,8 @@ MIN_KNEE_BEND = 0.08
 """Distance of the knee from the line between hip and ankle, as a fraction of the leg, from
 which it shows where it bends. Chosen by hand: 37 degrees of flexion, far above noise."""
 MAX_KNEES_FORWARD = 0.1
-"""Fraction of bent knees in front of that line, below which knees bend backward. Chosen by
-hand: 1.0 in people, 0.0 where left and right are swapped."""
+"""Fraction of bent knees in front of that line, below which knees bend backward. Measured: 1.0
+in people, 0.0 where left and right are swapped."""
 MIN_BENT_FRAMES = 10
 """Frames with a bent knee that show its direction; fewer may be faults of a sensor."""
 MAX_SAMPLED_FRAMES = 500

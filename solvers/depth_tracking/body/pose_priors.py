@@ -60,8 +60,8 @@ def joint_limits(pose: Array, weight: float) -> PoseEquations:
 
 
 _LIMB_WEIGHT = 0.1
-"""Weight of a limb's coordinates, relative to those of the trunk. Chosen by hand;
-`make sensitivity` varies it."""
+"""Weight of a limb's coordinates, relative to those of the trunk. Half and twice are no better
+(`make sensitivity`)."""
 _STANCE_WEIGHTS = np.array([
     0.0 if name in ROOT or name.endswith(_ANKLE)
     else _LIMB_WEIGHT if _LIMB_PATTERN.search(name) else 1.0

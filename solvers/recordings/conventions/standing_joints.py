@@ -33,8 +33,8 @@ MIN_HIPS_FRACTION = 0.03
 """Height of the hips of an actor who lies on a floor, relative to the body. Chosen by hand: 5
 cm of an adult, whose hips are 8 cm and more above the floor."""
 MIN_SPREAD_FRACTION = 0.06
-"""Distance between the feet, relative to the size, below which a rest pose is folded. Chosen by
-hand: in the rest poses of these takes it is 0.09 to 0.88, in a folded one 0."""
+"""Distance between the feet, relative to the size, below which a rest pose is folded. Measured:
+in the rest poses of these takes it is 0.09 to 0.88, in a folded one 0."""
 
 
 TOP_ROLES = ("head", "neck", "chest", "leftUpperArm", "rightUpperArm")
