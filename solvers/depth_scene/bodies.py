@@ -158,7 +158,10 @@ def _refine_mask(depth: Depth, coarse_depth: Depth, step: int) -> Flags:
 def label_components(
     depth: Depth, camera: Camera
 ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """Label connected pixels from 1 (0: no reading); return their surfaces, square meters."""
+    """Label connected pixels of an image, (height, width), from 1; 0 has no reading.
+
+    Also return the surface of each component, (n_components,), in square meters.
+    """
     from scipy.sparse import coo_array  # slow to import: only when needed
     from scipy.sparse.csgraph import connected_components  # slow to import: only when needed
 

@@ -93,7 +93,7 @@ def learn_distances(positions: Array) -> Distances:
 
 
 def nan_mean(values: Array) -> Array:
-    """Return means over the last axis without NaN; NaN where there is nothing else."""
+    """Return means of values, (..., n), over the last axis without NaN; NaN if all are NaN."""
     valid = np.isfinite(values)
     count = valid.sum(axis=-1)
     total = np.where(valid, values, 0.0).sum(axis=-1)

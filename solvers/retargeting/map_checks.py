@@ -107,7 +107,10 @@ def _lateral_vector(rest: Array, joints: Joints, part: str) -> Array:
 
 
 def check_feet(alignment: Array, joints: Joints, whose: str) -> None:
-    """Refuse a body with both feet pointing backwards, as in mirrored Kinect recordings."""
+    """Refuse a body whose feet both point backwards, as in mirrored Kinect recordings.
+
+    The alignment, (n_joints, 4), rotates each joint of the rest pose to the T-pose.
+    """
     feet = [joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in joints]
     angles = angle_between(alignment[feet], alignment[joints["hips"]])
     if len(feet) == len(SIDES) and (angles > MIN_BACKWARD_ANGLE_RAD).all():

@@ -81,7 +81,7 @@ def extract_signals(
 ) -> tuple[Signal, ...]:
     """Return one signal for each joint's rotation or point's position, and one for the root.
 
-    `held` is what `find_held_samples` returns; in the recording these samples are missing. End
+    `held`, (n_frames, n_parts), is from `find_held_samples`; these samples are missing. End
     sites have no rotation and no signal. No trajectory spans a cut.
     """
     half_window = max(MIN_HALF_WINDOW_FRAMES, round(HALF_WINDOW_S * recording.frame_rate))

@@ -71,7 +71,7 @@ _IS_ANKLE = np.char.endswith(COORDINATES, _ANKLE).astype(float)
 
 
 def natural_stance(pose: Array, weight: float, ankle_weight: float) -> PoseEquations:
-    """Return equations that pull joints to upright standing, mainly trunk, head and clavicles.
+    """Return equations that pull a pose, (36,), to upright standing, mainly trunk and head.
 
     A separate weight keeps feet perpendicular to the shanks.
     """

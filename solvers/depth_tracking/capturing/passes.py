@@ -223,7 +223,7 @@ class PassTracker:
 
 
 def unwrap_rotation(pose: Array, before: Array) -> Array:
-    """Return the pose with multiples of 360 degrees added, continuous with the frame before."""
+    """Return the pose, (36,), turned by multiples of 360 degrees to be near the one before."""
     unwrapped = pose.copy()
     for index in (_YAW, _YAW + 2):
         unwrapped[index] += (

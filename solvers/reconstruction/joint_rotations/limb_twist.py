@@ -29,7 +29,7 @@ ACTOR_BIAS_S = 0.03
 It guards limbs that hardly flex, which would lose the library's rotation
 (`test_straight_arm_gets_the_twist_of_similar_postures`)."""
 AGREED_WEIGHT = 90.0
-"""Weight of a certain angle, not 1. Half and twice are no better (`make sensitivity`)."""
+"""Weight of an angle relative to changes. Half and twice are no better (`make sensitivity`)."""
 MIN_WEIGHT = 1e-6
 """Weight of an undefined angle. It guards a division where no frame defines the angle."""
 MIN_PALM_M, FULL_PALM_M = 0.02, 0.05

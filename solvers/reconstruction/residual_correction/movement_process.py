@@ -226,7 +226,7 @@ def movement_covariance(distances: MovementDistances, strengths: Strengths) -> S
 
 
 def movement_from_arrays(arrays: dict[str, NDArray[Any]]) -> tuple[str, MovementProcess | None]:
-    """Return why `MEMBERS` of a file cannot be used, or an empty string, and the process."""
+    """Return why arrays of a file, `MEMBERS`, cannot be used, or "", and the process."""
     if set(arrays) != set(MEMBERS):
         return "arrays of the movement process are missing", None
     joints = arrays["joints"].astype(np.int64)

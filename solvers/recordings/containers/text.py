@@ -147,7 +147,7 @@ def read_rows(
 def parse_rows(
     lines: Sequence[bytes], width: int, path: Path | str, line_numbers: Sequence[int]
 ) -> NDArray[np.float64]:
-    """Parse one row of numbers per line, as `read_rows` does, all lines at once."""
+    """Parse lines of `width` numbers, as `read_rows` does, all at once: (n_lines, width)."""
     rows = _read_block(lines, width, path, line_numbers)
     rows[np.isinf(rows)] = np.nan
     return rows

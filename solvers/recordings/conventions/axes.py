@@ -33,7 +33,7 @@ def z_up_from_y_up(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def y_up_from_z_up(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Undo `z_up_from_y_up`."""
+    """Undo `z_up_from_y_up` of vectors, (..., 3)."""
     return np.stack([vectors[..., 0], vectors[..., 2], -vectors[..., 1]], axis=-1)
 
 
@@ -43,7 +43,7 @@ def rotations_z_up_from_y_up(rotations: NDArray[np.float64]) -> NDArray[np.float
 
 
 def rotations_y_up_from_z_up(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Undo `rotations_z_up_from_y_up`."""
+    """Undo `rotations_z_up_from_y_up` of quaternions, (..., 4)."""
     return np.concatenate([rotations[..., :1], y_up_from_z_up(rotations[..., 1:])], axis=-1)
 
 
@@ -59,7 +59,7 @@ def longest_bone_path(parents: Sequence[int], offsets: NDArray[np.float64]) -> f
 
 
 def rotation_to_z_up(axis: str) -> NDArray[np.float64]:
-    """Return the quaternion that turns what was read with Y up so that `axis` is up."""
+    """Return the quaternion, (4,), that turns what was read with Y up so that `axis` is up."""
     half = np.sqrt(0.5)
     return np.array(
         {

@@ -124,7 +124,7 @@ def question_of_lean(recording: Motion | Tracks | JointRecording) -> str:
 
 
 def up_of_leaning(recording: Motion | Tracks | JointRecording) -> Array | None:
-    """Return the direction from the ankles to the shoulders of who stands, if it is tilted.
+    """Return the direction, (3,), from ankles to shoulders of who stands, if it is tilted.
 
     It is None where a floor was measured, and where the legs are rarely straight.
     """

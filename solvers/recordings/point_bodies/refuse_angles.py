@@ -45,7 +45,7 @@ DIRECTIONS = {
 
 
 def refuse_angles(path: Path | str, names: Sequence[str], positions: Array) -> None:
-    """Raise InvalidFileError if named joints are not where those of a body are.
+    """Raise InvalidFileError if named joints, (F, n, 3), are not where those of a body are.
 
     So it is where a table holds the angles or velocities of joints. Joints at zero are
     missing; single frames that are wrong, and noise, do not count.

@@ -93,7 +93,7 @@ def name_joints(points: Array) -> NamedJoints | None:
 
 
 def is_no_body(points: Array, order: Sequence[str]) -> bool:
-    """Return whether points in an order of joints cannot be those of a body.
+    """Return whether points, (F, n, 3), in an order of joints cannot be those of a body.
 
     It takes more than for `name_joints`, and nothing follows from joints that are missing: the
     order is expected, and points of cameras may be noisy, or the upper body alone.
@@ -106,7 +106,7 @@ def is_no_body(points: Array, order: Sequence[str]) -> bool:
 
 
 def bone_misfit(names: Sequence[str], positions: Array) -> float:
-    """Return how far joints are from a human body: 0 for an adult whose bones are rigid.
+    """Return how far joints, (F, n, 3), are from a body: 0 for an adult with rigid bones.
 
     It is the sum of three means over the bones of the limbs, each a ratio: the spread of the
     length over time, the difference of both sides, and the difference from an adult's

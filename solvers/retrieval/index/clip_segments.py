@@ -75,7 +75,10 @@ def describe_all_segments(
 def describe_segments(
     features: Array, frames: NDArray[np.int32], vocabulary: Vocabulary
 ) -> Segments:
-    """Describe segments of a clip from its features."""
+    """Describe segments of a clip from its features, (n_frames, n_parts, n_axes).
+
+    The rows of `frames`, (n_segments, 2), are the first frame and the one after the last.
+    """
     histograms = [_histograms(features[start:stop], vocabulary) for start, stop in frames]
     summaries = [_sample_features(features[start:stop]) for start, stop in frames]
     return Segments(

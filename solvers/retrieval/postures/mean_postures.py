@@ -198,7 +198,7 @@ def learn_posture_distribution(clips: Sequence[ClipPostures]) -> PostureDistribu
 
 
 def is_covariance(matrix: Array) -> bool:
-    """Whether a matrix is symmetric and, with the noise, positive definite."""
+    """Whether a matrix, (n, n) in m², is symmetric and, with the noise, positive definite."""
     return bool(
         np.allclose(matrix, matrix.T)
         and np.linalg.eigvalsh(matrix)[0] > -0.5 * POSITION_NOISE_M**2

@@ -83,7 +83,8 @@ def rank_clips(
 ) -> Ranking:
     """Rank the clips of the index by similarity to the first segment of a query.
 
-    Return at least `settings.n_matches` clips, if there are as many, or all.
+    Return at least `settings.n_matches` clips, if there are as many, or all. Weights are of
+    the parts of the body, (5,).
     """
     candidates = collect_candidates(query, weights, index, settings, ignore)
     warped = candidates.segments[: len(candidates.summaries)]
