@@ -15,7 +15,7 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path, write_atomically
 from ...solvers.progress import Progress
 from ..find_similar import searches
-from ..find_similar.finding import list_found, read_finding
+from ..find_similar.scene_finding import list_found, read_finding
 from ..find_similar.solve_finding import Found
 from ..library.background import message_of
 from ..library.button_settings import FindBundle, LibraryChoices

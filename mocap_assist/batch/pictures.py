@@ -9,7 +9,7 @@ from ...solvers.errors import MocapAssistError
 from ...solvers.files import unwritable
 from ...solvers.pictures import StickFigureSettings, draw_stick_figures
 from ..actions.armature_read import read_take
-from ..check.checking import read_played
+from ..check.scene_checking import read_played
 from ..runtime.selection import played_source
 from ..scene import history
 

@@ -11,8 +11,8 @@ import bpy
 from bpy.app import handlers
 
 from ..runtime.selection import selected_subject
-from .checking import is_stale
 from .renewing import renew_always
+from .scene_checking import is_stale
 
 FIELDS = "name", "start", "stop", "kind", "severity", "sentence"
 """Properties of an issue."""

@@ -13,10 +13,10 @@ from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, is_wide
 from ..panel_parts.visibility import shows_take
 from ..runtime.selection import played_result, selected_subject, shown_frames
 from ..scene import history
-from .checking import is_stale, why_not_visible
 from .issue_markers import has_issue_markers
 from .issue_views import draw_view_switches
 from .renewing import is_awaited
+from .scene_checking import is_stale, why_not_visible
 
 CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_issue"
 MARK = "mocap_assist.mark_issues"

@@ -8,7 +8,7 @@ from ..runtime import after_result, watch
 from ..runtime.selection import selected_subject
 from ..runtime.solver_operator import SolverOperator
 from . import raw_view
-from .checking import is_stale
+from .scene_checking import is_stale
 
 _awaited: dict[int, bool] = {}
 """Number of each scene that a quiet check is for, until a check has ended there, and whether it

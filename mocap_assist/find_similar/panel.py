@@ -22,10 +22,10 @@ from ..panel_parts.panel_layout import (
 from ..panel_parts.visibility import shows_take
 from ..runtime.selection import Bones
 from . import searches
-from .finding import why_not_find
 from .ghost_drawing import COLOR
 from .match_grid import draw_match_grid
 from .previews import icon_of
+from .scene_finding import why_not_find
 
 KEEP = "mocap_assist.keep_current"
 INDEX, FIND = "mocap_assist.index_library", "mocap_assist.find_similar"

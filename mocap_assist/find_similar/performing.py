@@ -23,7 +23,7 @@ from ..library.sources import library_path
 from ..runtime.solver_operator import in_background
 from ..scene.units import unit_of
 from . import searches
-from .finding import fill_list
+from .scene_finding import fill_list
 from .solve_finding import (
     BROWSED_HZ,
     MAX_MATCHES,

@@ -14,8 +14,8 @@ from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, split_co
 from ..panel_parts.preference_values import preferred
 from ..panel_parts.visibility import shows_take
 from ..track.tracking import selected_preview
-from .fixing import why_not_fix
 from .queue import Status, selected_takes, shown_queue
+from .scene_fixing import why_not_fix
 
 FIX, ACCEPT, REVERT = (
     f"mocap_assist.{name}" for name in ("fix_take", "accept_fix", "revert_to_raw")

@@ -11,7 +11,7 @@ from ..blender.mixins import PanelMixin
 from ..panel_parts.panel_layout import draw_sentence, exists, settings_column
 from ..panel_parts.visibility import shows_all
 from ..runtime.selection import selected_subject
-from .solving import why_not_solve
+from .scene_skeleton import why_not_solve
 
 SOLVE_OPERATOR = "mocap_assist.solve_skeleton"
 

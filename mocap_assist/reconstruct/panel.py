@@ -15,7 +15,7 @@ from ..panel_parts.visibility import shows_all
 from ..runtime.selection import selected_armature
 from ..scene.origin import origin_of, was_tracked
 from .button_settings import Postures
-from .reconstructing import why_not_reconstruct
+from .scene_reconstructing import why_not_reconstruct
 
 BUTTON = "mocap_assist.reconstruct"
 

@@ -15,7 +15,7 @@ from ..runtime.selection import selected_armature, why_not_read, why_not_retarge
 from .action_ticks import draw_ticks
 from .bone_list import draw_bones
 from .button_settings import Takes
-from .retargeting import fitting_actions, remarks_on_target, target_called
+from .scene_retargeting import fitting_actions, remarks_on_target, target_called
 
 RETARGET, UNBAKE = "mocap_assist.retarget", "mocap_assist.reduce_keys"
 MAIN = ("root_motion", "keep_feet", "keep_hands")

@@ -17,7 +17,7 @@ from ..blender.block_references import SourceReference
 from ..blender.compat import Source
 from ..blender.name_lists import split_names
 from ..blender.time_slices import Sliced, Steps
-from ..retarget.retargeting import fitting_actions, source_called
+from ..retarget.scene_retargeting import fitting_actions, source_called
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.movers import movers_of
 from ..rigs.rigify import is_rigify

@@ -20,10 +20,10 @@ from ..actions.take import ArmatureTake
 from ..blender.compat import Source
 from ..blender.path_properties import absolute
 from ..blender.time_slices import Sliced, Steps
-from ..clean.cleaning import ease_of
 from ..clean.example_source import ExampleSource
 from ..clean.examples import read_examples
 from ..clean.report import figures
+from ..clean.scene_cleaning import ease_of
 from ..jobs.job import ShortSolve
 from ..library.library_prior import library_prior
 from ..runtime import redo
