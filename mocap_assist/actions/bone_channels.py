@@ -11,7 +11,7 @@ from ...solvers.rotations import multiply, rotate
 from ..blender import compat
 from ..scene.rig import Placement, placement_of
 from .curves import Channel
-from .gaps import unobserved
+from .gaps import unobserved_frames
 from .rotation_modes import quaternions_from_channels, rotation_property
 from .take import BoneChannels
 
@@ -169,6 +169,6 @@ def gaps_of(
     if not curves or all(channel.keyed_at(frames) for channel in curves.values()):
         return np.zeros(len(frames), bool)
     keys = [channel.keys for channel in curves.values()]
-    return unobserved(
+    return unobserved_frames(
         keys, frames, step, redundant_change=redundant_change, holds_ends=holds_ends
     )

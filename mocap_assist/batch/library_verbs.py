@@ -115,7 +115,7 @@ def perform_find(
     scene.mocap_assist.library.library_file = arguments.library
     finding = solve_in_subprocess(read_finding(scene, subject, settings), arguments, progress)
     sentence = list_found(scene, subject, settings, finding)
-    search = searches.listed(bpy.context)
+    search = searches.listed_search(bpy.context)
     found = search.finding.found if search is not None else ()
     figures = {"matches": [_figures(each) for each in found]}
     return "\n".join([sentence, *map(_row, found)]), figures

@@ -11,8 +11,8 @@ from ..signals import smooth_gaussian
 from .curves import headings_from_motion
 
 ALIGNMENT_RATE_HZ = 20.0
-"""Frame rate at which examples are aligned. Twice 10 Hz, below which 98 % of the power of gait
-is (Antonsson and Mann 1985, doi:10.1016/0021-9290(85)90043-0)."""
+"""Frame rate at which examples are aligned. More than twice 6 Hz, below which nearly all
+power of walking is (Winter et al. 1974, Journal of Biomechanics 7, 157)."""
 MAX_ALIGNED_FRAMES = 1500
 """Maximum frames of an example for alignment; longer examples are sampled more coarsely. It
 bounds the run time of examples of minutes."""

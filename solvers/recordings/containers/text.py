@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...files import open_regular, unreadable
+from ...files import open_regular, unreadable_error
 from ...progress import Progress, unwatched
 from .names import shown
 
@@ -84,7 +84,7 @@ def map_bytes(path: Path | str) -> bytes | mmap.mmap:
     except ValueError:  # An empty file cannot be mapped.
         return b""
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
 
 
 def read_bytes(path: Path | str) -> bytes:
@@ -96,7 +96,7 @@ def read_bytes(path: Path | str) -> bytes:
         with open_regular(path) as file:
             return as_utf8(file.read())
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
 
 
 def spaces_from_commas(line: bytes) -> bytes:

@@ -12,8 +12,8 @@ CONTACT_WEIGHT = 1.0
 """Weight of the evidence of contact: the lowest markers rest, 0 to 1. By definition 1: the
 others are relative to it."""
 MAX_CONTACT = 0.5
-"""Evidence of contact that is enough, a ratio. Measured: who walks has 0.3 to 0.5; the trunk of
-who sits is still, so that there is 0.98 along a wrong axis in `markers.trc`."""
+"""Evidence of contact that is enough, a ratio. Measured: an actor who walks has 0.3 to 0.5; the
+trunk of a sitting one is still, so that there is 0.98 along a wrong axis in `markers.trc`."""
 FLOOR_WEIGHT = 0.8
 """Weight of the evidence of the floor: the lowest marker is near zero, 0 to 1. Sweep: of 692
 cuts of HDM05 and CMU relative to the hips, 58 instead of 49 are wrong with x0.5, and 10 instead

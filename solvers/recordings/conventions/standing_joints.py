@@ -38,7 +38,7 @@ in the rest poses of these takes it is 0.09 to 0.88, in a folded one 0."""
 
 
 TOP_ROLES = ("head", "neck", "chest", "leftUpperArm", "rightUpperArm")
-"""Roles above the hips of who stands, the clear ones first."""
+"""Roles above the hips of a standing actor, the clear ones first."""
 
 
 class StandingJoints(NamedTuple):

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidFileError
-from ...files import unreadable
+from ...files import unreadable_error
 from ...progress import Progress, unwatched
 from ..containers import PlainBytes
 from ..conventions import DEFAULT_FRAME_RATE, MILLIMETER
@@ -69,7 +69,7 @@ def read_depth_raw(
     try:
         size = path.stat().st_size
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
     n_frames, rest = divmod(size, camera.width * camera.height * PIXEL_BYTES)
     if rest or not n_frames:
         raise InvalidFileError(

@@ -21,7 +21,8 @@ NAMES_OF_ROOT = (
 """Names of the position of a body whose joints are relative to it, the clear ones first."""
 MAX_SWAY_FRACTION = 0.01
 """Range of the hips relative to the size of the body, a ratio, up to which they are kept in
-place. Measured: hips of who stands still sway by 2 cm, which is above it."""
+place. Measured: the hips of an actor who stands still
+sway by 2 cm, which is above it."""
 MAX_CENTER_FRACTION = 0.1
 """Distance of the hips from the origin, relative to the size of the body, up to which they are
 the origin. Measured: the middle of the thighs is 8 cm from a pelvis, 0.07 of a small adult;
