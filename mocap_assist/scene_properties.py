@@ -17,8 +17,8 @@ from .fix.queue_properties import PROPERTIES as QUEUE_PROPERTIES
 from .fix.queue_properties import MOCAP_PG_fix_queue
 from .library.button_settings import FindBundle, LibraryBundle, LoadBundle, UseBundle
 from .live.live_take import LiveBundle
-from .markers.solving import SolveBundle
-from .physics.simulating import SimulateBundle
+from .markers.scene_skeleton import SolveBundle
+from .physics.scene_simulating import SimulateBundle
 from .reconstruct.button_settings import ReconstructBundle
 from .retarget.bone_highlight import show_pair
 from .retarget.bone_map import explain_edited

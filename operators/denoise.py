@@ -4,7 +4,7 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.clean.button_settings import FINISHING_SETTINGS, CleanBundle
-from ..mocap_assist.clean.cleaning import read_cleaning, write_cleaned
+from ..mocap_assist.clean.scene_cleaning import read_cleaning, write_cleaned
 from ..mocap_assist.runtime.selection import why_not_clean
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 

@@ -6,8 +6,8 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.exporting.button_settings import ExportBundle
-from ..mocap_assist.exporting.exporting import read_export, why_not_export, write_exported
 from ..mocap_assist.exporting.file_browser import ExportOperator
+from ..mocap_assist.exporting.scene_exporting import read_export, why_not_export, write_exported
 from ..mocap_assist.runtime.selection import selected_armature
 
 

@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.find_similar.finding import list_found, read_finding, why_not_find
+from ..mocap_assist.find_similar.scene_finding import list_found, read_finding, why_not_find
 from ..mocap_assist.library.button_settings import FindBundle
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 

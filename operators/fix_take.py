@@ -4,7 +4,7 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.fix.button_settings import FixBundle
-from ..mocap_assist.fix.fixing import (
+from ..mocap_assist.fix.scene_fixing import (
     read_fixing,
     selected_take,
     watch_fixing,

@@ -4,8 +4,8 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.fix.button_settings import FixBundle
-from ..mocap_assist.fix.fixing import read_fixing, watch_fixing, write_fixed
 from ..mocap_assist.fix.queue_operator import QueueOperator, always
+from ..mocap_assist.fix.scene_fixing import read_fixing, watch_fixing, write_fixed
 
 
 @settings_from(FixBundle)

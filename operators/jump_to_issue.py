@@ -2,8 +2,8 @@
 
 import bpy
 
-from ..mocap_assist.check.checking import jump_to
 from ..mocap_assist.check.issue_views import show_issue
+from ..mocap_assist.check.scene_checking import jump_to
 from ..mocap_assist.languages import translated
 
 

@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.clean.pattern_learning import LearnBundle, read_learning, write_learned
+from ..mocap_assist.clean.scene_learning import LearnBundle, read_learning, write_learned
 from ..mocap_assist.runtime.selection import why_not_learn
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 

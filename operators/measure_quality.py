@@ -6,8 +6,8 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.check.button_settings import CheckBundle
-from ..mocap_assist.check.checking import read_checking, show_checked
 from ..mocap_assist.check.renewing import CheckOperator
+from ..mocap_assist.check.scene_checking import read_checking, show_checked
 from ..mocap_assist.runtime.selection import why_not_read
 
 

@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.clean.planting import FeetBundle, read_planting, write_planted
+from ..mocap_assist.clean.scene_planting import FeetBundle, read_planting, write_planted
 from ..mocap_assist.runtime.selection import why_not_change
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 

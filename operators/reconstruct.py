@@ -4,7 +4,7 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.reconstruct.button_settings import FINISHING_SETTINGS, ReconstructBundle
-from ..mocap_assist.reconstruct.reconstructing import (
+from ..mocap_assist.reconstruct.scene_reconstructing import (
     read_reconstructing,
     why_not_reconstruct,
     write_reconstructed,

@@ -4,7 +4,7 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.retarget.button_settings import UnbakeBundle
-from ..mocap_assist.retarget.unbaking import read_unbaking, write_unbaked
+from ..mocap_assist.retarget.scene_unbaking import read_unbaking, write_unbaked
 from ..mocap_assist.runtime.selection import why_not_change
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 

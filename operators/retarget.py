@@ -4,7 +4,7 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.retarget.button_settings import RetargetBundle
-from ..mocap_assist.retarget.retargeting import read_retarget, write_retargeted
+from ..mocap_assist.retarget.scene_retargeting import read_retarget, write_retargeted
 from ..mocap_assist.runtime.selection import why_not_retarget
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 

@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.blender.act_operator import ActOperator
-from ..mocap_assist.check.reverting import revert, why_not_revert
+from ..mocap_assist.check.reverting import revert_to_recorded, why_not_revert
 from ..mocap_assist.runtime.after_result import notify_listeners
 from ..mocap_assist.runtime.selection import selected_subject
 
@@ -16,6 +16,6 @@ class MOCAP_OT_revert_to_raw(ActOperator, bpy.types.Operator):
     why_not = why_not_revert
 
     def act(self, context: bpy.types.Context) -> str:
-        message = revert(selected_subject(context))
+        message = revert_to_recorded(selected_subject(context))
         notify_listeners(context.scene)
         return message

@@ -3,7 +3,11 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.physics.simulating import SimulateBundle, read_simulating, write_simulated
+from ..mocap_assist.physics.scene_simulating import (
+    SimulateBundle,
+    read_simulating,
+    write_simulated,
+)
 from ..mocap_assist.runtime.selection import why_not_change
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 

@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.markers.solving import (
+from ..mocap_assist.markers.scene_skeleton import (
     SolveBundle,
     read_solving,
     why_not_solve,

@@ -36,12 +36,12 @@ def reason_of(error: OSError) -> str:
     return error.strerror or str(error)
 
 
-def unreadable(path: Path | str, error: OSError) -> FileAccessError:
+def unreadable_error(path: Path | str, error: OSError) -> FileAccessError:
     """Return the error for a file or folder that the system does not allow to read."""
     return FileAccessError(f"{path} cannot be read ({reason_of(error)}).")
 
 
-def unwritable(path: Path | str, error: OSError) -> FileAccessError:
+def unwritable_error(path: Path | str, error: OSError) -> FileAccessError:
     """Return the error for a file or folder that the system does not allow to write."""
     return FileAccessError(f"{path} cannot be written: {reason_of(error)}.")
 
@@ -137,7 +137,7 @@ def write_atomically(path: Path | str) -> Iterator[Path]:
         finally:
             part.unlink(missing_ok=True)
     except OSError as error:
-        raise unwritable(path, error) from None
+        raise unwritable_error(path, error) from None
 
 
 def remove_leftovers(paths: Iterable[Path]) -> None:

@@ -186,7 +186,7 @@ def member_header(archive: zipfile.ZipFile, name: str) -> ArrayHeader:
 
 
 def member_content(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
-    """Return the data of a member; check its size before."""
+    """Return the data of a member, in the shape of its header; check its size before."""
     with archive.open(f"{name}.npy") as file:
         return array_content(file, array_header(file))
 
@@ -215,7 +215,7 @@ def array_header(file: IO[bytes]) -> ArrayHeader:
 
 
 def array_content(file: IO[bytes], header: ArrayHeader) -> NDArray[Any]:
-    """Read the data after a header."""
+    """Read the data after a header, in its shape and the byte order of this machine."""
     content = file.read(header.n_bytes)
     order: Any = "F" if header.by_column else "C"
     native = header.dtype.newbyteorder("=")

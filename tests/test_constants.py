@@ -1,8 +1,9 @@
 """Each tuned number has a unit and a source, in the docstring or comment next to it.
 
-A source is a paper, a standard, a definition, a training script, what it guards or bounds, or
-a sweep: what "`make sensitivity` varies" has a row in docs/benchmarks/sensitivity.md, which
-alone holds its figures. Where there is no metric, a number, a file or a test follows "by hand".
+A source is a paper, a standard, a definition, a training script, what it guards or bounds, what
+was measured on takes, or a sweep: what "`make sensitivity`" says has a row in
+docs/benchmarks/sensitivity.md, which alone holds its figures. Where there is neither, a number,
+a file or a test follows "by hand".
 """
 
 import re
@@ -27,13 +28,17 @@ from tests.benchmarks.sensitivity.other_constants import other_constants
 SOURCE = re.compile(
     r"\[[A-Z]\w*\d\d|doi:|eq\. |\bet al\.|learned by|make sensitivity|sweep"
     r"|by definition|three-sigma|95 % efficiency|rounding|bounds? the"
-    r"|\b(Winter|Harrington|Handa|Contini) (19|20)\d\d"
+    r"|\b(Winter|Harrington|Handa|Contini|Elberink|Hoaglin|Protection) \(?(19|20)\d\d"
+    r"|\bmeasured\b(?:[^.]|\.(?=\w))*?\d|measured on the same takes"
     # By hand, and in the same sentence a number, a path, a test, a data set or a paper.
     r"|by hand\b[^.]*(?:\d|\w/\w|`test_\w+`|[A-Z]{3}|the paper gives no|training only)"
     # What it guards: a word of its own, not "a guard" or "it guards.".
     r"|\bguards?\s+(?:against\s+|of\s+)?(?:an?\s+|the\s+)?\w{3,}",
     re.IGNORECASE,
 )
+NO_BETTER = "Half and twice are no better"
+SMALL_GAIN = "Half and twice gain less than 1 %"
+HALF_IS_WORSE = "Half is worse"
 COPIED_FIGURE = re.compile(r"\bx(?:0\.5|2)\b(?:[^.;]|\.\d)*?(?:\d %|\bnothing\b|\bfails\b)")
 """What half or twice of a constant changes, as the page of the sweep says it."""
 OTHER_SWEEP = "development takes of the first press"
@@ -83,6 +88,7 @@ def test_numbers_that_no_family_lists_say_their_unit_and_source():
         "Meters. Chosen by hand. It is 3 elsewhere.",
         "A guard.",
         "A guard: any value does.",
+        "Measured on many takes. It is 3 elsewhere.",
         "Number of rounds.",
     ],
 )
@@ -141,6 +147,35 @@ def test_what_is_said_to_be_varied_has_a_row():
     assert not missing
 
 
+@pytest.mark.parametrize("family", FAMILIES)
+def test_what_half_and_twice_are_said_to_change_agrees_with_the_page(family):
+    found = mean_changes(family)
+    wrong = [
+        constant.key
+        for constant in constants_of(family)
+        if not agrees(constant.text, found.get(f"{Path(constant.path).stem}.{constant.name}"))
+    ]
+    assert not wrong
+
+
+@pytest.mark.parametrize(
+    ("text", "changes", "expected"),
+    [
+        (NO_BETTER, (0.0, 4.0), True),
+        (NO_BETTER, (-0.1, 4.0), False),
+        (SMALL_GAIN, (-0.9, 4.0), True),
+        (SMALL_GAIN, (3.0, -1.0), False),
+        (SMALL_GAIN, (3.0, None), False),
+        (HALF_IS_WORSE, (0.4, None), True),
+        (HALF_IS_WORSE, (0.0, None), False),
+        ("Chosen by hand.", (-9.0, -9.0), True),
+        (NO_BETTER, None, True),
+    ],
+)
+def test_changes_that_agree_with_a_text(text, changes, expected):
+    assert agrees(text, changes) == expected
+
+
 def test_figures_of_the_sweep_stand_on_its_page_alone():
     listed = set().union(*(listed_constants(family) for family in FAMILIES))
     copied = [
@@ -190,11 +225,46 @@ def test_document_lists_only_constants_that_exist(family):
     assert listed_constants(family) <= existing
 
 
-def listed_constants(family: str) -> set[str]:
-    """Return what a section of the document names, as module and constant."""
+def agrees(text: str, changes: tuple[float | None, float | None] | None) -> bool:
+    """Whether a docstring states the mean changes, percent, by half and twice of a constant.
+
+    Those of no row are less than 0.1 %. None in a row is a run that failed.
+    """
+    half, twice = changes or (0.0, 0.0)
+    if HALF_IS_WORSE in text:
+        return half is not None and half > 0.0 and twice is None
+    if NO_BETTER in text or SMALL_GAIN in text:
+        if half is None or twice is None:
+            return False
+        return min(half, twice) >= 0.0 if NO_BETTER in text else min(half, twice) > -1.0
+    return True
+
+
+def mean_changes(family: str) -> dict[str, tuple[float | None, float | None]]:
+    """Return the mean changes by half and twice in a section's first table, by constant."""
+    rows = section_of(family).partition("| without | mean |")[0]
+    pattern = r"^\| `(\w+\.\w+)` \|.*\| ([-+.\d %]+) \| ([-+.\d %]+) \| [^|]+ \|$"
+    return {
+        name: (percent(half), percent(twice))
+        for name, half, twice in re.findall(pattern, rows, re.MULTILINE)
+    }
+
+
+def percent(text: str) -> float | None:
+    """Return a figure of a table; None for the dash of a run that failed."""
+    return None if text == "-" else float(text.rstrip(" %"))
+
+
+def section_of(family: str) -> str:
+    """Return the section of the document on a family."""
     title = f"\n## {family.replace('_', ' ').capitalize()}\n"
     document = (ROOT / "docs" / "benchmarks" / "sensitivity.md").read_text(encoding="utf-8")
-    section = document.partition(title)[2].partition("\n## ")[0]
+    return document.partition(title)[2].partition("\n## ")[0]
+
+
+def listed_constants(family: str) -> set[str]:
+    """Return what a section of the document names, as module and constant."""
+    section = section_of(family)
     listed = set(re.findall(r"`(\w+\.\w+)`", section))
     for module, names in re.findall(r"^\| (\w+) \| (.*`\w+`.*) \|$", section, re.MULTILINE):
         listed |= {f"{module}.{name}" for name in re.findall(r"`(\w+)`", names)}

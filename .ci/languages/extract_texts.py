@@ -35,7 +35,7 @@ SHOWN = ("solvers/command_line/farm/flamenco_",)
 """Beginnings of paths among those whose texts Submit Folder shows."""
 LABELED = {
     "mocap_assist/blender/fbx_curves.py": {"describe_missing_curves"},
-    "mocap_assist/check/checking.py": {"_summary"},
+    "mocap_assist/check/scene_checking.py": {"_summary"},
     "mocap_assist/check/compare_panel.py": {"HOLD"},
     "mocap_assist/check/panel.py": {"_draw_figures", "KINDS"},
     "mocap_assist/check/held_operator.py": {"HELD_TEXT", "CLICKED_TEXT"},
@@ -43,7 +43,7 @@ LABELED = {
     "mocap_assist/clean/report.py": {"clean_report"},
     "mocap_assist/overlays/marked_ranges.py": {"StripRow", "Mark"},
     "mocap_assist/exporting/menu.py": {"ENTRY"},
-    "mocap_assist/fix/fixing.py": {"SUMMARY"},
+    "mocap_assist/fix/scene_fixing.py": {"SUMMARY"},
     "mocap_assist/fix/panel.py": {"CONTINUE", "_draw_card"},
     "mocap_assist/importing/bind_meshes.py": {"UNFITTING", "_count"},
     "mocap_assist/importing/dialog/body_choice.py": {"BEST", "EVERY", "ONLY_THIS"},

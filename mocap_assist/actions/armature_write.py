@@ -31,7 +31,7 @@ from .bone_channels import (
 )
 from .curve_modifiers import act_on_keys
 from .curves import Channel, write_values
-from .nla_strips import keep, new_strip, play_in_place, remove_deltas, strip_of_result
+from .nla_strips import keep_action, new_strip, play_in_place, remove_deltas, strip_of_result
 from .rotation_modes import channels_from_quaternions
 from .take import ArmatureTake, BoneChannels, BonePoses
 from .unchanged_samples import RecordedChannels, UnchangedSamples
@@ -217,7 +217,7 @@ def keep_replaced(
     Those that are `known`, the recording and the result, stay anyway.
     """
     if animation.action not in known:
-        keep(animation.action)
+        keep_action(animation.action)
 
 
 def check_writable(armature: bpy.types.Object) -> None:

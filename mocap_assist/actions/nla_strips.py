@@ -61,11 +61,11 @@ def remove_tracks(animation: bpy.types.AnimData, tracks: Iterable[bpy.types.NlaT
     """Remove NLA tracks; their actions stay in the file."""
     for track in tracks:
         for strip in track.strips:
-            keep(strip.action)
+            keep_action(strip.action)
         animation.nla_tracks.remove(track)
 
 
-def keep(action: bpy.types.Action | None) -> None:
+def keep_action(action: bpy.types.Action | None) -> None:
     """Let an action stay in the file after nothing plays it any more."""
     if action is not None and action.library is None:
         action.use_fake_user = True
@@ -109,7 +109,7 @@ def play_in_place(strip: bpy.types.NlaStrip, source: Source) -> bool:
     An action of other frames would not: then it plays at its own. The track is renamed, too.
     """
     before = strip.action
-    keep(before)
+    keep_action(before)
     action, slot = source
     is_same_range = tuple(before.frame_range) == tuple(action.frame_range)
     timing = [getattr(strip, name) for name in TIMING]

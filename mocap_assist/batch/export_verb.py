@@ -12,7 +12,7 @@ from ...solvers.errors import InvalidSettingError
 from ...solvers.files import real_path
 from ...solvers.progress import Progress
 from ..exporting.button_settings import ExportBundle, ExportChoices, ExportFile
-from ..exporting.exporting import read_export, write_exported
+from ..exporting.scene_exporting import read_export, write_exported
 from ..exporting.target_file import ENDINGS, target_of
 from .solving import solve_in_subprocess
 

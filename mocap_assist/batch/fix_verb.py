@@ -7,7 +7,7 @@ import bpy
 
 from ...solvers.progress import Progress
 from ..fix.button_settings import FixBundle
-from ..fix.fixing import fixed_subject, read_fixing, write_fixed
+from ..fix.scene_fixing import fixed_subject, read_fixing, write_fixed
 from ..panel_parts.fix_card import stored_card
 from ..runtime.selection import played_source
 from ..scene import history

@@ -15,7 +15,7 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path, write_atomically
 from ...solvers.progress import Progress
 from ..find_similar import searches
-from ..find_similar.finding import list_found, read_finding
+from ..find_similar.scene_finding import list_found, read_finding
 from ..find_similar.solve_finding import Found
 from ..library.background import message_of
 from ..library.button_settings import FindBundle, LibraryChoices
@@ -115,7 +115,7 @@ def perform_find(
     scene.mocap_assist.library.library_file = arguments.library
     finding = solve_in_subprocess(read_finding(scene, subject, settings), arguments, progress)
     sentence = list_found(scene, subject, settings, finding)
-    search = searches.listed(bpy.context)
+    search = searches.listed_search(bpy.context)
     found = search.finding.found if search is not None else ()
     figures = {"matches": [_figures(each) for each in found]}
     return "\n".join([sentence, *map(_row, found)]), figures

@@ -6,10 +6,10 @@ import bpy
 
 from ...solvers.command_line.batches import Screen
 from ...solvers.errors import MocapAssistError
-from ...solvers.files import unwritable
+from ...solvers.files import unwritable_error
 from ...solvers.pictures import StickFigureSettings, draw_stick_figures
 from ..actions.armature_read import read_take
-from ..check.checking import read_played
+from ..check.scene_checking import read_played
 from ..runtime.selection import played_source
 from ..scene import history
 
@@ -35,4 +35,4 @@ def draw_result(
     except MocapAssistError as error:
         screen.write_line(str(error))
     except OSError as error:
-        screen.write_line(str(unwritable(path, error)))
+        screen.write_line(str(unwritable_error(path, error)))

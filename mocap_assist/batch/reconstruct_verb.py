@@ -10,7 +10,7 @@ from ...solvers.command_line.arguments import add_preset_option
 from ...solvers.progress import Progress
 from ..blender.name_lists import join_names
 from ..reconstruct.button_settings import Postures, ReconstructBundle
-from ..reconstruct.reconstructing import read_reconstructing, write_reconstructed
+from ..reconstruct.scene_reconstructing import read_reconstructing, write_reconstructed
 from ..runtime.selection import played_source
 from ..scene import history
 from .bundles import add_bundle_options, bundle_from_arguments

@@ -20,8 +20,8 @@ from ..retarget.button_settings import (
     UnbakeBundle,
     UnbakeChoices,
 )
-from ..retarget.retargeting import read_retarget, write_retargeted
-from ..retarget.unbaking import read_unbaking, write_unbaked
+from ..retarget.scene_retargeting import read_retarget, write_retargeted
+from ..retarget.scene_unbaking import read_unbaking, write_unbaked
 from ..scene import history
 from .solving import solve_in_subprocess
 

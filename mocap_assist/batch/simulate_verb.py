@@ -12,7 +12,7 @@ from ...solvers.command_line.arguments import (
 )
 from ...solvers.physics import SimulateSettings
 from ...solvers.progress import Progress
-from ..physics.simulating import SimulateBundle, read_simulating, write_simulated
+from ..physics.scene_simulating import SimulateBundle, read_simulating, write_simulated
 from ..scene import history
 from .solving import solve_in_subprocess
 

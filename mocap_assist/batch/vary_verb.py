@@ -9,7 +9,7 @@ import bpy
 from ...solvers.command_line.arguments import add_preset_option
 from ...solvers.progress import Progress, within
 from ..variants.button_settings import VaryBundle
-from ..variants.listing import chosen
+from ..variants.listing import chosen_variants
 from ..variants.reading import read_varying
 from ..variants.sheet import write_sheet
 from ..variants.writing import write_variants
@@ -43,5 +43,5 @@ def perform_vary(
     message = write_variants(scene, armature, settings, varied)
     if arguments.sheet is not None:
         message += " " + write_sheet(scene, arguments.sheet)
-    names = [action.name for action in chosen(scene)]
+    names = [action.name for action in chosen_variants(scene)]
     return message, {"actions": names, "remarks": list(varied.remarks)}

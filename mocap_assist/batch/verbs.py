@@ -21,9 +21,9 @@ from ..actions.armature_read import read_take
 from ..actions.markers.take import read_markers
 from ..blender.name_lists import join_names
 from ..check.button_settings import CheckBundle
-from ..check.checking import read_checking, show_checked
+from ..check.scene_checking import read_checking, show_checked
 from ..clean.button_settings import CleanBundle, Prior
-from ..clean.cleaning import read_cleaning, write_cleaned
+from ..clean.scene_cleaning import read_cleaning, write_cleaned
 from ..runtime.selection import played_source
 from ..scene import history
 from .bundles import add_bundle_options, bundle_from_arguments

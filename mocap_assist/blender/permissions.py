@@ -26,15 +26,17 @@ MAX_ENTRIES = 1000
 def allow_recording(path: str) -> None:
     """Allow a depth recording to be opened by every .blend file that shows it."""
     name = _name(path)
-    change(RECORDINGS, [*[each for each in entries(RECORDINGS) if each != name], name])
+    replace_permissions(
+        RECORDINGS, [*[each for each in permissions_of(RECORDINGS) if each != name], name]
+    )
 
 
 def recording_allowed(path: str) -> bool:
     """Whether this user has imported or shown the recording on this machine before."""
-    return _name(path) in entries(RECORDINGS)
+    return _name(path) in permissions_of(RECORDINGS)
 
 
-def entries(kind: str) -> list[Any]:
+def permissions_of(kind: str) -> list[Any]:
     """Return the permissions of a kind; none if the file is missing or damaged."""
     path = _file()
     try:
@@ -44,7 +46,7 @@ def entries(kind: str) -> list[Any]:
     return stored if isinstance(stored, list) else []
 
 
-def change(kind: str, allowed: list[Any]) -> None:
+def replace_permissions(kind: str, allowed: list[Any]) -> None:
     """Replace the permissions of a kind.
 
     Raises
@@ -53,7 +55,7 @@ def change(kind: str, allowed: list[Any]) -> None:
         The extension's folder cannot be written to.
     """
     path = _file()
-    stored = {each: entries(each) for each in (RECORDINGS, LIBRARIES)}
+    stored = {each: permissions_of(each) for each in (RECORDINGS, LIBRARIES)}
     stored[kind] = allowed[-MAX_ENTRIES:]
     bpy.utils.extension_path_user(EXTENSION, create=True)
     with write_atomically(path) as temporary:

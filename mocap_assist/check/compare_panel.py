@@ -7,7 +7,7 @@ from ..blender.mixins import PanelMixin
 from ..exporting.menu import EXPORT, draw_export
 from ..languages import translated
 from ..overlays.comparison.switches import draw_overlay_switches
-from ..panel_parts.panel_layout import draw_sentence, exists
+from ..panel_parts.panel_layout import draw_sentence, operator_exists
 from ..runtime.selection import played_result, selected_subject
 from ..scene import history
 from .key_map import key_text
@@ -27,11 +27,11 @@ class ComparePanel(PanelMixin):
         _draw_actions(layout, context)
         draw_overlay_switches(layout, context)
         _draw_key(layout, context)
-        if exists(REVERT):
+        if operator_exists(REVERT):
             layout.operator(REVERT, icon="LOOP_BACK")
             if reason := why_not_revert(context):
                 draw_sentence(layout, context, reason, icon="INFO")
-        if exists(EXPORT):
+        if operator_exists(EXPORT):
             draw_export(layout, context)
 
 

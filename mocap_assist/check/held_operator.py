@@ -59,7 +59,7 @@ class HeldOperator(OperatorMixin):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Show the result again; Blender calls this when the window closes, for example."""
-        raw_view.restore()
+        raw_view.restore_played()
         context.workspace.status_text_set(None)
 
     def _ends(self, event: bpy.types.Event) -> bool:

@@ -11,8 +11,8 @@ import bpy
 from bpy.app import handlers
 
 from ..runtime.selection import selected_subject
-from .checking import is_stale
 from .renewing import renew_always
+from .scene_checking import is_stale
 
 FIELDS = "name", "start", "stop", "kind", "severity", "sentence"
 """Properties of an issue."""
@@ -33,7 +33,7 @@ _lists: dict[int, _List] = {}
 
 
 @handlers.persistent
-def remember(*_: object) -> None:
+def remember_lists(*_: object) -> None:
     """Remember all lists before an undo step, and point to no action."""
     _lists.clear()
     for scene in bpy.data.scenes:
@@ -53,7 +53,7 @@ def remember(*_: object) -> None:
 
 
 @handlers.persistent
-def recall(*_: object) -> None:
+def show_remembered_list(*_: object) -> None:
     """Show the list of what is played, if it is known, after it; then check again.
 
     Undo may also have changed keys of an action that is still played. Only the scene of the
@@ -91,14 +91,14 @@ def _show(shown: bpy.types.PropertyGroup, kept: _List, action: bpy.types.Action 
 def register() -> None:
     """Do so at each undo and redo."""
     for steps in (handlers.undo_pre, handlers.redo_pre):
-        steps.append(remember)
+        steps.append(remember_lists)
     for steps in (handlers.undo_post, handlers.redo_post):
-        steps.append(recall)
+        steps.append(show_remembered_list)
 
 
 def unregister() -> None:
     """Remove the handlers."""
     for steps in (handlers.undo_pre, handlers.redo_pre):
-        steps.remove(remember)
+        steps.remove(remember_lists)
     for steps in (handlers.undo_post, handlers.redo_post):
-        steps.remove(recall)
+        steps.remove(show_remembered_list)

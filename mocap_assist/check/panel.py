@@ -9,14 +9,14 @@ from ..languages import translated
 from ..overlays.strip.switch import draw_strip_switch
 from ..panel_parts.figure_rows import figure_rows, frame_text, frames_text
 from ..panel_parts.fix_card import shown_card
-from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, is_wide
+from ..panel_parts.panel_layout import draw_job, draw_sentence, is_wide, operator_exists
 from ..panel_parts.visibility import shows_take
 from ..runtime.selection import played_result, selected_subject, shown_frames
 from ..scene import history
-from .checking import is_stale, why_not_visible
 from .issue_markers import has_issue_markers
 from .issue_views import draw_view_switches
 from .renewing import is_awaited
+from .scene_checking import is_stale, why_not_visible
 
 CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_issue"
 MARK = "mocap_assist.mark_issues"
@@ -75,7 +75,7 @@ class CheckPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(CHECK) and shows_take(context)
+        return operator_exists(CHECK) and shows_take(context)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, shown = self.layout, context.scene.mocap_assist

@@ -55,7 +55,7 @@ def why_not_show_raw(context: bpy.types.Context) -> str:
 
 def show_raw(context: bpy.types.Context) -> str:
     """Assign the recorded action to the selection; return a message for the status bar."""
-    restore()
+    restore_played()
     message = ""
     for player in animated_objects(selected_subject(context)):
         played = history.played_result(player)
@@ -73,7 +73,7 @@ def is_shown() -> bool:
 
 
 @handlers.persistent
-def restore(*_: object) -> None:
+def restore_played(*_: object) -> None:
     """Assign again what was played before; a second call has no effect."""
     history.release_results()
     if not _shown:
@@ -155,11 +155,11 @@ _BEFORE = ("load_pre", "save_pre", "undo_pre", "redo_pre", "render_init")
 def register() -> None:
     """Restore the result before anything that would store the recorded action in its place."""
     for name in _BEFORE:
-        getattr(handlers, name).append(restore)
+        getattr(handlers, name).append(restore_played)
 
 
 def unregister() -> None:
     """Restore, and remove the handlers."""
-    restore()
+    restore_played()
     for name in _BEFORE:
-        getattr(handlers, name).remove(restore)
+        getattr(handlers, name).remove(restore_played)

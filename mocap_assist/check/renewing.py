@@ -8,7 +8,7 @@ from ..runtime import after_result, watch
 from ..runtime.selection import selected_subject
 from ..runtime.solver_operator import SolverOperator
 from . import raw_view
-from .checking import is_stale
+from .scene_checking import is_stale
 
 _awaited: dict[int, bool] = {}
 """Number of each scene that a quiet check is for, until a check has ended there, and whether it
@@ -68,16 +68,16 @@ def renew_awaited() -> None:
 
 def is_awaited(context: bpy.types.Context) -> bool:
     """Whether a quiet check of what the selection plays runs, or will."""
-    is_on = watch.is_quiet_on() or bpy.app.timers.is_registered(renew)
+    is_on = watch.is_quiet_on() or bpy.app.timers.is_registered(check_again)
     return is_on and context.scene.session_uid in _awaited
 
 
 def _renew_when_idle() -> None:
-    if not bpy.app.timers.is_registered(renew):
-        bpy.app.timers.register(renew, first_interval=0.0)
+    if not bpy.app.timers.is_registered(check_again):
+        bpy.app.timers.register(check_again, first_interval=0.0)
 
 
-def renew() -> None:
+def check_again() -> None:
     """Press Check quietly in a window of an awaited scene.
 
     While another solve runs, the recorded action is shown or no window shows the scene there is
@@ -126,5 +126,5 @@ def unregister() -> None:
     after_result.listeners.remove(renew_later)
     watch.at_end.remove(renew_awaited)
     raw_view.at_end.remove(renew_awaited)
-    if bpy.app.timers.is_registered(renew):
-        bpy.app.timers.unregister(renew)
+    if bpy.app.timers.is_registered(check_again):
+        bpy.app.timers.unregister(check_again)

@@ -55,7 +55,7 @@ def why_no_raw(context: bpy.types.Context) -> str:
     return f"{action.name} is the raw action. Press Fix My Take or Clean first."
 
 
-def revert(subject: bpy.types.Object) -> str:
+def revert_to_recorded(subject: bpy.types.Object) -> str:
     """Assign the recorded action to an armature, or to each of the markers below an object."""
     message = ""
     for player in animated_objects(subject):

@@ -44,7 +44,7 @@ def draw_examples(
     layout.menu(MENUS[group], icon="ADD")
 
 
-def candidates(context: bpy.types.Context, group: str = CLEAN) -> list[str]:
+def candidate_actions(context: bpy.types.Context, group: str = CLEAN) -> list[str]:
     """Return the actions that may serve: recordings and clean ones, but not the one played."""
     armature = selected_armature(context)
     animation = armature.animation_data if armature is not None else None
@@ -78,7 +78,7 @@ class MOCAP_MT_posture_examples(bpy.types.Menu):
 
 
 def _draw_menu(layout: bpy.types.UILayout, context: bpy.types.Context, group: str) -> None:
-    for name in candidates(context, group)[:MAX_MENU_ENTRIES]:
+    for name in candidate_actions(context, group)[:MAX_MENU_ENTRIES]:
         button = layout.operator(ADD, text=name, translate=False, icon="ACTION")
         button.example, button.group = name, group
     layout.separator()

@@ -10,7 +10,7 @@ from ...solvers.motion import Motion
 from ...solvers.recordings import is_scene_file, may_contain_motion
 from ...solvers.recordings.containers import files_below
 from ..actions.armature_read import read_take
-from ..actions.fitting import fits, plays
+from ..actions.fitting import fits_armature, plays_action
 from ..blender import compat
 from ..blender.name_lists import split_names
 from ..blender.time_slices import Sliced, Steps, should_yield
@@ -165,9 +165,9 @@ def _player(
     armatures: Sequence[bpy.types.Object], action: bpy.types.Action
 ) -> tuple[bpy.types.Object, bpy.types.ActionSlot] | None:
     """Return the armature that plays an action, or the first that fits, and the slot for it."""
-    players = [each for each in armatures if plays(each, action)]
+    players = [each for each in armatures if plays_action(each, action)]
     for armature in [*players, *armatures]:
         for slot in action.slots:
-            if slot.target_id_type in compat.TARGETS and fits(armature, action, slot):
+            if slot.target_id_type in compat.TARGETS and fits_armature(armature, action, slot):
                 return armature, slot
     return None

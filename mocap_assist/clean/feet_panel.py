@@ -7,7 +7,7 @@ import bpy
 from ..actions.contact_keys import FOOT_PROPERTIES, PROPERTIES
 from ..blender.mixins import PanelMixin
 from ..overlays.contacts.switch import draw_contact_switch
-from ..panel_parts.panel_layout import draw_sentence, exists
+from ..panel_parts.panel_layout import draw_sentence, operator_exists
 from ..panel_parts.visibility import shows_armature
 from ..runtime.selection import selected_armature
 
@@ -32,7 +32,7 @@ class FeetPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(PLANT) and shows_armature(context)
+        return operator_exists(PLANT) and shows_armature(context)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, armature = self.layout, selected_armature(context)

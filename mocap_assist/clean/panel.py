@@ -4,7 +4,12 @@ import bpy
 
 from ...solvers.denoising import PART_STRENGTHS, DenoiseSettings, PlantSettings
 from ..blender.mixins import PanelMixin
-from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
+from ..panel_parts.panel_layout import (
+    draw_sentence,
+    folded_settings,
+    operator_exists,
+    settings_column,
+)
 from ..panel_parts.presets import draw_presets
 from ..panel_parts.visibility import shows_take
 from ..runtime.selection import selected_subject, why_not_clean
@@ -81,7 +86,7 @@ def _draw_learned(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) ->
     """Draw the file that patterns are learned from, or that Learn can keep them in."""
     if clean.prior == Prior.LEARNED.name:
         column.prop(clean, "learned_file")
-    elif clean.examples and exists(LEARN):
+    elif clean.examples and operator_exists(LEARN):
         column.prop(clean, "learned_file", text="Save As")
         column.operator(LEARN, text="Learn and Save", icon="FILE_TICK")
 
@@ -93,11 +98,11 @@ def _draw_folded(
     header.label(text="Advanced")
     if body is None:
         return
-    for name in folded(DenoiseSettings, (*MAIN, *PARTS), clean):
+    for name in folded_settings(DenoiseSettings, (*MAIN, *PARTS), clean):
         body.prop(clean, name)
     if not joints:
         return
     feet = body.column()
     feet.active = clean.plant_feet
-    for name in folded(PlantSettings, MAIN, clean):
+    for name in folded_settings(PlantSettings, MAIN, clean):
         feet.prop(clean, name)

@@ -58,12 +58,12 @@ def entry_of(
         "prior_used": body.report(frames),
         "iterations": body.iterations,
         "converged": body.converged,
-        "before": figures(cleaned.before),
-        "after": figures(cleaned.after),
+        "before": overall_figures(cleaned.before),
+        "after": overall_figures(cleaned.after),
     }
 
 
-def figures(quality: Quality) -> dict[str, Any]:
+def overall_figures(quality: Quality) -> dict[str, Any]:
     """Return the overall figures of a measurement; those of single joints would be too long."""
     every = quality.figures()
     return {name: value for name, value in every.items() if isinstance(value, (int, float))}

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..panel_parts.panel_layout import draw_job, exists
+from ..panel_parts.panel_layout import draw_job, operator_exists
 
 EXPORT = "mocap_assist.export_take"
 ENTRY = "Motion Capture Take (.fbx, .glb, .bvh)"
@@ -19,7 +19,7 @@ def draw_export(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def _draw_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:
-    if exists(EXPORT):
+    if operator_exists(EXPORT):
         self.layout.operator_context = "INVOKE_REGION_WIN"
         self.layout.operator(EXPORT, text=ENTRY)
 

@@ -6,7 +6,7 @@ import bpy
 
 from ...solvers.errors import InvalidSettingError
 from ..jobs.protocol import PreviewSolve
-from ..panel_parts.preference_values import preferred
+from ..panel_parts.preference_values import preference_value
 from .button_settings import FarmBundle
 from .solve_submitting import Submission, Submitted, submit_takes
 
@@ -27,7 +27,7 @@ UNNAMED = "Choose a folder of takes that has a name, or choose an output folder 
 
 def why_not_submit(context: bpy.types.Context) -> str:
     """Return why no job can be submitted, or an empty text."""
-    if not preferred("flamenco_manager").strip():
+    if not preference_value("flamenco_manager").strip():
         return NO_MANAGER
     return "" if bpy.app.online_access else OFFLINE
 
@@ -49,8 +49,8 @@ def read_submission(
     problem = Submission(
         takes=takes.absolute(),
         output_folder=output_folder.absolute(),
-        address=preferred("flamenco_manager"),
-        command=preferred("flamenco_command"),
+        address=preference_value("flamenco_manager"),
+        command=preference_value("flamenco_command"),
         settings=settings.job,
         fixing=settings.fixing,
     )

@@ -20,7 +20,7 @@ def learn_from_best(context: bpy.types.Context, group: str, n_best: int) -> str:
 
     Returns a sentence about it; raises InvalidMotionError where no search found anything.
     """
-    search = searches.ranked(context)
+    search = searches.ranked_search(context)
     best = search.finding.found[:n_best]
     usable = dict.fromkeys(entry for found in best if (entry := _example(context, found)))
     settings = getattr(context.scene.mocap_assist, group)

@@ -18,7 +18,7 @@ PASSED_EVENTS = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE"}
 
 def why_not_browse(context: bpy.types.Context) -> str:
     """Return why no matches can be shown, or an empty text."""
-    search = searches.listed(context)
+    search = searches.listed_search(context)
     if search is None or not search.finding.found:
         return "No matches are listed. Press Find Similar first."
     return why_busy()
@@ -39,7 +39,7 @@ class BrowseOperator(OperatorMixin):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Show the matches in the largest 3D View of the window."""
-        search = searches.listed(context)
+        search = searches.listed_search(context)
         views = [area for area in context.window.screen.areas if area.type == "VIEW_3D"]
         if not views or search is None:
             self.report({"ERROR"}, translated(NO_VIEW))
@@ -76,7 +76,11 @@ class BrowseOperator(OperatorMixin):
     def _shown_area(self, context: bpy.types.Context) -> bpy.types.Area | None:
         """Return the area, if it is still a 3D View of the window with the search listed."""
         shown = self._gallery
-        if shown is None or not shown.is_open or searches.listed(context) is not shown.search:
+        if (
+            shown is None
+            or not shown.is_open
+            or searches.listed_search(context) is not shown.search
+        ):
             return None
         is_there = any(area == self._area for area in context.window.screen.areas)
         return self._area if is_there and self._area and self._area.type == "VIEW_3D" else None

@@ -19,7 +19,7 @@ _drawing: list[ViewDrawing] = []
 def ghost_now(context: bpy.types.Context) -> Array | None:
     """Return the lines of the ghost at this frame, in the scene's units; None without one."""
     try:
-        search, found = searches.chosen(context)
+        search, found = searches.chosen_match(context)
     except InvalidMotionError:
         return None
     frame = (context.scene.frame_current_final - search.start) / search.step

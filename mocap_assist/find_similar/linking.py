@@ -17,7 +17,7 @@ def why_not_link(context: bpy.types.Context) -> str:
     """Return why no action can be linked, or an empty text."""
     if reason := searches.why_none(context):
         return reason
-    _, found = searches.chosen(context)
+    _, found = searches.chosen_match(context)
     if not is_action(found):
         return f"{found.entry.name} is a recording, not an action of a .blend file. Append it."
     return ""
@@ -34,7 +34,7 @@ def take_chosen(context: bpy.types.Context, link: bool) -> str:
 
     Returns a sentence about it; raises MocapAssistError where that is impossible.
     """
-    _, found = searches.chosen(context)
+    _, found = searches.chosen_match(context)
     action = take_action(found, link)
     armature = selected_armature(context)
     slots = fitting_slots(armature, action) if armature is not None else []

@@ -49,7 +49,7 @@ def read_loading(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: LoadBundle
 ) -> "partial[Fetched]":
     """Read the armature's rig; return the picklable solve."""
-    search, found = searches.chosen(bpy.context)
+    search, found = searches.chosen_match(bpy.context)
     problem, _ = problem_of(scene, armature, settings.choices, search, found)
     return partial(fetch_clip, problem)
 
@@ -62,7 +62,7 @@ def write_loaded(
     solved_digest: str | None = None,
 ) -> str:
     """Write the clip as a new action and assign it; return a message."""
-    search, found = searches.chosen(bpy.context)
+    search, found = searches.chosen_match(bpy.context)
     problem, switches = problem_of(scene, armature, settings.choices, search, found)
     check_unchanged(armature, solved_digest, problem)
     check_writable(armature)

@@ -13,19 +13,19 @@ from ..overlays.color_icons import square_icon
 from ..panel_parts.figure_rows import frames_text
 from ..panel_parts.panel_layout import (
     draw_sentence,
-    exists,
-    folded,
+    folded_settings,
     is_wide,
+    operator_exists,
     settings_column,
     split_column,
 )
 from ..panel_parts.visibility import shows_take
 from ..runtime.selection import Bones
 from . import searches
-from .finding import why_not_find
 from .ghost_drawing import COLOR
 from .match_grid import draw_match_grid
 from .previews import icon_of
+from .scene_finding import why_not_find
 
 KEEP = "mocap_assist.keep_current"
 INDEX, FIND = "mocap_assist.index_library", "mocap_assist.find_similar"
@@ -52,7 +52,7 @@ class MOCAP_UL_matches(bpy.types.UIList):
         active_property: str,
         index: int,
     ) -> None:
-        search = searches.listed(context)
+        search = searches.listed_search(context)
         row = layout.row()
         if search is not None and index < len(search.finding.found):
             row.template_icon(icon_of(search, index), scale=ROW)
@@ -75,7 +75,7 @@ class LibraryPanel(PanelMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         is_listing = bool(context.window_manager.mocap_assist_matches.rows)
-        return exists(FIND) and (is_listing or shows_take(context))
+        return operator_exists(FIND) and (is_listing or shows_take(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -131,7 +131,7 @@ def _draw_query(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
     header, body = column.panel("mocap_assist_find_advanced", default_closed=True)
     header.label(text="Advanced")
     if body is not None:
-        for name in ("n_matches", *folded(FindSettings, SEPARATE_SETTINGS, find)):
+        for name in ("n_matches", *folded_settings(FindSettings, SEPARATE_SETTINGS, find)):
             body.prop(find, name)
     button = column.row()
     button.scale_y = 1.6
@@ -142,7 +142,7 @@ def _draw_query(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 def _draw_matches(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
     listed = context.window_manager.mocap_assist_matches
-    search = searches.listed(context)
+    search = searches.listed_search(context)
     if search is None:
         draw_sentence(column, context, "Outdated. Press Find Similar again.", icon="INFO")
         return

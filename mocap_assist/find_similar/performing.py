@@ -23,7 +23,7 @@ from ..library.sources import library_path
 from ..runtime.solver_operator import in_background
 from ..scene.units import unit_of
 from . import searches
-from .finding import fill_list
+from .scene_finding import fill_list
 from .solve_finding import (
     BROWSED_HZ,
     MAX_MATCHES,
@@ -68,7 +68,7 @@ def show_all(context: bpy.types.Context, first: int = 0, row: int = 0) -> str:
     return _list_later(solve, listing, "Reading the library...")
 
 
-def page(context: bpy.types.Context, step: int) -> str:
+def show_next_match(context: bpy.types.Context, step: int) -> str:
     """Choose the next or previous match; the first follows the last.
 
     In a library with more clips than are listed, the next ones follow. While they are read,
@@ -77,7 +77,10 @@ def page(context: bpy.types.Context, step: int) -> str:
     if _pending and _pending[0].is_awaited and _pending[0].listing.query == THE_LIBRARY:
         _pending[0].waves += step
         return ""
-    listed, search = bpy.context.window_manager.mocap_assist_matches, searches.listed(context)
+    listed, search = (
+        bpy.context.window_manager.mocap_assist_matches,
+        searches.listed_search(context),
+    )
     if not listed.rows:
         return chosen_sentence()
     index = listed.active + step
@@ -90,10 +93,10 @@ def page(context: bpy.types.Context, step: int) -> str:
     return chosen_sentence()
 
 
-def choose(context: bpy.types.Context) -> str:
+def search_with_shown(context: bpy.types.Context) -> str:
     """Search with the clip that is shown."""
     try:
-        _, found = searches.chosen(bpy.context)
+        _, found = searches.chosen_match(bpy.context)
     except InvalidMotionError as error:
         return str(error)
     postures = found.postures.astype(np.float64)
@@ -122,7 +125,7 @@ def search_with(
     return _list_later(solve, listing, f"Searching with {n_frames} frames...")
 
 
-def news() -> str:
+def new_message() -> str:
     """Return the sentence about a list that was filled since the last call, or why it failed.
 
     Empty without one.
@@ -136,7 +139,7 @@ def chosen_sentence() -> str:
     if not listed.rows:
         return "No search yet."
     index = min(listed.active, len(listed.rows) - 1)
-    row, search = listed.rows[index], searches.listed(bpy.context)
+    row, search = listed.rows[index], searches.listed_search(bpy.context)
     if search is not None and search.finding.first is not None:
         return f"{search.finding.first + index + 1} of {search.finding.n_clips}: {row.name}."
     return f"{index + 1} of {len(listed.rows)}: {row.name} ({row.score:.0%})."
@@ -172,7 +175,7 @@ def _list_later(solve: Callable[..., Finding], listing: "_Listing", waiting: str
         job: Job[Finding] = Job(solve)
     except MocapAssistError as error:
         return str(error)
-    pending = _PendingList(job, listing, searches.newest())
+    pending = _PendingList(job, listing, searches.newest_search_number())
     _pending.append(pending)
     timers.register(partial(_poll, pending), first_interval=POLL_INTERVAL_S)
     return waiting
@@ -196,12 +199,14 @@ class _Listing(NamedTuple):
 
     def fill(self, finding: Finding, waves: int = 0) -> str:
         """List the clips; return a sentence that names the chosen one."""
-        fill_list(bpy.context, searches.keep(self.query, self.grid, self.meters, finding))
+        fill_list(
+            bpy.context, searches.store_search(self.query, self.grid, self.meters, finding)
+        )
         listed = bpy.context.window_manager.mocap_assist_matches
         listed.active = self.row % max(len(finding.found), 1)
         message = chosen_sentence()
         for _ in range(abs(waves)):  # beyond the page they count for the next one
-            message = page(bpy.context, 1 if waves > 0 else -1) or message
+            message = show_next_match(bpy.context, 1 if waves > 0 else -1) or message
         return message
 
 
@@ -219,7 +224,7 @@ class _PendingList:
     @property
     def is_awaited(self) -> bool:
         """Whether no other search was listed since, such as by Find Similar."""
-        return searches.newest() == self.newest
+        return searches.newest_search_number() == self.newest
 
 
 def _poll(pending: _PendingList) -> float | None:

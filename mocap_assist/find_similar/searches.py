@@ -38,7 +38,9 @@ _cache: dict[int, Search] = {}
 _last: list[int] = [0]
 
 
-def keep(query: str, grid: tuple[float, float], meters: float, finding: Finding) -> Search:
+def store_search(
+    query: str, grid: tuple[float, float], meters: float, finding: Finding
+) -> Search:
     """Store a search; old ones are removed."""
     _last[0] += 1
     search = Search(_last[0], query, *grid, meters, finding)
@@ -51,34 +53,34 @@ def keep(query: str, grid: tuple[float, float], meters: float, finding: Finding)
     return search
 
 
-def newest() -> int:
+def newest_search_number() -> int:
     """Return the number of the newest search; 0 before the first."""
     return _last[0]
 
 
-def listed(context: bpy.types.Context) -> Search | None:
+def listed_search(context: bpy.types.Context) -> Search | None:
     """Return the search whose matches are listed, if it is still known."""
     return _cache.get(context.window_manager.mocap_assist_matches.search)
 
 
-def chosen(context: bpy.types.Context) -> tuple[Search, Found]:
+def chosen_match(context: bpy.types.Context) -> tuple[Search, Found]:
     """Return the match that is chosen in the list, and the search that has found it.
 
     Raises InvalidMotionError where there is none.
     """
-    search = listed(context)
+    search = listed_search(context)
     index = context.window_manager.mocap_assist_matches.active
     if search is None or not 0 <= index < len(search.finding.found):
         raise InvalidMotionError("No clip is chosen. Press Find Similar, and click on one.")
     return search, search.finding.found[index]
 
 
-def ranked(context: bpy.types.Context) -> Search:
+def ranked_search(context: bpy.types.Context) -> Search:
     """Return the search whose matches are listed, best first.
 
     Raises InvalidMotionError where none is chosen, or where the clips were not searched for.
     """
-    search, _ = chosen(context)
+    search, _ = chosen_match(context)
     if not search.is_ranked:
         raise InvalidMotionError("These clips were not searched for. Press Find Similar first.")
     return search
@@ -87,7 +89,7 @@ def ranked(context: bpy.types.Context) -> Search:
 def why_none(context: bpy.types.Context) -> str:
     """Return why no match is chosen, or an empty text."""
     try:
-        chosen(context)
+        chosen_match(context)
     except InvalidMotionError as error:
         return str(error)
     return ""

@@ -71,7 +71,7 @@ def write_best(
 def _read(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundle
 ) -> _MatchesToVary:
-    search = searches.ranked(bpy.context)
+    search = searches.ranked_search(bpy.context)
     usable = [each for each in search.finding.found if each.entry.origin is not None]
     best = tuple(usable[: settings.choices.n_best])
     if not best:

@@ -10,12 +10,12 @@ from ..blender.mixins import PanelMixin
 from ..check.reverting import why_not_revert
 from ..languages import translated
 from ..panel_parts.fix_card import shown_card
-from ..panel_parts.panel_layout import draw_job, draw_sentence, exists, split_column
-from ..panel_parts.preference_values import preferred
+from ..panel_parts.panel_layout import draw_job, draw_sentence, operator_exists, split_column
+from ..panel_parts.preference_values import preference_value
 from ..panel_parts.visibility import shows_take
 from ..track.tracking import selected_preview
-from .fixing import why_not_fix
 from .queue import Status, selected_takes, shown_queue
+from .scene_fixing import why_not_fix
 
 FIX, ACCEPT, REVERT = (
     f"mocap_assist.{name}" for name in ("fix_take", "accept_fix", "revert_to_raw")
@@ -59,7 +59,7 @@ class FixPanel(PanelMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         shown = shows_take(context) or selected_preview(context) is not None
-        return exists(FIX) and shown
+        return operator_exists(FIX) and shown
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -72,7 +72,7 @@ class FixPanel(PanelMixin):
         if len(selected_takes(context)) > 1:
             several.operator(FIX_TAKES)
         several.operator(FIX_FOLDER, text="Fix Folder...", icon="FILE_FOLDER")
-        if preferred("flamenco_manager"):
+        if preference_value("flamenco_manager"):
             several.operator(SUBMIT_FOLDER, text="Submit Folder...", icon="NETWORK_DRIVE")
         if reason:
             draw_sentence(layout, context, reason, icon="INFO")

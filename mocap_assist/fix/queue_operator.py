@@ -11,8 +11,8 @@ from ..blender.path_properties import FOLDER, HIDDEN, absolute, path_property
 from ..jobs.job import POLL_INTERVAL_S
 from ..languages import translated
 from ..runtime.watched_operator import WatchedOperator
-from .fixing import push_undo
 from .queue import QueuedTake, Status, show_status, show_takes, shown_queue, takes_of
+from .scene_fixing import push_undo
 
 POINTER = {"MOUSEMOVE", "LEFTMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN"}
 """Events that the sidebar receives during the work, for its button Pause."""

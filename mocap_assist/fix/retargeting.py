@@ -8,7 +8,7 @@ from ...solvers.retargeting import RetargetSettings
 from ..blender.time_slices import Steps, runs_in_slices
 from ..jobs.job import Job, run, runs_here
 from ..retarget.button_settings import RetargetBundle, RetargetChoices
-from ..retarget.retargeting import read_retarget, write_retargeted
+from ..retarget.scene_retargeting import read_retarget, write_retargeted
 from ..runtime.subject import Subject
 
 POINTS = "Not retargeted: points have no skeleton, so there is no pose to transfer."

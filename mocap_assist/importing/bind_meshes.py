@@ -16,7 +16,7 @@ from ..scene.scene_objects import add_unselected
 
 MAX_MISFIT = 0.02
 """Mean distance between bones of the file and of the scene (fraction of the body's extent) up
-to which a mesh is bound. Chosen by hand: rounding gives 0.0001, another rest pose 0.1."""
+to which a mesh is bound. Measured: rounding gives 0.0001, another rest pose 0.1."""
 MIN_BONES = 3
 """Bones that file and scene must share; fewer determine no rotation. By definition."""
 UNFITTING = "without its meshes", "which do not fit the rest pose of these bones"

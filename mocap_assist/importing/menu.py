@@ -3,7 +3,7 @@
 import bpy
 from bpy_extras.io_utils import poll_file_object_drop
 
-from ..panel_parts.panel_layout import exists
+from ..panel_parts.panel_layout import operator_exists
 from .importing import EXTENSIONS
 
 IMPORT = "mocap_assist.import_recording"
@@ -20,11 +20,11 @@ class MOCAP_FH_recording(bpy.types.FileHandler):
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:
-        return exists(IMPORT) and poll_file_object_drop(context)
+        return operator_exists(IMPORT) and poll_file_object_drop(context)
 
 
 def _draw_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:
-    if exists(IMPORT):
+    if operator_exists(IMPORT):
         self.layout.operator(IMPORT, text=ENTRY)
 
 

@@ -8,7 +8,7 @@ from ..blender.mixins import PanelMixin
 from ..depth.depth_preview import NOT_ALLOWED, problem_of
 from ..languages import translated
 from ..panel_parts.manual_page import start_page
-from ..panel_parts.panel_layout import draw_job, draw_sentence, exists
+from ..panel_parts.panel_layout import draw_job, draw_sentence, operator_exists
 from ..panel_parts.solver_ready import note_drawing
 from ..panel_parts.visibility import ALL_PANELS
 from ..runtime.selection import selected_subject, why_not_active
@@ -37,7 +37,7 @@ class ImportPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(IMPORT)
+        return operator_exists(IMPORT)
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
         """Offer the panels that the selection does not need."""
@@ -64,7 +64,7 @@ class ImportPanel(PanelMixin):
             column.label(text=_figures(origin), icon="BLANK1", translate=False)
             if conventions := noted_conventions(origin):
                 draw_sentence(column, context, f"{conventions.sentence()}.", icon="BLANK1")
-            if conventions and exists(CHANGE):
+            if conventions and operator_exists(CHANGE):
                 layout.operator(CHANGE, icon="ORIENTATION_GLOBAL")
             if problem := problem_of(active):
                 draw_sentence(column, context, problem, icon="ERROR")
@@ -75,10 +75,10 @@ class ImportPanel(PanelMixin):
 def _draw_first_steps(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the first steps for an animator without a take."""
     draw_sentence(layout, context, "Or drop files into the 3D View.")
-    if exists(SAMPLE):
+    if operator_exists(SAMPLE):
         layout.operator(SAMPLE, icon="ARMATURE_DATA")
     layout.operator("wm.url_open", text="Open Manual", icon="HELP").url = start_page().as_uri()
-    if exists(WORKSPACE):
+    if operator_exists(WORKSPACE):
         layout.operator(WORKSPACE, icon="WORKSPACE")
 
 

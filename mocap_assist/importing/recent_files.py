@@ -29,7 +29,7 @@ def read_again(
     """
     state, reading = state_of(path), reading_of(conversion)
     takes = _read.pop((state, reading), None) or read_takes(path, conversion, progress)
-    remember(path, state, takes, reading)
+    store_read_file(path, state, takes, reading)
     return takes
 
 
@@ -45,7 +45,9 @@ def reading_of(conversion: Conversion) -> Reading:
     return conversion.reading, conversion.floor, conversion.body, conversion.meshes
 
 
-def remember(path: Path, state: State, takes: list[ReadRecording], reading: Reading) -> None:
+def store_read_file(
+    path: Path, state: State, takes: list[ReadRecording], reading: Reading
+) -> None:
     """Keep what was read from a file in this state, unless it has changed since."""
     if any(isinstance(take.recording, DepthRecording) for take in takes):
         return

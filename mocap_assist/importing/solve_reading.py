@@ -226,7 +226,7 @@ def _settle_scene_take(motion: Motion, conversion: Conversion) -> Motion:
     reading, conventions = conversion.reading, conventions_of(motion)
     if unit := reading.unit.meters:
         motion = with_conventions(
-            scaled(motion, unit / conventions.unit),
+            scaled_recording(motion, unit / conventions.unit),
             replace(conventions, unit=unit, is_unit_guessed=False),
         )
     return settle(motion, reading, conversion.floor)
@@ -248,7 +248,9 @@ def convert_recording(recording: Recording, conversion: Conversion) -> Motion | 
 
 def convert_tracked(recording: TrackedRecording, conversion: Conversion) -> Motion | Tracks:
     """Convert joints or markers to a motion or points for the scene."""
-    moving = scaled(_motion_or_points(recording, conversion.armature), conversion.scale)
+    moving = scaled_recording(
+        _motion_or_points(recording, conversion.armature), conversion.scale
+    )
     return moving if conversion.frame_rate is None else at_rate(moving, conversion.frame_rate)
 
 
@@ -281,7 +283,7 @@ def _motion_or_points(recording: TrackedRecording, armature: bool) -> Motion | T
     return recording.tracks
 
 
-def scaled(recording: Moving, factor: float) -> Moving:
+def scaled_recording(recording: Moving, factor: float) -> Moving:
     """Return the recording with all lengths scaled."""
     if factor == 1.0:
         return recording

@@ -17,7 +17,13 @@ from ...solvers.recordings.conventions import conventions_of
 from ..actions.markers.holders import markers_of
 from ..scene.origin import note_origin, origin_of_file
 from ..scene.other_animation import is_animated
-from ..scene.scene_objects import Numbers, choose, in_object_mode, remove, undo_on_error
+from ..scene.scene_objects import (
+    Numbers,
+    in_object_mode,
+    remove_data,
+    select_only,
+    undo_on_error,
+)
 from ..scene.scene_rate import (
     FrameRate,
     extend_duration,
@@ -129,7 +135,7 @@ class ImportTransaction:
         if self._created:
             in_object_mode(context)
             for made in self._created:
-                remove(made)
+                remove_data(made)
         self._state.restore(context)
 
     def end(self, context: bpy.types.Context) -> Imported:
@@ -138,7 +144,7 @@ class ImportTransaction:
         tops = tuple(objects[number] for number in self._tops if number in objects)
         if tops:
             chosen = [each for top in tops for each in markers_of(top) or [top]]
-            choose(context, chosen, tops[-1])
+            select_only(context, chosen, tops[-1])
         failed = self._failed if self._messages or self._failed else ["No file was chosen."]
         return Imported(tops, tuple(self._messages), tuple(failed), tuple(self._figures))
 

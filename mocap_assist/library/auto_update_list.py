@@ -19,7 +19,7 @@ from .sources import index_problem, library_path, listed_sources
 
 def auto_updated_libraries() -> list[IndexProblem]:
     """Return the libraries that are kept current."""
-    stored = permissions.entries(permissions.LIBRARIES)
+    stored = permissions.permissions_of(permissions.LIBRARIES)
     return [kept for each in stored if (kept := _problem_from_stored(each)) is not None]
 
 
@@ -28,9 +28,9 @@ def is_kept(problem: IndexProblem) -> bool:
     return problem in auto_updated_libraries()
 
 
-def keep(problem: IndexProblem) -> None:
+def keep_updated(problem: IndexProblem) -> None:
     """Update a library automatically from these sources, which replace earlier ones."""
-    permissions.change(
+    permissions.replace_permissions(
         permissions.LIBRARIES,
         [*_stored_without(problem.library), _stored_from_problem(problem)],
     )
@@ -38,7 +38,7 @@ def keep(problem: IndexProblem) -> None:
 
 def stop_keeping(library: str) -> None:
     """Index a library only when Index is pressed."""
-    permissions.change(permissions.LIBRARIES, _stored_without(library))
+    permissions.replace_permissions(permissions.LIBRARIES, _stored_without(library))
 
 
 def toggle_kept(choices: LibraryChoices) -> str:
@@ -54,7 +54,7 @@ def toggle_kept(choices: LibraryChoices) -> str:
     if is_kept(problem):
         stop_keeping(problem.library)
         return f"{name} is updated only when you press Build Library."
-    keep(problem)
+    keep_updated(problem)
     if len(problem.sources) == 1:
         return f"{name} is updated automatically from 1 source."
     return f"{name} is updated automatically from {len(problem.sources)} sources."
@@ -72,7 +72,7 @@ def change_sources(library: Any, sources: list[str]) -> None:
     library.sources = join_names(sources)
     choices = library.settings().choices
     if was_kept and listed_sources(choices):
-        keep(index_problem(choices))
+        keep_updated(index_problem(choices))
     elif was_kept:
         stop_keeping(str(library_path(choices)))
 

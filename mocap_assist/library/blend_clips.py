@@ -14,7 +14,7 @@ from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import is_scene_file, suffix_by_content
 from ...solvers.recordings.conventions import correct_stated_unit, stand_scene_upright
 from ..actions.armature_read import read_take
-from ..actions.fitting import fitting_slots, plays, plays_slot
+from ..actions.fitting import fitting_slots, plays_action, plays_slot
 from ..blender import compat
 from ..blender.compat import Source
 from ..blender.fbx_curves import describe_missing_curves
@@ -93,7 +93,7 @@ def sources_of(action: bpy.types.Action) -> dict[str, tuple[bpy.types.Object, So
                 not plays_slot(each, action, slot),
                 each.name != made_for,
                 each.name != slot.name_display,
-                not plays(each, action),
+                not plays_action(each, action),
             ),
         )
         found += [(ranked[0], (action, slot))] if ranked else []

@@ -11,7 +11,14 @@ import bpy
 
 from ...solvers.gestures import Gesture, GestureEvent
 from ...solvers.motion import JointRecording
-from ..find_similar.performing import choose, news, page, search_with, show_all, show_library
+from ..find_similar.performing import (
+    new_message,
+    search_with,
+    search_with_shown,
+    show_all,
+    show_library,
+    show_next_match,
+)
 from ..overlays.view_control import rotate_views, zoom_views
 
 STARTED = "Perform what you search for, then clap."
@@ -33,7 +40,9 @@ class Library:
     """Message about what has ended in the background since the last call."""
 
 
-LIBRARY = Library(show_library, page, search_with, show_all, choose, news)
+LIBRARY = Library(
+    show_library, show_next_match, search_with, show_all, search_with_shown, new_message
+)
 """The one that gestures reach."""
 
 
@@ -42,7 +51,7 @@ def library_news() -> str:
     return LIBRARY.news()
 
 
-def obey(context: bpy.types.Context, event: GestureEvent) -> str:
+def run_command(context: bpy.types.Context, event: GestureEvent) -> str:
     """Execute the command of a gesture; return the message to show."""
     gesture = event.gesture
     if gesture is Gesture.HAND_UP:
@@ -60,9 +69,9 @@ def obey(context: bpy.types.Context, event: GestureEvent) -> str:
     return STARTED if gesture is Gesture.CAPTURE_START else ""
 
 
-def obey_all(context: bpy.types.Context, events: Sequence[GestureEvent]) -> str:
+def run_commands(context: bpy.types.Context, events: Sequence[GestureEvent]) -> str:
     """Execute the commands of gestures in order; return the last message."""
-    messages = [obey(context, event) for event in events]
+    messages = [run_command(context, event) for event in events]
     return next((sentence for sentence in reversed(messages) if sentence), "")
 
 

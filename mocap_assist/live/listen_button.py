@@ -9,7 +9,7 @@ from ...solvers.recordings.streams import StreamProtocol
 from ..blender.last_press import note_press, noted_errors
 from ..blender.mixins import OperatorMixin
 from ..languages import translated
-from ..panel_parts.preference_values import preferred
+from ..panel_parts.preference_values import preference_value
 from . import listening
 from .stream_preferences import allowed_addresses, live_port
 
@@ -41,8 +41,8 @@ class ListenButton(OperatorMixin):
                     StreamProtocol[context.scene.mocap_assist.live.live_protocol],
                     allowed_addresses(),
                     context.scene.mocap_assist.live.live_person,
-                    tuple(preferred("clean_color")),
-                    preferred("line_width"),
+                    tuple(preference_value("clean_color")),
+                    preference_value("line_width"),
                 )
         except MocapAssistError as error:
             self.report({"ERROR"}, translated(str(error)))

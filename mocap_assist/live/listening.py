@@ -18,7 +18,7 @@ from ..blender.redrawing import redraw
 from ..languages import translated
 from ..overlays.live_figure import LiveFigure
 from ..overlays.view_drawing import Color
-from .commands import library_news, obey_all, search_for
+from .commands import library_news, run_commands, search_for
 from .stream_state import issue_text
 
 logger = logging.getLogger(__name__)
@@ -92,7 +92,7 @@ class Listening:
         """Show the actor, and execute the commands of gestures."""
         if news.frame is not None:
             self.figure.show(news.frame)
-        message = obey_all(context, news.events)
+        message = run_commands(context, news.events)
         if news.query is not None:
             message = search_for(context, news.query)
         self.message = news.message or message or self.message

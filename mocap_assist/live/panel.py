@@ -5,7 +5,12 @@ from typing import ClassVar
 import bpy
 
 from ..blender.mixins import PanelMixin
-from ..panel_parts.panel_layout import draw_sentence, exists, settings_column, split_column
+from ..panel_parts.panel_layout import (
+    draw_sentence,
+    operator_exists,
+    settings_column,
+    split_column,
+)
 from ..panel_parts.preference_values import preferences
 from ..panel_parts.visibility import shows_take
 from ..runtime.selection import selected_armature
@@ -30,7 +35,7 @@ class PerformPanel(PanelMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         is_listening = current() is not None
-        return exists(LISTEN) and (is_listening or shows_take(context))
+        return operator_exists(LISTEN) and (is_listening or shows_take(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         listening = current()
@@ -50,7 +55,7 @@ def _draw_buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     for name in STREAM:
         column.prop(live, name)
     layout.operator(LISTEN, icon="OUTLINER_OB_ARMATURE")
-    if exists(RECORD) and selected_armature(context) is not None:
+    if operator_exists(RECORD) and selected_armature(context) is not None:
         column = settings_column(layout, context, "live")
         header, body = column.panel("mocap_assist_live_recording", default_closed=True)
         header.label(text="Recording")

@@ -4,7 +4,7 @@ import bpy
 
 from ...solvers.errors import InvalidSettingError
 from ...solvers.recordings.streams import PORT
-from ..panel_parts.preference_values import preferences, preferred
+from ..panel_parts.preference_values import preference_value, preferences
 
 OFFLINE = (
     "Blender's online access is off. Allow it in Preferences > System to receive from other"
@@ -18,7 +18,7 @@ NO_ADDRESSES = (
 
 def live_port() -> int:
     """Return the UDP port of live streams."""
-    return int(preferred("live_port")) if preferences() is not None else PORT
+    return int(preference_value("live_port")) if preferences() is not None else PORT
 
 
 def allowed_addresses() -> str:
@@ -29,9 +29,9 @@ def allowed_addresses() -> str:
     InvalidSettingError
         Other machines may send, but no address is listed, or Blender is offline.
     """
-    if preferences() is None or not preferred("live_network"):
+    if preferences() is None or not preference_value("live_network"):
         return ""
-    addresses = str(preferred("live_addresses"))
+    addresses = str(preference_value("live_addresses"))
     if not addresses.strip(" ,"):
         raise InvalidSettingError(NO_ADDRESSES)
     if not bpy.app.online_access:

@@ -8,10 +8,10 @@ import bpy
 from ...solvers.markers import SolveSettings
 from ...solvers.workflows import MarkerMotionSettings
 from ..blender.mixins import PanelMixin
-from ..panel_parts.panel_layout import draw_sentence, exists, settings_column
+from ..panel_parts.panel_layout import draw_sentence, operator_exists, settings_column
 from ..panel_parts.visibility import shows_all
 from ..runtime.selection import selected_subject
-from .solving import why_not_solve
+from .scene_skeleton import why_not_solve
 
 SOLVE_OPERATOR = "mocap_assist.solve_skeleton"
 
@@ -26,7 +26,7 @@ class MarkersPanel(PanelMixin):
     def poll(cls, context: bpy.types.Context) -> bool:
         subject = selected_subject(context)
         is_marked = subject is not None and subject.type != "ARMATURE"
-        return exists(SOLVE_OPERATOR) and (is_marked or shows_all(context))
+        return operator_exists(SOLVE_OPERATOR) and (is_marked or shows_all(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

@@ -9,7 +9,7 @@ import numpy as np
 from ..actions.reliability_curves import Term
 from ..blender.redrawing import redraw_views
 from ..panel_parts.panel_layout import draw_sentence
-from ..panel_parts.preference_values import preferred
+from ..panel_parts.preference_values import preference_value
 from .color_icons import draw_marks
 from .confidence_colors import ColoredBones, available_terms, colored_bones_at
 from .marked_ranges import MARKS, StripRow
@@ -77,7 +77,7 @@ def _draw(context: bpy.types.Context) -> None:
     bones = colored_bones_at(armature, context.scene.frame_current_final, term)
     if bones is not None:
         _draw_colored_bones(
-            bones, armature.matrix_world, WIDTH_FACTOR * preferred("line_width")
+            bones, armature.matrix_world, WIDTH_FACTOR * preference_value("line_width")
         )
 
 

@@ -9,7 +9,7 @@ import bpy
 
 from ...solvers.settings import Settings, research_names
 from ..languages import broken_lines, translated
-from .preference_values import preferred
+from .preference_values import preference_value
 
 BORDER_WIDTH_PX = 64
 """Width of both borders of a panel, and of a box in it, in pixels at scale 1."""
@@ -23,7 +23,7 @@ MAX_CACHED = 128
 """Number of cached sentences. It bounds the memory."""
 
 
-def exists(idname: str) -> bool:
+def operator_exists(idname: str) -> bool:
     """Whether Blender knows an operator, such as mocap_assist.denoise."""
     family, _, name = idname.partition(".")
     return hasattr(bpy.types, f"{family.upper()}_OT_{name}")
@@ -108,7 +108,7 @@ def split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
     return column
 
 
-def folded(
+def folded_settings(
     settings: type[Settings], shown: Container[str], group: bpy.types.PropertyGroup
 ) -> list[str]:
     """Return the names of the settings that a panel folds away.
@@ -116,7 +116,7 @@ def folded(
     Research settings are left out, unless the preferences show them or their value in `group`
     is not the default: what has an effect is never hidden.
     """
-    hidden = frozenset() if preferred("show_research") else research_names(settings)
+    hidden = frozenset() if preference_value("show_research") else research_names(settings)
     return [
         item.name
         for item in fields(settings)

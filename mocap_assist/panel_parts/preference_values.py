@@ -16,7 +16,7 @@ def preferences() -> bpy.types.AddonPreferences | None:
     return None if ours is None else ours.preferences
 
 
-def preferred(name: str) -> Any:
+def preference_value(name: str) -> Any:
     """Return one preference, or its default."""
     ours = preferences()
     if ours is not None:

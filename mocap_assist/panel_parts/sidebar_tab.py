@@ -2,14 +2,14 @@
 
 import bpy
 
-from .preference_values import preferred
+from .preference_values import preference_value
 
 TAB = "Mocap"
 
 
 def tab_name() -> str:
     """Return the name of the tab from the preferences."""
-    return str(preferred("tab")).strip() or TAB
+    return str(preference_value("tab")).strip() or TAB
 
 
 def is_tab_open(screen: bpy.types.Screen) -> bool:

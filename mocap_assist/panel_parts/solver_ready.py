@@ -5,7 +5,7 @@ from time import monotonic
 import bpy
 
 from ..jobs.waiting_child import end_waiting, keep_waiting
-from .preference_values import preferred
+from .preference_values import preference_value
 
 CHECK_INTERVAL_S = 1.0
 """Seconds between two looks whether a solver is ready. It bounds how soon after a press the
@@ -25,7 +25,7 @@ def note_drawing() -> None:
 
 
 def _check() -> float | None:
-    if not preferred("keep_solver_ready") or monotonic() - _drawn_at[0] > UNUSED_S:
+    if not preference_value("keep_solver_ready") or monotonic() - _drawn_at[0] > UNUSED_S:
         end_waiting()
         return None
     if not bpy.context.window_manager.mocap_assist_job.running:

@@ -6,7 +6,12 @@ import bpy
 
 from ...solvers.physics import Ground, SimulateSettings
 from ..blender.mixins import PanelMixin
-from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
+from ..panel_parts.panel_layout import (
+    draw_sentence,
+    folded_settings,
+    operator_exists,
+    settings_column,
+)
 from ..panel_parts.presets import draw_presets
 from ..panel_parts.visibility import shows_armature
 from ..runtime.selection import why_not_change
@@ -23,7 +28,7 @@ class PhysicsPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(SIMULATE) and shows_armature(context)
+        return operator_exists(SIMULATE) and shows_armature(context)
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
         draw_presets(self.layout, "simulate")
@@ -45,7 +50,7 @@ def _draw_folded(column: bpy.types.UILayout, simulate: bpy.types.PropertyGroup) 
     header.label(text="Advanced")
     if body is None:
         return
-    for name in folded(SimulateSettings, (), simulate):
+    for name in folded_settings(SimulateSettings, (), simulate):
         row = body.row()
         row.active = name != "ground_height" or simulate.ground != Ground.FEET.name
         row.prop(simulate, name)

@@ -9,13 +9,18 @@ from ...solvers.reconstruction import ReconstructSettings
 from ..blender.mixins import PanelMixin
 from ..clean.example_list import RECONSTRUCT, draw_examples
 from ..overlays.confidence_switch import draw_confidence_switch
-from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
+from ..panel_parts.panel_layout import (
+    draw_sentence,
+    folded_settings,
+    operator_exists,
+    settings_column,
+)
 from ..panel_parts.presets import draw_presets
 from ..panel_parts.visibility import shows_all
 from ..runtime.selection import selected_armature
 from ..scene.origin import origin_of, was_tracked
 from .button_settings import Postures
-from .reconstructing import why_not_reconstruct
+from .scene_reconstructing import why_not_reconstruct
 
 BUTTON = "mocap_assist.reconstruct"
 
@@ -28,7 +33,7 @@ class ReconstructPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(BUTTON) and (
+        return operator_exists(BUTTON) and (
             shows_all(context) or _is_suitable(selected_armature(context))
         )
 
@@ -67,9 +72,9 @@ def _draw_folded(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
     header.label(text="Advanced")
     if body is None:
         return
-    for name in ("residuals_file", *folded(ReconstructSettings, (), settings)):
+    for name in ("residuals_file", *folded_settings(ReconstructSettings, (), settings)):
         body.prop(settings, name)
     feet = body.column()
     feet.active = settings.plant_feet
-    for name in folded(PlantSettings, (), settings):
+    for name in folded_settings(PlantSettings, (), settings):
         feet.prop(settings, name)

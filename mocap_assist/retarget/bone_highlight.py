@@ -8,7 +8,7 @@ import numpy as np
 from ...solvers.arrays import Single
 from ..blender.redrawing import redraw_views
 from ..overlays.view_drawing import Color, ViewDrawing, draw_lines
-from ..panel_parts.preference_values import preferred
+from ..panel_parts.preference_values import preference_value
 from ..panel_parts.sidebar_tab import is_tab_open
 from ..runtime.selection import select_only_bone
 from .bone_map import LISTED_ARMATURES, listed_armature
@@ -66,7 +66,7 @@ def highlighted_bones(context: bpy.types.Context) -> list[tuple[bpy.types.Object
 def _draw(context: bpy.types.Context) -> None:
     if not getattr(context.window_manager, SWITCH) or not is_tab_open(context.screen):
         return
-    width = WIDTH_FACTOR * preferred("line_width")
+    width = WIDTH_FACTOR * preference_value("line_width")
     for armature, line in highlighted_bones(context):
         if armature.visible_get(viewport=context.space_data):
             draw_lines(line, armature.matrix_world, COLOR, width)

@@ -29,8 +29,8 @@ from .bone_map import (
     listed_maps,
 )
 from .rest_preview import draw_rest_switch
-from .retargeting import target_called
 from .role_labels import role_label
+from .scene_retargeting import target_called
 
 FIND, SAVE, LOAD = (
     f"mocap_assist.{name}" for name in ("find_bones", "save_bone_map", "load_bone_map")

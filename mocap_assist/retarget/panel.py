@@ -7,7 +7,12 @@ import bpy
 from ...solvers.errors import MocapAssistError
 from ...solvers.retargeting import RetargetSettings, RootMotion
 from ..blender.mixins import PanelMixin
-from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
+from ..panel_parts.panel_layout import (
+    draw_sentence,
+    folded_settings,
+    operator_exists,
+    settings_column,
+)
 from ..panel_parts.presets import draw_presets
 from ..panel_parts.visibility import shows_armature
 from ..rigs.rigify import is_rigify
@@ -15,7 +20,7 @@ from ..runtime.selection import selected_armature, why_not_read, why_not_retarge
 from .action_ticks import draw_ticks
 from .bone_list import draw_bones
 from .button_settings import Takes
-from .retargeting import fitting_actions, remarks_on_target, target_called
+from .scene_retargeting import fitting_actions, remarks_on_target, target_called
 
 RETARGET, UNBAKE = "mocap_assist.retarget", "mocap_assist.reduce_keys"
 MAIN = ("root_motion", "keep_feet", "keep_hands")
@@ -29,7 +34,7 @@ class RetargetPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(RETARGET) and shows_armature(context)
+        return operator_exists(RETARGET) and shows_armature(context)
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
         draw_presets(self.layout, "retarget")
@@ -61,7 +66,7 @@ class RetargetPanel(PanelMixin):
         elif (source := selected_armature(context)) is not None:
             for remark in remarks_on_target(source, context.scene.objects[shown.target]):
                 draw_sentence(layout, context, f"{remark}.", icon="ERROR")
-        if exists(UNBAKE):
+        if operator_exists(UNBAKE):
             _draw_unbake(layout, context)
 
 
@@ -85,7 +90,7 @@ def _draw_folded(column: bpy.types.UILayout, shown: bpy.types.PropertyGroup) -> 
     if body is None:
         return
     on_root = shown.root_motion == RootMotion.ROOT_BONE.name
-    for name in folded(RetargetSettings, MAIN, shown):
+    for name in folded_settings(RetargetSettings, MAIN, shown):
         row = body.row()
         row.active = on_root or name != "turn_root"
         row.prop(shown, name)

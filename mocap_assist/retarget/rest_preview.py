@@ -19,7 +19,7 @@ from ..overlays.pixel_drawing import (
     write,
 )
 from ..overlays.view_drawing import Color, ViewDrawing
-from ..panel_parts.preference_values import preferred
+from ..panel_parts.preference_values import preference_value
 from .bone_highlight import COLOR as HIGHLIGHT
 from .bone_map import LISTED_ARMATURES, listed_armature
 
@@ -118,7 +118,7 @@ def _draw(context: bpy.types.Context) -> None:
         box = Box(space.x + margin + index * (size + margin), space.y + margin, size, size)
         draw_boxes([(box, BACKGROUND)])
         lines = lines_in_box(figure.lines, np.array(rotation), box)
-        draw_colored_lines(lines, np.array(figure.colors), preferred("line_width"))
+        draw_colored_lines(lines, np.array(figure.colors), preference_value("line_width"))
         corner = box.x + margin, box.y + margin
         write(figure.name, corner, size - 2 * margin, TEXT_COLOR)
 

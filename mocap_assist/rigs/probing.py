@@ -17,12 +17,10 @@ MAX_ROTATION_RAD = 0.35
 MAX_SHIFT_FRACTION = 0.03
 """Largest random displacement, relative to the rig's height. Chosen by hand: 5 cm of a rig of
 1.8 m."""
-MAX_ROTATION_DIFFERENCE = 2e-3
-"""Difference between entries of rotation matrices, a ratio, of controls that move together.
-Chosen by hand: 0.1 degrees, of rotations of up to 20."""
-MAX_POSITION_DIFFERENCE = 2e-3
-"""The same of positions, relative to the rig's height. Chosen by hand: 4 mm of a rig of 1.8
-m."""
+MAX_DIFFERENCE = 2e-3
+"""Difference between controls that move together, a ratio: of entries of rotation matrices, and
+of positions relative to the rig's height. Chosen by hand: 0.1 degrees, of rotations of up to
+20, and 4 mm of a rig of 1.8 m."""
 Switches = Mapping[tuple[str, str], float]
 
 
@@ -73,8 +71,8 @@ def _movers_in_common(
         difference = np.abs(carried - movement)
         if (
             other != name
-            and difference[:, :3, :3].max() < MAX_ROTATION_DIFFERENCE
-            and difference[:, :3, 3].max() < MAX_POSITION_DIFFERENCE * height
+            and difference[:, :3, :3].max() < MAX_DIFFERENCE
+            and difference[:, :3, 3].max() < MAX_DIFFERENCE * height
         ):
             return other
     return None

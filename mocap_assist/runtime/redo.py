@@ -21,7 +21,7 @@ def fingerprint(problem: Any) -> str:
 
 
 @Sliced
-def remember(problem: Any, solution: Any) -> Steps[None]:
+def store_solution(problem: Any, solution: Any) -> Steps[None]:
     """Cache one solution in place of the previous one, so that memory stays bounded."""
     digest = yield from in_thread.steps(partial(fingerprint, problem))
     _last.clear()
@@ -29,7 +29,7 @@ def remember(problem: Any, solution: Any) -> Steps[None]:
 
 
 @Sliced
-def recall(problem: Any) -> Steps[Any]:
+def stored_solution(problem: Any) -> Steps[Any]:
     """Return the cached solution if it solves the same problem, otherwise None."""
     if not _last:
         return None

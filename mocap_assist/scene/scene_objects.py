@@ -24,7 +24,7 @@ def in_object_mode(context: bpy.types.Context) -> None:
 def add_object(context: bpy.types.Context, made: bpy.types.Object) -> None:
     """Link an object where new ones go, and make it the only one that is selected."""
     add_unselected(context, made)
-    choose(context, [made], made)
+    select_only(context, [made], made)
 
 
 def add_unselected(context: bpy.types.Context, made: bpy.types.Object) -> None:
@@ -53,7 +53,7 @@ def hidden_collection(context: bpy.types.Context, name: str) -> bpy.types.Collec
     return made
 
 
-def choose(
+def select_only(
     context: bpy.types.Context, chosen: list[bpy.types.Object], active: bpy.types.Object
 ) -> None:
     """Select these objects and no others."""
@@ -64,12 +64,12 @@ def choose(
     context.view_layer.objects.active = active
 
 
-def present() -> Numbers:
+def session_numbers() -> Numbers:
     """Return the session numbers of all data of the kinds that this module makes."""
     return {kind: {each.session_uid for each in getattr(bpy.data, kind)} for kind in KINDS}
 
 
-def remove(numbers: Numbers) -> None:
+def remove_data(numbers: Numbers) -> None:
     """Remove the data with these session numbers that still exist."""
     for kind, unwanted in numbers.items():
         data = getattr(bpy.data, kind)
@@ -79,17 +79,17 @@ def remove(numbers: Numbers) -> None:
 @contextmanager
 def undo_on_error(context: bpy.types.Context) -> Iterator[Numbers]:
     """Restore the scene after an error; otherwise fill the yielded list."""
-    state, before = SceneState.of(context), present()
+    state, before = SceneState.of(context), session_numbers()
     made: Numbers = {}
     try:
         yield made
     except BaseException:
         in_object_mode(context)
-        remove(_new(before))
+        remove_data(_new(before))
         state.restore(context)
         raise
     made.update(_new(before))
 
 
 def _new(before: Numbers) -> Numbers:
-    return {kind: numbers - before[kind] for kind, numbers in present().items()}
+    return {kind: numbers - before[kind] for kind, numbers in session_numbers().items()}

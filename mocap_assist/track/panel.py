@@ -12,8 +12,8 @@ from ..overlays.marked_ranges import MARKS, StripRow
 from ..panel_parts.panel_layout import (
     draw_job,
     draw_sentence,
-    exists,
-    folded,
+    folded_settings,
+    operator_exists,
     split_column,
 )
 from ..panel_parts.visibility import shows_all
@@ -41,7 +41,7 @@ class TrackPanel(PanelMixin):
         suits = selected_preview(context) is not None or is_tracked(
             context.view_layer.objects.active
         )
-        return exists(TRACK) and (suits or shows_all(context))
+        return operator_exists(TRACK) and (suits or shows_all(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -63,7 +63,7 @@ def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
             column.prop(track, name)
     for name in SHOWN:
         column.prop(track, name)
-    if "method" in folded(CaptureSettings, (), track):
+    if "method" in folded_settings(CaptureSettings, (), track):
         column.prop(track, "method")
     layout.operator(TRACK, icon="OUTLINER_OB_ARMATURE")
     if reason := why_not_track(context):

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..panel_parts.panel_layout import exists
+from ..panel_parts.panel_layout import operator_exists
 
 BUTTONS = (
     "mocap_assist.import_recording",
@@ -53,7 +53,7 @@ class MOCAP_MT_clean(bpy.types.Menu):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.operator_context = "INVOKE_REGION_WIN"
-        for idname in filter(exists, BUTTONS):
+        for idname in filter(operator_exists, BUTTONS):
             layout.operator(idname)
 
 

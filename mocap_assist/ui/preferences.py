@@ -15,7 +15,7 @@ from ..library.auto_update_list import auto_updated_libraries, stop_keeping
 from ..overlays.comparison import drawing
 from ..panel_parts.manual_page import start_page
 from ..panel_parts.panel_layout import draw_sentence
-from ..panel_parts.preference_values import EXTENSION, preferences, preferred
+from ..panel_parts.preference_values import EXTENSION, preference_value, preferences
 from .diagnostics import COPY
 
 NETWORK_WARNING = (
@@ -220,7 +220,7 @@ def _give_default(*_: object) -> None:
 @bpy.app.handlers.persistent
 def _give_scene_default(scene: bpy.types.Scene, *_: object) -> None:
     """Set the output of one scene, such as one that was just added."""
-    wanted, clean = preferred("result_as"), scene.mocap_assist.clean
+    wanted, clean = preference_value("result_as"), scene.mocap_assist.clean
     if wanted != Output.ACTION.name and not clean.is_property_set("result_as"):
         clean.result_as = wanted
 

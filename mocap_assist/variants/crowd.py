@@ -88,7 +88,7 @@ def assign(
     InvalidMotionError
         An armature cannot play them; nothing is changed then.
     """
-    scene, actions = context.scene, listing.chosen(context.scene)
+    scene, actions = context.scene, listing.chosen_variants(context.scene)
     members = draw_members(len(armatures), len(actions), settings.choices)
     given = []
     for armature, member in zip(armatures, members, strict=True):
@@ -141,7 +141,7 @@ def why_not_stack(context: bpy.types.Context) -> str:
 def put_on_tracks(context: bpy.types.Context) -> str:
     """Put the variants on NLA tracks of their armature in sequence; return a message."""
     scene = context.scene
-    armature, actions = listing.armature_of(scene), listing.chosen(scene)
+    armature, actions = listing.armature_of(scene), listing.chosen_variants(scene)
     if armature is None:
         raise InvalidMotionError(NO_ARMATURE)
     sources = [listing.source_for(armature, action) for action in actions]

@@ -48,7 +48,7 @@ def play_active(variants: bpy.types.PropertyGroup, context: bpy.types.Context) -
         compat.assign(armature, action, slots[0])
 
 
-def chosen(scene: bpy.types.Scene) -> list[bpy.types.Action]:
+def chosen_variants(scene: bpy.types.Scene) -> list[bpy.types.Action]:
     """Return the variants that are picked; all if none is."""
     rows = [row for row in scene.mocap_assist.variants.rows if row.action is not None]
     return [row.action for row in rows if row.picked] or [row.action for row in rows]
@@ -56,7 +56,7 @@ def chosen(scene: bpy.types.Scene) -> list[bpy.types.Action]:
 
 def why_none(context: bpy.types.Context) -> str:
     """Return why no variants are listed, or an empty text."""
-    if not chosen(context.scene):
+    if not chosen_variants(context.scene):
         return "There are no variants yet. Press Vary."
     return ""
 
@@ -76,7 +76,7 @@ def keep_picked(scene: bpy.types.Scene) -> str:
     Variants with other users, and assets, are kept; they only leave the list.
     """
     variants = scene.mocap_assist.variants
-    kept = chosen(scene)
+    kept = chosen_variants(scene)
     others = [row.action for row in variants.rows if row.action not in {None, *kept}]
     list_variants(scene, variants.armature, kept)
     spared = [action for action in others if is_used(action)]

@@ -14,7 +14,7 @@ def mark_variants(scene: bpy.types.Scene, tags: str, catalog: str) -> str:
     Raises InvalidFileError where a catalog was named, and there is no place for it.
     """
     number = catalog_number(catalog)
-    actions = listing.chosen(scene)
+    actions = listing.chosen_variants(scene)
     for action in actions:
         mark_as_asset(action, [TAG, *clip_tags(action), *tags.split(",")], number)
     return f"Marked {len(actions)} variants as assets."

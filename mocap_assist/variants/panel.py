@@ -8,13 +8,18 @@ from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
 from ..blender.mixins import PanelMixin
 from ..find_similar import searches
-from ..panel_parts.panel_layout import draw_sentence, exists, folded, settings_column
+from ..panel_parts.panel_layout import (
+    draw_sentence,
+    folded_settings,
+    operator_exists,
+    settings_column,
+)
 from ..panel_parts.presets import draw_presets
 from ..panel_parts.visibility import shows_armature
 from ..retarget.action_ticks import draw_ticks
 from ..runtime.selection import selected_armature
-from .listing import chosen
-from .reading import candidates, why_not_vary
+from .listing import chosen_variants
+from .reading import candidate_actions, why_not_vary
 from .tags import short_name
 
 VARY, KEEP, SHEET, STACK, MARK, ASSIGN = (
@@ -68,7 +73,7 @@ class VaryPanel(PanelMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         has_variants = bool(context.scene.mocap_assist.variants.rows)
-        return exists(VARY) and (has_variants or shows_armature(context))
+        return operator_exists(VARY) and (has_variants or shows_armature(context))
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
         draw_presets(self.layout, "vary")
@@ -94,11 +99,11 @@ def picture_of(action: bpy.types.Action) -> int:
 
 def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
     armature = selected_armature(context)
-    found = [] if armature is None else candidates(armature)
+    found = [] if armature is None else candidate_actions(armature)
     if len(found) > 1:
         draw_sentence(column, context, HINT)
     draw_ticks(column, context, found, "vary")
-    if search := searches.listed(context):
+    if search := searches.listed_search(context):
         column.operator(USE_OPERATOR, text=f"Best Matches of {search.query}", icon="VIEWZOOM")
 
 
@@ -121,11 +126,11 @@ def _draw_folded(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) -> N
         return
     for name in OTHERS:
         body.prop(vary, name)
-    for name in folded(VarySettings, SEPARATE_SETTINGS, vary):
+    for name in folded_settings(VarySettings, SEPARATE_SETTINGS, vary):
         body.prop(vary, name)
     feet = body.column()
     feet.active = vary.plant_feet
-    for name in folded(PlantSettings, (), vary):
+    for name in folded_settings(PlantSettings, (), vary):
         feet.prop(vary, name)
 
 
@@ -140,7 +145,7 @@ def _draw_variants(column: bpy.types.UILayout, context: bpy.types.Context) -> No
         if action is not None:
             column.template_icon(picture_of(action), scale=LARGE)
     picked = any(row.picked for row in variants.rows)
-    n_chosen = len(chosen(context.scene))
+    n_chosen = len(chosen_variants(context.scene))
     draw_sentence(
         column,
         context,

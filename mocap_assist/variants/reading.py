@@ -17,7 +17,7 @@ from ..blender.block_references import SourceReference
 from ..blender.compat import Source
 from ..blender.name_lists import split_names
 from ..blender.time_slices import Sliced, Steps
-from ..retarget.retargeting import fitting_actions, source_called
+from ..retarget.scene_retargeting import fitting_actions, source_called
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.movers import movers_of
 from ..rigs.rigify import is_rigify
@@ -76,7 +76,7 @@ def chosen_sources(armature: bpy.types.Object, choices: VaryChoices) -> tuple[So
     return tuple(source_called(name, armature) for name in names)
 
 
-def candidates(armature: bpy.types.Object) -> list[bpy.types.Action]:
+def candidate_actions(armature: bpy.types.Object) -> list[bpy.types.Action]:
     """Return the actions that may show a behavior: those for the armature, but no variants."""
     others = (action for action in bpy.data.actions if not is_variant(action))
     return [action for action, _ in fitting_actions(armature, others)]
@@ -89,12 +89,12 @@ def read_varying(
     """Read the actions; return the picklable solve."""
     check_writable(armature)
     _shown.clear()
-    found = yield from read.steps(scene, armature, settings)
+    found = yield from read_chosen_actions.steps(scene, armature, settings)
     return partial(vary, found.problem)
 
 
 @Sliced
-def read(
+def read_chosen_actions(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: VaryBundle
 ) -> Steps[VaryScene]:
     """Read the chosen actions; of control rigs, the motion of their bodies."""

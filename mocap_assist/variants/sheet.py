@@ -25,7 +25,7 @@ def write_sheet(scene: bpy.types.Scene, path: Path) -> str:
     """
     if not path.resolve().parent.is_dir():
         raise InvalidFileError(f"There is no folder {path.resolve().parent} to write to.")
-    armature, actions = listing.armature_of(scene), listing.chosen(scene)
+    armature, actions = listing.armature_of(scene), listing.chosen_variants(scene)
     motions = [
         (
             action.name,

@@ -16,7 +16,7 @@ from ..scene import history
 from . import listing
 from .button_settings import VaryBundle
 from .keys import BaseExample, hold_others, without_still
-from .reading import Switches, VaryScene, read
+from .reading import Switches, VaryScene, read_chosen_actions
 from .solve_varying import Varied
 from .tags import names_for, tag_variant
 
@@ -48,7 +48,7 @@ def write_variants(
         The actions are not what was solved.
     """
     here, made = Subject.of(scene, armature), list[int]()
-    found = yield from read.steps(scene, armature, settings)
+    found = yield from read_chosen_actions.steps(scene, armature, settings)
     scene, armature = here.find()
     writer = _Writer.of(found, settings, varied)
     yield from check_unchanged.steps(armature, solved_digest, found.problem)

@@ -83,7 +83,7 @@ def _parser(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> Sente
     """Return a parser that lists all verbs, and has the options of the one in the words."""
     parser = SentenceParser(
         prog=prog,
-        description="Clean up captured motion: BVH, Acclaim (AMC with ASF), C3D and TRC files.",
+        description="Clean, solve, track, search, vary and retarget captured motion.",
         epilog=f"For the options of a verb: {prog} VERB --help",
     )
     parser.add_argument("--version", action="version", version=f"Mocap Assist {version()}")

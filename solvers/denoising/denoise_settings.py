@@ -63,9 +63,9 @@ class DenoiseSettings(Settings):
 
 DEFAULT_SETTINGS = DenoiseSettings()
 MIN_RATE_HZ = 5.0
-"""Frames per second below which they are poses, not samples of a recording. Chosen by hand: a
-clean walk of CMU was changed by up to 28 degrees at 2 Hz and 21 at 4, since people move between
-the frames, and by 4 at 10; the slowest sensors have 5."""
+"""Frames per second below which they are poses, not samples of a recording. Measured: a clean
+walk of CMU was changed by up to 28 degrees at 2 Hz and 21 at 4, since people move between the
+frames, and by 4 at 10; the slowest sensors have 5."""
 PART_STRENGTHS = {part: f"strength_{part}" for part in BODY_PARTS}
 """Name of the setting of each part of the body."""
 

@@ -20,7 +20,10 @@ from .observed_samples import restore_observed
 def find_held_and_cuts(
     recording: Motion | Tracks, settings: DenoiseSettings
 ) -> tuple[Flags, tuple[int, ...]]:
-    """Return what a tracker held, except in segments that are kept, and the cuts."""
+    """Return what a tracker held, except in segments that are kept, and the cuts.
+
+    The first has the shape (n_frames, n_parts) of `find_held_samples`; cuts are frames.
+    """
     held = find_held_samples(recording)
     if settings.method is DenoiseMethod.PUBLISHED:
         held[:] = False

@@ -11,9 +11,12 @@ from .camera import Camera
 
 Depth = NDArray[np.floating[Any]]
 
-MAX_STEP_M, MAX_STEP_PER_M2 = 0.05, 0.005
-"""Maximum depth step between pixels of one surface: meters, and growth with squared depth.
-Chosen by hand; `make sensitivity` varies them."""
+MAX_STEP_M = 0.05
+"""Maximum depth step between pixels of one surface, meters. Chosen by hand; `make sensitivity`
+varies it."""
+MAX_STEP_PER_M2 = 0.005
+"""Growth of that step with squared depth: three standard deviations of the noise of a Kinect,
+0.04 m at 5 m (Khoshelham and Elberink 2012, doi:10.3390/s120201437)."""
 MAX_COMPONENT_DISTANCE_M = 0.5
 """A small component, such as a hand held forward, belongs to a body within this distance. It
 guards bodies that an arm or a hole in the depth divides
@@ -155,7 +158,10 @@ def _refine_mask(depth: Depth, coarse_depth: Depth, step: int) -> Flags:
 def label_components(
     depth: Depth, camera: Camera
 ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """Label connected pixels from 1 (0: no reading); return their surfaces, square meters."""
+    """Label connected pixels of an image, (height, width), from 1; 0 has no reading.
+
+    Also return the surface of each component, (n_components,), in square meters.
+    """
     from scipy.sparse import coo_array  # slow to import: only when needed
     from scipy.sparse.csgraph import connected_components  # slow to import: only when needed
 

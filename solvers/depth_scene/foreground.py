@@ -277,7 +277,7 @@ def cut_out_actor(
 
 
 def is_in_front(depth: DepthImage, background: Background, margin: float) -> NDArray[np.bool_]:
-    """Return the mask of pixels in front of the empty room by more than its noise."""
+    """Return the pixels, (height, width), before the empty room by `margin`, m, and noise."""
     spread = NOISE_FACTOR * background.spread
     is_unknown = background.depth == 0.0
     is_nearer = depth < background.depth - np.maximum(margin, spread)
@@ -287,7 +287,7 @@ def is_in_front(depth: DepthImage, background: Background, margin: float) -> NDA
 def above_floor_mask(
     depth: DepthImage, camera: Camera, floor: FloorPlane, min_height: float
 ) -> NDArray[np.bool_]:
-    """Return the mask of pixels more than `min_height` meters above the floor."""
+    """Return the pixels, (height, width), more than `min_height` meters above the floor."""
     return np.asarray(depth * _upward_rays(camera, tuple(floor.up)) + floor.height > min_height)
 
 

@@ -119,7 +119,10 @@ def _assign(
 def interpolate_trajectory(
     actor: dict[int, Array], frames: NDArray[np.intp], n_frames: int, frame_rate: float
 ) -> Array:
-    """Interpolate between samples; far from all samples the actor counts as missing."""
+    """Interpolate the actor's positions, (3,) meters by sample, to all frames: (n_frames, 3).
+
+    NaN far from all samples, where the actor counts as missing. Sample i is of `frames[i]`.
+    """
     trajectory = np.full((n_frames, 3), np.nan)
     if not actor:
         return trajectory

@@ -48,7 +48,10 @@ def person_finder(
     frames: NDArray[np.intp],
     progress: Progress,
 ) -> "PersonFinder":
-    """Learn the scene; return the detector of people in its frames."""
+    """Learn the scene from frames, (n_samples,); return the detector of people in it.
+
+    The indices in `empty` are of frames without people.
+    """
     method = _choose_method(recording, settings, empty, frames)
     settings = replace(settings, actor_mask=method)
     floor, background = None, None
@@ -63,7 +66,7 @@ def person_finder(
 
 
 def sample_frames(recording: DepthRecording) -> NDArray[np.intp]:
-    """Return the frames from which the scene is learned."""
+    """Return the indices, (n_samples,), of the frames from which the scene is learned."""
     wanted = recording.n_frames / recording.frame_rate * SAMPLES_PER_SECOND
     n_samples = int(np.clip(np.ceil(wanted), min(recording.n_frames, 12), MAX_SAMPLES))
     n_samples = min(n_samples, recording.n_frames)

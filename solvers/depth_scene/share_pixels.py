@@ -41,7 +41,7 @@ def share_pixels(distances: Array, components: Integers, reach: float) -> Intege
 
 
 def enlarged(owners: Integers, step: int, shape: tuple[int, ...]) -> Integers:
-    """Return the owners of all pixels, from those of every `step`-th column and row."""
+    """Return the owners of all pixels, (height, width), from every `step`-th column and row."""
     if step == 1:
         return owners
     from scipy.ndimage import distance_transform_edt  # slow to import: only when needed

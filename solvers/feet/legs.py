@@ -53,7 +53,7 @@ def find_legs(
 def find_foot_joints(
     skeleton: Skeleton, humanoid_map: HumanoidMap | None = None
 ) -> NDArray[np.intp] | None:
-    """Return the joints of ankle and toes (columns) of the left and right foot (rows).
+    """Return the joints of ankle and toes, (2, 2): a row for the left and the right foot.
 
     Without toes the ankle appears twice. Returns None unless both feet are found.
     """
@@ -63,7 +63,7 @@ def find_foot_joints(
 def find_foot_points(
     tracks: Tracks, humanoid_map: HumanoidMap | None = None
 ) -> NDArray[np.intp] | None:
-    """Return the points of both feet, like `find_foot_joints`, by the names of joints."""
+    """Return the points of both feet, (2, 2) as of `find_foot_joints`, by names of joints."""
     index_of_name = {name: index for index, name in enumerate(tracks.names)}
     roles = humanoid_map.joints if humanoid_map else roles_by_name(tracks.names)
     return _ankles_and_toes({

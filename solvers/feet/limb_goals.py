@@ -23,19 +23,19 @@ from .sole import load_shares, measure_standing_heights, smoothed_paths
 from .support import Support, resting_steps
 
 SHOULDER_RAD, ELBOW_RAD = np.radians(4.0), np.radians(2.0)
-"""Radians by which a shoulder and an elbow may turn. `make sensitivity` varies them. Chosen by
-hand, by how elbows of bodies on their hands accelerate, relative to the take: 1.03 times.
-Shoulder: x0.5 makes it 1.12, x2 leaves it. Elbow: x0.5 makes it 1.00 and turns shoulders
-farther, x2 makes it 1.17."""
+"""Radians by which a shoulder and an elbow may turn. `make sensitivity` varies them. Sweep of
+how elbows of bodies on their hands accelerate, relative to the take: 1.03 times. Shoulder: x0.5
+makes it 1.12, x2 leaves it. Elbow: x0.5 makes it 1.00 and turns shoulders farther, x2 makes it
+1.17."""
 WRIST_RAD = np.radians(15.0)
-"""Radians of a wrist, whose hand follows its own rotation in the world. Chosen by hand: x0.5
-and x2 turn arms by 0.1 degrees less and more. `make sensitivity` varies it."""
+"""Radians of a wrist, whose hand follows its own rotation in the world. Sweep: x0.5 and x2 turn
+arms by 0.1 degrees less and more. `make sensitivity` varies it."""
 HAND_RAD = np.radians(2.5)
-"""Radians of a hand in the world. Chosen by hand: x0.5 makes elbows accelerate 1.04 times, x2
-turns arms by 1.9 degrees in place of 1.2. `make sensitivity` varies it."""
+"""Radians of a hand in the world. Sweep: x0.5 makes elbows accelerate 1.04 times, x2 turns arms
+by 1.9 degrees in place of 1.2. `make sensitivity` varies it."""
 HAND_M = 0.012
-"""Meters, for a leg of 0.9 m, by which a wrist may leave its path in contact. Chosen by hand:
-x0.5 makes elbows accelerate 1.11 times; `make sensitivity` varies it."""
+"""Meters, for a leg of 0.9 m, by which a wrist may leave its path in contact. Sweep: x0.5 makes
+elbows accelerate 1.11 times; `make sensitivity` varies it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,9 +23,9 @@ MAX_CHANGE_RAD = np.radians(20.0)
 capture jumps (`test_glitch_of_one_frame_does_not_twist_a_leg`). With 15 degrees feet of clean
 takes drift by 12 mm in their contacts, with 20 by 0.9."""
 MAX_ROOT_CHANGE_M = 0.06
-"""Meters, for a leg of 0.9 m, by which the root may move to hold feet in place. Chosen by hand
-on the same takes: 0.04 lets feet drift by 80 mm in place of 23 where the travel is too long for
-the steps; `make sensitivity` varies it."""
+"""Meters, for a leg of 0.9 m, by which the root may move to hold feet in place. Sweep on the
+same takes: 0.04 lets feet drift by 80 mm in place of 23 where the travel is too long for the
+steps; `make sensitivity` varies it."""
 MAX_EXCESS = 1.05
 """Ratio of a change to the largest allowed one that is good enough. It bounds the run time."""
 YIELD_S = 0.25

@@ -11,25 +11,26 @@ from ..motion_fitting.goals import BonePoint
 from .legs import LegJoints
 
 HEEL_FRACTION = 0.2
-"""Distance of the heel behind the ankle, relative to the distance from ankle to ball. Chosen by
-hand; `make sensitivity` varies it."""
+"""Distance of the heel behind the ankle, relative to the distance from ankle to ball. Half and
+twice gain less than 1 % (`make sensitivity`)."""
 LOAD_FALLOFF_M = 0.007
-"""Meters, for a leg of 0.9 m: a point this far above the lowest carries 1/e of its load. Chosen
-by hand; `make sensitivity` varies it."""
+"""Meters, for a leg of 0.9 m: a point this far above the lowest carries 1/e of its load. Half
+and twice are no better (`make sensitivity`)."""
 SPEED_FALLOFF = 0.1
 """Meters per second, for a leg of 0.9 m: a point this much faster than the slowest carries 1/e
-of its load. Chosen by hand: x1.5 makes the worst knee of squats whose feet were captured badly
-jerk 1.5 times as much; `make sensitivity` varies it."""
+of its load. X1.5 makes the worst knee of squats whose feet were captured badly jerk 1.5 times
+as much. Half and twice are no better (`make sensitivity`)."""
 MIN_RISE_M = 0.012
 """Meters, for a leg of 0.9 m, by which heel and ball are higher than the tip (or than the ankle
 above its own height at rest) when all carry the same load. Captured toes jitter, and a
-jittering tip should not carry a resting foot. Chosen by hand; `make sensitivity` varies it."""
+jittering tip should not carry a resting foot. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 MAX_REST_SPEED = 0.15
 """Meters per second below which the entire foot rests on the floor. Chosen by hand;
 `make sensitivity` varies it."""
 SMOOTHING_S = 0.03
-"""Seconds over which speeds and heights are smoothed before they are compared. Chosen by hand;
-`make sensitivity` varies it."""
+"""Seconds over which speeds and heights are smoothed before they are compared. Half and twice
+gain less than 1 % (`make sensitivity`)."""
 
 
 def sole_points(skeleton: Skeleton, leg: LegJoints) -> tuple[BonePoint, ...]:

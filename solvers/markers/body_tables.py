@@ -47,8 +47,8 @@ class MarkerPrior(NamedTuple):
 
 
 TRUNK_FLEXION_RAD: Triple = (0.4, 0.4, 0.4)
-"""Standard deviation of the rotation of a trunk joint, radians. Chosen by hand;
-`make sensitivity` varies it."""
+"""Standard deviation of the rotation of a trunk joint, radians. Half and twice are no better
+(`make sensitivity`)."""
 CENTRAL_JOINTS = (
     JointPrior("hips", ""),
     JointPrior("spine", "hips", (0.0, TIGHT_STD_M, TIGHT_STD_M), TRUNK_FLEXION_RAD),

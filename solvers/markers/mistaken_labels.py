@@ -9,14 +9,14 @@ from .pair_swaps import PairSwap
 from .vectors import nan_median
 
 MIN_BAD_MISFIT = 4.0
-"""Median misfit, relative to the spread of the distances, above which a label is wrong. Chosen
-by hand; `make sensitivity` varies it."""
+"""Median misfit, relative to the spread of the distances, above which a label is wrong. Half
+and twice are no better (`make sensitivity`)."""
 MAX_GOOD_MISFIT = 1.0
 """Median misfit, relative to the same, below which a label is correct. It guards reflections,
 which fit no label (`test_reflection_does_not_get_the_label_of_a_missing_marker`)."""
 MIN_NEIGHBORS = 3
 """Number of observed neighbors without which no label is checked: spheres about three of them
-meet in two points. Chosen by hand; `make sensitivity` varies it."""
+meet in two points. Half and twice are no better (`make sensitivity`)."""
 MIN_JUMP_M = 0.06
 """Step relative to the neighbors in one frame that indicates another marker. It guards markers
 that get the label of a missing one for some frames: they would keep it."""

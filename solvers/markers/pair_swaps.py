@@ -11,17 +11,17 @@ from .distances import Distances
 from .rigid_transform import MARKER_NOISE_M
 
 MAX_JUMP_EVIDENCE = 10.0
-"""Maximum evidence of one jump as a log-odds weight. Chosen by hand; `make sensitivity` varies
-it."""
+"""Maximum evidence of one jump as a log-odds weight. Half and twice are no better
+(`make sensitivity`)."""
 FORBIDDEN_COST = 1e9
 """Cost, a weight, of a swap where a pair moves smoothly. It guards pairs that never swap: any
 cost above the evidence of a whole take does."""
 SWITCH_COST = 3.0
-"""Cost of each start and end of a swap, the logarithm of a probability. Chosen by hand;
-`make sensitivity` varies it."""
+"""Cost of each start and end of a swap, the logarithm of a probability. Half and twice are no
+better (`make sensitivity`)."""
 FRAME_WEIGHT = 0.3
-"""Weight of the distances in a frame, since consecutive frames are correlated. Chosen by hand;
-`make sensitivity` varies it."""
+"""Weight of the distances in a frame, since consecutive frames are correlated. Half and twice
+are no better (`make sensitivity`)."""
 STEP_PERCENTILE = 90.0
 """Typical step of a pair: this percentile of its relative steps, times `STEP_FACTOR`, plus the
 noise of a marker. A low percentile limits the influence of swaps in short takes. Chosen by

@@ -15,7 +15,7 @@ MAX_SWAPS = 500
 are random."""
 N_PASSES = 3
 """Maximum number of passes; the distances of each are learned from the labels that the pass
-before corrected. Chosen by hand; `make sensitivity` varies it."""
+before corrected. Half and twice are no better (`make sensitivity`)."""
 
 
 @dataclass(frozen=True, kw_only=True)

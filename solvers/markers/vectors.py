@@ -74,12 +74,12 @@ def matrix_from_rotation_vector(vectors: Array) -> Array:
 
 
 def nan_median(values: Array) -> Array:
-    """Return medians over the first axis without NaN; NaN where there is nothing else."""
+    """Return medians of values, (n, ...), over the first axis without NaN; NaN if all are."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of all-NaN columns
         return np.asarray(np.nanmedian(values, axis=0))
 
 
 def median_or_zero(values: Array) -> Array:
-    """Return medians over the first axis without NaN; 0 where there is nothing else."""
+    """Return medians of values, (n, ...), over the first axis without NaN; 0 if all are NaN."""
     return np.nan_to_num(nan_median(values))

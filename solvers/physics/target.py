@@ -15,8 +15,8 @@ from ..rotations import inverse, multiply, normalize, slerp, unroll
 from ..signals import fill_gaps, fill_rotation_gaps, smooth_to_the_ends
 
 SPLINE_VARIANCE = 1.0 / 3.0
-"""Variance of the uniform cubic B-spline as a filter, in squared frames. Chosen by hand;
-`make sensitivity` varies it."""
+"""Variance of the uniform cubic B-spline as a filter, in squared frames. By definition: it is
+four boxes of one frame, convolved, each with a variance of 1/12."""
 
 
 class BodyStates(NamedTuple):

@@ -14,7 +14,7 @@ MIN_BODY_JOINTS = 15
 
 
 def left_joints(skeleton: Skeleton, roles: Mapping[str, int]) -> NDArray[np.bool_]:
-    """Return the joints of left limbs; by the rest pose where no body is recognized.
+    """Return whether joints, (n_joints,), are of left limbs; by the rest pose if of no body.
 
     Parameters
     ----------

@@ -11,12 +11,8 @@ from ..progress import Progress
 from ..signals import fill_gaps, smooth_gaussian
 from .pose_completion import CompletedJoints, PostureSettings, blend_gaps, complete_joints
 from .pose_library import PostureLibrary
-from .reliability import REPLACED_RELIABILITY, WRONG_RELIABILITY
+from .reliability import OBSERVED_RELIABILITY, REPLACED_RELIABILITY, WRONG_RELIABILITY
 
-OBSERVED_RELIABILITY = 0.5
-"""More reliable joints keep their observed positions. Joints below `REPLACED_RELIABILITY` take
-the positions of the library poses; in between, both are blended. Chosen by hand;
-`make sensitivity` varies it."""
 HALF_WEIGHT_M = 0.15
 """Distance (m) from the smoothed path at which the weight of the library pose is halved.
 Sensors that err by more have a reliability near 0. Chosen by hand; `make sensitivity` varies
@@ -24,7 +20,7 @@ it."""
 UNCERTAIN_RELIABILITY = 0.07
 """Reliability from which `HALF_WEIGHT_M` applies in full; at `WRONG_RELIABILITY` it has no
 effect. On intact takes of UI-PRMD, joints of reliability 0.1 to 0.5 are 10 cm off, joints below
-0.05 are 40 cm off. Chosen by hand: x0.1 costs 4.2 %. It guards joints that are only uncertain:
+0.05 are 40 cm off. Sweep: x0.1 costs 4.2 %. It guards joints that are only uncertain:
 `test_wrong_joint_is_replaced_and_an_uncertain_one_stays_near`."""
 POSITION_SMOOTHING_S = 0.1
 """Standard deviation (s) of the Gaussian that smooths observed positions. Chosen by hand;

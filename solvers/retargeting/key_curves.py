@@ -8,11 +8,11 @@ import scipy
 from ..arrays import Array, Integers
 
 SLOPE_WEIGHT = 1e-3
-"""Weight of the samples' own slope at the keys, which regularizes the fit. Chosen by hand;
-`make sensitivity` varies it."""
+"""Weight of the samples' own slope at the keys, which regularizes the fit. Half and twice are
+no better (`make sensitivity`)."""
 END_WEIGHT = 100.0
-"""Weight of the first and the last sample, where clips are joined. Chosen by hand;
-`make sensitivity` varies it."""
+"""Weight of the first and the last sample, where clips are joined. Half and twice are no better
+(`make sensitivity`)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,8 +21,8 @@ MIN_CHANGE = 1e-7
 """Change, in radians or meters, below which a joint or the root needs only one key. It absorbs
 rounding (`test_constant_joints_need_one_key_and_resting_ones_none`)."""
 INITIAL_TOLERANCE_FACTOR = 3.0
-"""Initial error of each joint alone, as a multiple of the tolerance. Chosen by hand;
-`make sensitivity` varies it."""
+"""Initial error of each joint alone, as a multiple of the tolerance. Half and twice gain less
+than 1 % (`make sensitivity`)."""
 ROUNDING = 1e-12
 """Radians or meters: a smaller change of a fitted curve is none. It absorbs rounding."""
 N_SAMPLED_POSES = 100

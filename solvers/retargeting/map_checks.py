@@ -18,8 +18,8 @@ MIN_KNEE_BEND = 0.08
 """Distance of the knee from the line between hip and ankle, as a fraction of the leg, from
 which it shows where it bends. Chosen by hand: 37 degrees of flexion, far above noise."""
 MAX_KNEES_FORWARD = 0.1
-"""Fraction of bent knees in front of that line, below which knees bend backward. Chosen by
-hand: 1.0 in people, 0.0 where left and right are swapped."""
+"""Fraction of bent knees in front of that line, below which knees bend backward. Measured: 1.0
+in people, 0.0 where left and right are swapped."""
 MIN_BENT_FRAMES = 10
 """Frames with a bent knee that show its direction; fewer may be faults of a sensor."""
 MAX_SAMPLED_FRAMES = 500
@@ -107,7 +107,10 @@ def _lateral_vector(rest: Array, joints: Joints, part: str) -> Array:
 
 
 def check_feet(alignment: Array, joints: Joints, whose: str) -> None:
-    """Refuse a body with both feet pointing backwards, as in mirrored Kinect recordings."""
+    """Refuse a body whose feet both point backwards, as in mirrored Kinect recordings.
+
+    The alignment, (n_joints, 4), rotates each joint of the rest pose to the T-pose.
+    """
     feet = [joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in joints]
     angles = angle_between(alignment[feet], alignment[joints["hips"]])
     if len(feet) == len(SIDES) and (angles > MIN_BACKWARD_ANGLE_RAD).all():

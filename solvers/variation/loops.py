@@ -17,8 +17,8 @@ from .curves import HEIGHT_COLUMN, MotionCurves
 MIN_LOOP_FRAMES = 8
 """Minimum frames of a cyclic clip. It guards clips too short for a cycle."""
 MAX_MEAN_GAP_M = 0.06
-"""Maximum mean joint distance in meters between the first and the last pose of a loop. Chosen
-by hand; `make sensitivity` varies it."""
+"""Maximum mean joint distance in meters between the first and the last pose of a loop. Half and
+twice are no better (`make sensitivity`)."""
 MAX_JOINT_GAP_M = 0.25
 """Maximum distance in meters of any single joint. Chosen by hand; `make sensitivity` varies
 it."""

@@ -15,23 +15,23 @@ from .variation_model import VariationModel
 
 BOOTSTRAP_VARIANCE = 0.9
 """Fraction of the weights' variance in the bootstrap, for many examples. Of n examples it is
-less by 1 / n, since two variants often draw the same example. Chosen by hand;
-`make sensitivity` varies it."""
+less by 1 / n, since two variants often draw the same example. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 SOFTMAX_GAIN = 8.0
-"""Factor of the softmax over examples; higher values copy a single example more closely. Chosen
-by hand; `make sensitivity` varies it."""
+"""Factor of the softmax over examples; higher values copy a single example more closely. Half
+and twice are no better (`make sensitivity`)."""
 SHARED_VARIANCE = (0.95, 0.7, 0.7, 0.95, 0.95)
 """Fraction of the variance that each partition shares with the others. Limbs move together, and
 legs move with the hips that they carry. Chosen by hand; `make sensitivity` varies it."""
 MAX_WEIGHT_RATIO = 1.6
 """Maximum length of a weight vector, relative to the typical one; longer ones are scaled back,
-so that variants stay near the examples. Chosen by hand; `make sensitivity` varies it."""
+so that variants stay near the examples. Half and twice are no better (`make sensitivity`)."""
 WEIGHT_SMOOTHING_S = 0.1
 """Standard deviation in seconds of the Gaussian that separates slow changes, with weights of
-each partition, from fast ones. Chosen by hand; `make sensitivity` varies it."""
+each partition, from fast ones. Half and twice are no better (`make sensitivity`)."""
 DRAW_RATE_HZ = 30.0
-"""Rate at which weights are drawn; they change slowly. Chosen by hand; `make sensitivity`
-varies it."""
+"""Rate at which weights are drawn; they change slowly. Half and twice are no better
+(`make sensitivity`)."""
 MAX_DRAWN_SAMPLES = 2000
 """Maximum count of drawn samples; in clips of more than a minute weights change more slowly. It
 bounds the memory."""

@@ -25,10 +25,10 @@ from .curves import MAX_FRAME_ROTATION_RAD, sample_curves, unwrap_rotation_vecto
 
 MAX_REFERENCE_ANGLE_RAD = 2.0
 """Angle from the fixed reference, in radians, beyond which a joint gets a moving reference.
-Chosen by hand; `make sensitivity` varies it."""
+Half and twice are no better (`make sensitivity`)."""
 REFERENCE_SMOOTHING_S = 0.05
-"""Standard deviation in seconds of the Gaussian that smooths moving references. Chosen by hand;
-`make sensitivity` varies it."""
+"""Standard deviation in seconds of the Gaussian that smooths moving references. Half and twice
+are no better (`make sensitivity`)."""
 
 
 def split_moving_references(

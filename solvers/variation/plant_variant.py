@@ -24,7 +24,8 @@ def plant_variant(
 ) -> Motion:
     """Return a variant with planted feet; unchanged, with a remark, if it has no feet.
 
-    Feet stand where those of the examples or of the variant itself do. A loop stays a loop.
+    Feet stand where those of the examples, contacts of (n_frames, 2), or of the variant itself
+    do. A loop stays a loop.
     """
     complete = motion
     if loops:

@@ -22,8 +22,8 @@ from .variation_model import VariationModel
 from .vary_settings import DEFAULT_SETTINGS, VaryMethod, VarySettings
 
 RANGE_MARGIN = 0.15
-"""Fraction of a channel's range in the examples by which a variant may exceed it. Chosen by
-hand; `make sensitivity` varies it."""
+"""Fraction of a channel's range in the examples by which a variant may exceed it. Half and
+twice are no better (`make sensitivity`)."""
 PIN_S = 0.4
 """Seconds over which a variant leaves or reaches a pinned pose. By definition: the time that an
 animator sees as a blend; no unpinned variant has it."""

@@ -32,8 +32,8 @@ MIN_WEIGHT_SCORE = 1e-3
 against 0."""
 MIN_CONFIDENT_SCORE = 0.25
 """Score, a ratio, of the best match above which the clips count as the same movement. Below it,
-they must fill held-out gaps at least as well as the take itself. Chosen by hand: the same
-movement by another actor scores 0.2 to 0.5."""
+they must fill held-out gaps at least as well as the take itself. Measured: the same movement by
+another actor scores 0.2 to 0.5."""
 PRIOR_REJECTED = (
     "They are not used: they predict the missing joints worse than the take itself."
 )

@@ -60,7 +60,7 @@ def clean_motion(
     contacts: Flags | Array | None,
     progress: Progress,
 ) -> ChainResult:
-    """Clean a motion and plant its feet."""
+    """Clean a motion and plant its feet; contacts, if given, have the shape (n_frames, 2)."""
     denoised = denoise(motion, progress=within(progress, 0.0, 0.8))
     assert isinstance(denoised.recording, Motion)
     planting_result = plant_feet_if_possible(
@@ -157,7 +157,10 @@ def reconstruct_tracked(
     contacts: Flags | Array | None,
     progress: Progress,
 ) -> ChainResult:
-    """Reconstruct a motion that was solved from the joints of a camera, and plant the feet."""
+    """Reconstruct a motion that was solved from the joints of a camera, and plant the feet.
+
+    Contacts, if given, have the shape (n_frames, 2).
+    """
     rebuilt = reconstruct_motion(
         tracked.motion,
         source=tracked.source,

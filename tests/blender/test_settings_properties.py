@@ -124,9 +124,9 @@ def test_every_button_offers_every_setting_with_a_tooltip(load):
     bundles = {
         "denoise": load("mocap_assist.clean.button_settings").CleanBundle,
         "measure_quality": load("mocap_assist.check.button_settings").CheckBundle,
-        "plant_feet": load("mocap_assist.clean.planting").FeetBundle,
-        "learn_patterns": load("mocap_assist.clean.pattern_learning").LearnBundle,
-        "simulate": load("mocap_assist.physics.simulating").SimulateBundle,
+        "plant_feet": load("mocap_assist.clean.scene_planting").FeetBundle,
+        "learn_patterns": load("mocap_assist.clean.scene_learning").LearnBundle,
+        "simulate": load("mocap_assist.physics.scene_simulating").SimulateBundle,
     }
     for button, bundle in bundles.items():
         shown = getattr(bpy.ops.mocap_assist, button).get_rna_type().properties

@@ -13,7 +13,7 @@ from ...jobs.job import Job, ProcessDied
 from ...runtime.watch import Watch
 from ..button_settings import ImportChoices
 from ..depth_folders import readable
-from ..recent_files import State, reading_of, remember, state_of
+from ..recent_files import State, reading_of, state_of, store_read_file
 from ..recording_objects import conversion_from_choices
 from ..solve_reading import Read, read_files
 from ..transaction import READING_FRACTION, ImportTransaction
@@ -117,7 +117,7 @@ class ImportJob:
         if isinstance(found, MocapAssistError):
             self.transaction.refuse(path, found)
             return
-        remember(path, state, [take.content for take in found], reading_of(self._wanted))
+        store_read_file(path, state, [take.content for take in found], reading_of(self._wanted))
         for content, moving in found:
             self.transaction.add(context, path, content, moving=moving)
 

@@ -9,7 +9,7 @@ from bpy.types import SpaceGraphEditor
 
 from ....solvers.errors import InvalidMotionError
 from ...blender.redrawing import redraw
-from ...panel_parts.preference_values import preferred
+from ...panel_parts.preference_values import preference_value
 from .raw_curves import CurvePair, curve_lines, displayed_values, shown_pairs
 
 SWITCH = "mocap_assist_raw_curves"
@@ -36,7 +36,7 @@ def draw_raw_curves(context: bpy.types.Context) -> None:
     pairs = shown_pairs(context)
     if not pairs:
         return
-    red, green, blue, alpha = preferred("raw_color")
+    red, green, blue, alpha = preference_value("raw_color")
     shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
     shader.bind()
     shader.uniform_float("color", (red, green, blue, OPACITY * alpha))

@@ -3,7 +3,7 @@
 import bpy
 
 from ...blender.redrawing import redraw_views
-from ...panel_parts.preference_values import preferences, preferred
+from ...panel_parts.preference_values import preference_value, preferences
 from . import drawing
 from .onion_skin import Onion
 from .raw_curves_switch import SWITCH as RAW_CURVES
@@ -53,8 +53,8 @@ def current_look(manager: bpy.types.WindowManager) -> drawing.Look:
     onion = Onion(manager.mocap_assist_onion_ghosts, manager.mocap_assist_onion_step)
     is_wiped = manager.mocap_assist_wipe
     return drawing.Look(
-        colors=(tuple(preferred("raw_color")), tuple(preferred("clean_color"))),
-        width=preferred("line_width"),
+        colors=(tuple(preference_value("raw_color")), tuple(preference_value("clean_color"))),
+        width=preference_value("line_width"),
         has_poses=manager.mocap_assist_overlay or is_wiped,
         onion=onion if manager.mocap_assist_onion else None,
         wipe=manager.mocap_assist_wipe_position if is_wiped else None,

@@ -6,7 +6,7 @@ from mathutils import Matrix
 
 from ...actions.contact_keys import PROPERTIES
 from ...blender.redrawing import redraw_views
-from ...panel_parts.preference_values import preferred
+from ...panel_parts.preference_values import preference_value
 from ..color_icons import draw_marks
 from ..marked_ranges import CONTACT_ROWS
 from ..view_drawing import ViewDrawing, draw_in_front, visible_active
@@ -40,7 +40,7 @@ def _draw(context: bpy.types.Context) -> None:
 def _draw_rings(rings: Rings) -> None:
     shader = gpu.shader.from_builtin("POLYLINE_SMOOTH_COLOR")
     content = {"pos": rings.lines.reshape(-1, 3), "color": rings.colors.reshape(-1, 4)}
-    draw_in_front(shader, content, Matrix.Identity(4), preferred("line_width"))
+    draw_in_front(shader, content, Matrix.Identity(4), preference_value("line_width"))
 
 
 def register() -> None:

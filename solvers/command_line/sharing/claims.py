@@ -15,7 +15,7 @@ from secrets import token_hex
 from threading import Event, Thread
 from typing import Any, NamedTuple
 
-from ...files import read_regular, unwritable
+from ...files import read_regular, unwritable_error
 from ...json_text import parse_json
 from ...processes import host_name, is_running, this_machine
 
@@ -67,7 +67,7 @@ def claimed(path: Path, batch: str = "") -> Iterator[Claim]:
     try:
         files, holder = _claim(path, batch)
     except OSError as error:
-        raise unwritable(path.parent, error) from None
+        raise unwritable_error(path.parent, error) from None
     if holder is not None:
         is_own_batch = bool(batch) and holder.get("batch") == batch
         yield Claim(str(holder.get("host", UNKNOWN_HOST)), is_own_batch=is_own_batch)

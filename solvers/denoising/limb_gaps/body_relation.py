@@ -20,8 +20,8 @@ from .bridges import N_FEATURES, Bridge
 
 SHIPPED = Path(__file__).parent / "bodies.npz"
 RIDGE = 10.0
-"""Square degrees: variance that other people's movement does not explain. Chosen by hand on
-the development takes of the first press: x10 costs 5 %."""
+"""Square degrees: variance that other people's movement does not explain. Sweep on the
+development takes of the first press: x10 costs 5 %."""
 MIN_EIGENVALUE_RATIO = -1e-6
 """Fraction of the largest moment: rounding in single precision. By definition."""
 MAX_MOMENT = -0.5 * RIDGE / MIN_EIGENVALUE_RATIO

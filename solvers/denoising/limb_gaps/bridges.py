@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from ...arrays import Array
 
 LAG_S = 0.13
-"""Seconds before and after a frame at which other joints count, too. Chosen by hand on the
-development takes of the first press: without them 1 %, a second pair at 0.27 s 1 % worse."""
+"""Seconds before and after a frame at which other joints count, too. Sweep on the development
+takes of the first press: without them 1 %, a second pair at 0.27 s 1 % worse."""
 VELOCITY_S = 0.07
-"""Seconds over which the velocity at either end of the gap is measured. Chosen by hand on
-the development takes of the first press: x0.5 costs nothing, x2 costs 0.5 %."""
+"""Seconds over which the velocity at either end of the gap is measured. Sweep on the
+development takes of the first press: x0.5 costs nothing, x2 costs 0.5 %."""
 N_FEATURES = 3
 """Features of each channel, of a missing joint as of an observed one. By definition."""
 

@@ -23,12 +23,12 @@ from .body_relation import GAP_S, BodyRelation
 from .bridges import Bridge
 
 GENERAL_WEIGHT = 0.5
-"""Fraction of other people's relation that a take starts from. Chosen by hand on the
-development takes of the first press: 0 costs 5 %, 0.25 costs 1.5 %, 1 gains 0.7 % but makes
-more takes worse than interpolation."""
+"""Fraction of other people's relation that a take starts from. Sweep on the development takes
+of the first press: 0 costs 5 %, 0.25 costs 1.5 %, 1 gains 0.7 % but makes more takes worse than
+interpolation."""
 OWN_PATTERNS_WEIGHT = 0.2
-"""Weight of the estimate by the take's own patterns in the mean with the prediction. Chosen by
-hand on the development takes of the first press: x0.5 gains 0.4 %, x2 costs 3 %."""
+"""Weight of the estimate by the take's own patterns in the mean with the prediction. Sweep on
+the development takes of the first press: x0.5 gains 0.4 %, x2 costs 3 %."""
 BOW_VARIANCE = 15.0 / 8.0
 """Ratio of the variance in the middle of a gap to the mean over the gap. By definition of a
 squared parabola."""

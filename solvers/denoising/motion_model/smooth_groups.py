@@ -14,8 +14,8 @@ from .motion_mixture import MotionMixture
 from .principal_axes import principal_axes
 
 N_OVERLAPS = 4
-"""Number of windows that start within the length of one. Chosen by hand on the development
-takes of the first press: 3 cost 0.1 %, 8 change less than that in twice the time."""
+"""Number of windows that start within the length of one. Sweep on the development takes of the
+first press: 3 cost 0.1 %, 8 change less than that in twice the time."""
 MAX_BLOCK_WINDOWS = 64
 """Windows processed at a time: this bounds the memory, however long the take."""
 

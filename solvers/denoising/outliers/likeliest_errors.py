@@ -12,24 +12,24 @@ from .predictive_density import RunDensity
 from .single_outliers import LOG_OUTLIER_DENSITY
 
 SPIKE_PRIOR_PSEUDOCOUNT = 1e3
-"""Number of samples of the prior of the rate of spikes, errors of a single frame. Chosen by
-hand on the development takes of the first press: with 1e4, the error rises by 2 % where a tenth
-of the samples is wrong."""
+"""Number of samples of the prior of the rate of spikes, errors of a single frame. Sweep on the
+development takes of the first press: with 1e4, the error rises by 2 % where a tenth of the
+samples is wrong."""
 PRIOR_SPIKES = 0.01
-"""Number of spikes among these samples: most takes have none. Chosen by hand on the development
-takes of the first press: with 1e-5 a fifth more lone spikes of 40 degrees are kept."""
+"""Number of spikes among these samples: most takes have none. Sweep on the development takes of
+the first press: with 1e-5 a fifth more lone spikes of 40 degrees are kept."""
 RUN_PRIOR_PSEUDOCOUNT = 1e5
-"""Number of samples of the prior of the rate of longer errors. Chosen by hand on development
-takes of the first press at up to twice their speed: with 1e4, and as rare a first error, those
-with bursts lose 4 %."""
+"""Number of samples of the prior of the rate of longer errors. Sweep on development takes of
+the first press at up to twice their speed: with 1e4, and as rare a first error, those with
+bursts lose 4 %."""
 PRIOR_RUNS = 1e-4
 """Number of longer errors among these samples. Fast movement looks like one, so the first one
-of a take needs far more evidence. Chosen by hand on the same takes: with 0.1 a throw
-and a punch of clean ones are taken for errors."""
+of a take needs far more evidence. Sweep on the same takes: with 0.1 a throw and a punch of
+clean ones are taken for errors."""
 BURST_PRIOR_PSEUDOCOUNT = 1e9
 """The number of samples, one of them the start of a burst, which only its shape makes
-suspicious. Chosen by hand on the development takes of the first press: with 1e6 nine runs of
-clean takes are taken for errors, with 1e9 one; of 446 true bursts 3 % are lost."""
+suspicious. Sweep on the development takes of the first press: with 1e6 nine runs of clean takes
+are taken for errors, with 1e9 one; of 446 true bursts 3 % are lost."""
 FIXED_PSEUDOCOUNT = 1e12
 """Number of samples of the prior of a rate that is given. By definition: far more than a take
 has, so that the errors in it do not change the rate."""

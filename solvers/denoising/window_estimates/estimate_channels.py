@@ -39,8 +39,8 @@ NOISE_FACTORS = (8.0, 4.0, 2.0)
 """Factors by which the first rounds inflate the noise. Chosen by hand; `make sensitivity`
 varies it."""
 MAX_LEVERAGE = 0.98
-"""Largest fraction of its own weight in an estimate that a sample is corrected for. Chosen by
-hand: a limit of 0.99998 gains 0.1 %, one of 0.8 costs 0.1 %; 1 divides by zero."""
+"""Largest fraction of its own weight in an estimate that a sample is corrected for. Sweep: a
+limit of 0.99998 gains 0.1 %, one of 0.8 costs 0.1 %; 1 divides by zero."""
 FIRST_NOISE_WEIGHT = 0.5
 """Weight of the first estimate of the noise in a take without outliers, relative to one: by
 definition, that of a mean of two estimates."""

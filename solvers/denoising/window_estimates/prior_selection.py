@@ -26,7 +26,7 @@ SMOOTH_FRACTIONS = (0.003, 0.05, 0.3)
 """Weights of the smooth prior in its mixtures with the examples' prior. Chosen by hand;
 `make sensitivity` varies it."""
 N_TRIAL_ITERATIONS = 3
-"""Iterations of a trial of each mixture. Chosen by hand; `make sensitivity` varies it."""
+"""Iterations of a trial of each mixture. Half and twice are no better (`make sensitivity`)."""
 IN_SAMPLE_PENALTY = 1.007
 """The smooth prior learns from the samples that it predicts, so its error is too small. Each
 larger fraction of it multiplies the error by this factor. Chosen by hand; `make sensitivity`
@@ -41,14 +41,14 @@ OWN_WEIGHT, OWN_WEIGHT_IN_GAPS = 0.05, 0.2
 """Weight of the take's own covariance relative to the examples', and in windows with gaps.
 Chosen by hand; `make sensitivity` varies them."""
 WINDOWS_FOR_HALF_WEIGHT = 300
-"""Windows of a take at which its own covariance would have half the weight. Chosen by hand;
-`make sensitivity` varies it."""
+"""Windows of a take at which its own covariance would have half the weight. Half and twice are
+no better (`make sensitivity`)."""
 MAX_OWN_WEIGHT = 0.3
 """Largest weight of the take's own covariance. It guards long takes, of 130 windows and more,
 from repeating their own errors."""
 OWN_WEIGHT_WITHOUT_EXAMPLES = 0.5
-"""Weight in gaps without examples: a missing limb is best predicted from the same body. Chosen
-by hand; `make sensitivity` varies it."""
+"""Weight in gaps without examples: a missing limb is best predicted from the same body. Half
+and twice are no better (`make sensitivity`)."""
 
 
 def build_examples_prior(

@@ -6,13 +6,13 @@ from ...arrays import Array
 from ..window_priors import Windows
 
 CORRELATION_TIMES_S = (0.08, 0.16, 0.32, 0.64, 1.28)
-"""Correlation times, seconds, of the smooth movements whose sum is a channel. Chosen by hand;
-`make sensitivity` varies it."""
+"""Correlation times, seconds, of the smooth movements whose sum is a channel. Half and twice
+are no better (`make sensitivity`)."""
 N_UPDATES = 30
 """Multiplicative updates of the weights. It bounds the run time."""
 POOLED_WINDOWS = 1.0
 """Weight, in windows, of the assumption that a channel moves like the take's average channel.
-Chosen by hand; `make sensitivity` varies it."""
+Half and twice gain less than 1 % (`make sensitivity`)."""
 MIN_POWER = 1e-9
 """Square degrees or centimeters added to each power. Guards a division."""
 

@@ -14,7 +14,7 @@ from .windows import Windows
 
 SLOW_FRACTION = 0.6
 """Fraction of the coefficients, slowest first, with a joint covariance; faster ones are
-independent. Chosen by hand; `make sensitivity` varies it."""
+independent. Half is worse (`make sensitivity`), and twice is no fraction."""
 
 
 @dataclass(frozen=True, eq=False)

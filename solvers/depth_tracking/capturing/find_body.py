@@ -16,7 +16,8 @@ from .refine_body import refine_body
 from .restart_policies import RecoverySettings
 
 STATURES_M = (1.45, 1.6, 1.75, 1.9)
-"""Statures in meters that are tried. Chosen by hand; `make sensitivity` varies it."""
+"""Statures in meters that are tried. Half is worse (`make sensitivity`), and twice is no
+stature."""
 N_SIZE_FRAMES, N_STATURE_FRAMES = 12, 3
 """Number of frames compared by visible surface, and of frames used to test statures. They bound
 the run time."""

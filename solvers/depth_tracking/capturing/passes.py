@@ -29,8 +29,8 @@ from .restart_policies import RecoverySettings, RegularChecks, RestartPolicy
 
 _YAW = COORDINATES.index("yaw")
 _DETECTION_WEIGHT = 1.0
-"""Weak weight that keeps the refinement near the detected pose. Chosen by hand;
-`make sensitivity` varies it."""
+"""Weak weight that keeps the refinement near the detected pose. Half and twice are no better
+(`make sensitivity`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,7 +223,7 @@ class PassTracker:
 
 
 def unwrap_rotation(pose: Array, before: Array) -> Array:
-    """Return the pose with multiples of 360 degrees added, continuous with the frame before."""
+    """Return the pose, (36,), turned by multiples of 360 degrees to be near the one before."""
     unwrapped = pose.copy()
     for index in (_YAW, _YAW + 2):
         unwrapped[index] += (

@@ -39,8 +39,8 @@ from ..terms import (
 )
 
 _POSE_DAMPING = 5.0
-"""Weight per square radian of a change of pose in one step. Chosen by hand; `make sensitivity`
-varies it."""
+"""Weight per square radian of a change of pose in one step. Half and twice are no better
+(`make sensitivity`)."""
 _PRIOR_WEIGHT_PIXELS = 100.0
 """Number of pixels that weigh as much as the prior. Chosen by hand; `make sensitivity` varies
 it."""

@@ -149,7 +149,7 @@ def _equations_at_pose(
 
 
 def measure_fit(actor: TrackingContext, pose: Array, frame: int) -> FitQuality:
-    """Return the fit quality of a pose in a frame."""
+    """Return the fit quality of a pose, (36,), in a frame."""
     observation = observe(actor.depth, frame, actor.tracker.image_width)
     if observation.empty:
         return quality_without_actor()

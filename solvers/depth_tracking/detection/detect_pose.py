@@ -230,6 +230,6 @@ def _refine_candidate(
 
 
 START_WEIGHT = 2.0
-"""Weight per square radian: as much as a few pixels. Chosen by hand; `make sensitivity` varies
-it."""
+"""Weight per square radian: as much as a few pixels. Half and twice are no better
+(`make sensitivity`)."""
 _START_WEIGHTS = np.array([0.0] * N_ROOT + [START_WEIGHT] * (N_COORDINATES - N_ROOT))

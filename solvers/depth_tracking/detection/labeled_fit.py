@@ -41,13 +41,13 @@ MAX_RESIDUAL_M = 0.08
 """Pixels farther from the surface of their part have a limited pull. Chosen by hand;
 `make sensitivity` varies it."""
 SURFACE_STD_M = 0.06
-"""Standard deviation of pixels from the surface of their part. Chosen by hand;
-`make sensitivity` varies it."""
+"""Standard deviation of pixels from the surface of their part. Half and twice are no better
+(`make sensitivity`)."""
 CENTERS_WEIGHT = 0.3
 """Weight of the centers of parts, which are biased where a part is partly hidden, next to its
 surface. Chosen by hand; `make sensitivity` varies it."""
 MIN_PROBABILITY = 0.02
-"""Minimum probability of a part. Chosen by hand; `make sensitivity` varies it."""
+"""Minimum probability of a part. Half and twice are no better (`make sensitivity`)."""
 TRUNK_PARTS = ("hips", "spine", "chest", "neck", "head", "Shoulder", "UpperArm")
 """Parts that determine position and heading; all parts if fewer than four are observed."""
 

@@ -58,7 +58,7 @@ def trial_poses(
 
 
 def swap_orders() -> list[NDArray[np.intp]]:
-    """Return the part indices of each trial, with some groups swapped."""
+    """Return the part indices, (N_PARTS,), of each trial, with some groups swapped."""
     orders = []
     for trial in range(2 ** len(SWAP_GROUPS)):
         ends = tuple(

@@ -18,8 +18,8 @@ FULL_WEIGHT_FACTOR = 5.0
 """Number of inliers from which a part has full weight, as a factor of `min_part_pixels`. Chosen
 by hand; `make sensitivity` varies it."""
 MIN_SPAN_FRACTION = 0.2
-"""Minimum distance of the two pixels that define an axis, a fraction of the part's length.
-Chosen by hand; `make sensitivity` varies it."""
+"""Minimum distance of the two pixels that define an axis, a fraction of the part's length. Half
+and twice are no better (`make sensitivity`)."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -138,7 +138,7 @@ def _color_differences(
 def previous_intensities(
     hypothesis: Hypothesis, chosen: Integers, previous: PreviousFrame
 ) -> Array:
-    """Return the intensities of points in the previous frame, NaN if occluded."""
+    """Return the intensities, (n,), of points in the previous frame, NaN if occluded."""
     segments = CAPSULE_SEGMENTS[hypothesis.image.capsules[chosen]]
     current, previous_frames = hypothesis.frames[segments], previous.frames[segments]
     local = np.einsum(

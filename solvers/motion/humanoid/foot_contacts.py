@@ -28,8 +28,8 @@ MEDIAN_LENGTH = 1.538
 definition."""
 
 SPEED_NOISE = 0.15
-"""Meters per second: noise moves smoothed feet no faster along each axis. Chosen by hand: x0.7
-and x1.7 change F1 of noisy captures by less than 0.02 (`test_jitter_changes_little`)."""
+"""Meters per second: noise moves smoothed feet no faster along each axis. Sweep: x0.7 and x1.7
+change F1 of noisy captures by less than 0.02 (`test_jitter_changes_little`)."""
 
 
 @dataclass(frozen=True)

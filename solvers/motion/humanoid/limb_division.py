@@ -83,7 +83,7 @@ def is_folded(skeleton: Skeleton, limbs: MirroredLimbs, height: float) -> bool:
 def rest_directions(
     skeleton: Skeleton, limbs: MirroredLimbs, legs: Sequence[list[int]], height: float
 ) -> tuple[Array, Array | None]:
-    """Return up and forward in the rest pose; +Z and None where it does not show them.
+    """Return up and forward, (3,) each, in the rest pose; +Z and None if it shows neither.
 
     Toes are in front of the ankle, and knees in front of the line from hip to ankle.
 
@@ -92,7 +92,7 @@ def rest_directions(
     skeleton : Skeleton
     limbs : both legs
     legs : hip, knee and ankle of each (`divide_leg`)
-    height : of the person whose bones are as long
+    height : of the person whose bones are as long, meters
     """
     up, positions = np.array([0.0, 0.0, 1.0]), skeleton.rest_positions
     if is_folded(skeleton, limbs, height) or not all(legs):

@@ -14,12 +14,12 @@ from .tables import ARM_ROLES, CENTRAL_ROLES, COLUMNS, LEG_ROLES, SIDES, TABLES
 
 MIN_HUMANNESS = 0.6
 """Humanness of the proportions, as a fraction, from which the structure may contradict names.
-Chosen by hand on the rigs of `tests/data/skeleton_families.txt`: their means are 0.74 to 0.8
-without a joint of trunk or foot, 0.2 to 0.54 without one of thigh, shin, arm or hand."""
+Measured on the rigs of `tests/data/skeleton_families.txt`: their means are 0.74 to 0.8 without
+a joint of trunk or foot, 0.2 to 0.54 without one of thigh, shin, arm or hand."""
 MIN_MISFIT_MARGIN = 0.3
-"""Misfit, the logarithm of a length, by which a limb as named must exceed the limb by
-structure before the names are wrong. Chosen by hand: 0.02 is the most that was seen in real
-recordings, and names shifted by one joint begin at 0.39."""
+"""Misfit, the logarithm of a length, by which a limb as named must exceed the limb by structure
+before the names are wrong. Measured: 0.02 is the most that was seen in real recordings, and
+names shifted by one joint begin at 0.39."""
 MAX_NAMED_MISFIT = 0.4
 """Misfit, the logarithm of a length, up to which each limb as named is human enough to be
 believed without a search for others. Chosen by hand like `MIN_MISFIT_MARGIN`."""

@@ -22,7 +22,7 @@ MAX_RETURN_S = 0.3
 Clean returns it if it does so earlier."""
 MIN_NOISE_RATIO = 6.0
 """Smallest jump as a ratio to the median deviation of steps from their neighbors, over the take
-and within 0.3 seconds. Chosen by hand: without it, and the median position, hands and feet of
+and within 0.3 seconds. Sweep: without it, and the median position, hands and feet of
 development takes with noise and outliers are off by 8.7 cm in place of 3.1."""
 
 

@@ -20,14 +20,15 @@ and jitter, which would become slow movements
 (`test_movement_too_fast_for_the_new_rate_leaves_no_alias`)."""
 
 PASSBAND = 0.7
-"""Edge of the passband, as a fraction of the new Nyquist frequency. Chosen by hand; `make
-sensitivity` varies it."""
+"""Edge of the passband, as a fraction of the new Nyquist frequency. Half is worse
+(`make sensitivity`), and twice is no fraction."""
 
 ROWS_PER_BLOCK = 32
 """New frames that one matrix product filters. It bounds the run time."""
 
 N_NODES = 4
-"""Frames from which one value is interpolated. Chosen by hand; `make sensitivity` varies it."""
+"""Frames from which one value is interpolated. Half and twice are no better
+(`make sensitivity`)."""
 
 Recording = TypeVar("Recording", bound=Motion | Tracks)
 

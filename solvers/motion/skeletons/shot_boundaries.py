@@ -15,21 +15,21 @@ N_CONTEXT_FRAMES = 8
 """Frames on each side from which the typical step of each joint is estimated. It guards takes
 with repeated frames (`test_fast_movement_in_repeated_frames_is_no_shot_boundary`)."""
 HALF_FRACTION, MAJORITY_FRACTION = 0.5, 0.7
-"""Fractions of the joints that jump at a boundary. Chosen by hand; `make sensitivity` varies
-them."""
+"""Fractions of the joints that jump at a boundary. Half and twice are no better
+(`make sensitivity`)."""
 MIN_HALF_JUMP, MIN_MAJORITY_JUMP = 2.5, 1.5
 """Jumps of half and of most joints at a boundary, in multiples of their typical steps. The
 first frames of CMU recordings, T-poses, have 5.6 and 3.0 at 30 Hz, and more at 120 Hz. Hops,
-kicks and jumps, even with noise and outliers, have at most 2.0 and 1.35. Chosen by hand;
-`make sensitivity` varies them."""
+kicks and jumps, even with noise and outliers, have at most 2.0 and 1.35. Half and twice are no
+better (`make sensitivity`)."""
 TURNED_FRACTION, MIN_ROOT_JUMP = 0.25, 15.0
 """Fraction of the joints that jump, and jump of the root in multiples of its typical step, at a
-boundary where the root turns all others. Chosen by hand: the T-pose of an Xsens suit, which
-faces elsewhere, has 0.4 and 89. Of 477 real takes, with noise and outliers too, none that moves
-on has a fraction of 0.25 with more than 12."""
+boundary where the root turns all others. Measured: the T-pose of an Xsens suit, which faces
+elsewhere, has 0.4 and 89. Of 477 real takes, with noise and outliers too, none that moves on
+has a fraction of 0.25 with more than 12."""
 MIN_STEP_RAD = np.radians(1.0)
-"""Lower bound of the typical step of a joint, radians. Chosen by hand; `make sensitivity`
-varies it."""
+"""Lower bound of the typical step of a joint, radians. Half and twice are no better
+(`make sensitivity`)."""
 MIN_STEP_M = 0.04
 """Meters, likewise. It guards actors who stand still: a dropped camera frame moves all points
 of a body by a few centimeters

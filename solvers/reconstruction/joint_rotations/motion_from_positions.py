@@ -21,9 +21,9 @@ from .rotation_solver import RotationSolver
 from .trunk_twist import LimbTwists, hinges_from_twists
 
 ANKLE_WEIGHT = 25.0
-"""Weight of an ankle in the last fit, so that standing feet stay in place. Chosen by hand: x0.2
-gains 1 % (subjects 2 and 5 of UI-PRMD), but ankles of real takes then miss by 2 cm. `make
-sensitivity` varies it."""
+"""Weight of an ankle in the last fit, so that standing feet stay in place. Sweep: x0.2 gains 1
+% (subjects 2 and 5 of UI-PRMD), but ankles of real takes then miss by 2 cm. `make sensitivity`
+varies it."""
 
 
 def motion_from_positions(

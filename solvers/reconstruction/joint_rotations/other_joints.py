@@ -122,7 +122,8 @@ def measure_joint_offsets(
 ) -> JointOffsets:
     """Measure where the joints are that are not posture joints, in reliable frames.
 
-    The parameters are those of `positions_from_postures`.
+    The parameters are those of `positions_from_postures`; offsets have the shape
+    (n_joints, 3), meters.
     """
     posture_joints = _posture_joints(names)
     bones_before, bones_after = _bones(before), _bones(after)

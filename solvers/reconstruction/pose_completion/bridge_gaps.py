@@ -11,8 +11,8 @@ from .held_out_paths import rest_probability
 HALF_WEIGHT_S = 0.12
 """Gap time (s) at which the joint's own path and the library pose have equal weight, if the
 joint moves. The gap time is half the harmonic mean of the times to the nearest reliable frames.
-Movements outside the library are best with 0.25 s (UI-PRMD), movements inside it with 0; this
-value is a compromise. Chosen by hand; `make sensitivity` varies it."""
+Sweep on UI-PRMD: movements outside the library are best with 0.25 s, movements inside it with
+0."""
 
 
 def blend_gaps(

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...arrays import Array, Integers
 from ...motion.humanoid import N_JOINTS
+from ..reliability import OBSERVED_RELIABILITY
 
 Synthesis = Callable[[Integers, Array], Array]
 """Function from frame indices and joint reliabilities in these frames to postures."""
@@ -15,14 +16,12 @@ LIMBS = ((4, 5, 6, 7), (8, 9, 10, 11), (12, 13, 14, 15), (16, 17, 18, 19), (3,))
 """Arms, legs and head, as indices into `POSTURE_JOINTS`."""
 MAX_FRAMES = 60
 """Frames, evenly spaced, in which a limb is held out. It bounds the run time."""
-MIN_COMPARED_RELIABILITY = 0.5
-"""Reliability above which a joint is compared. Chosen by hand; `make sensitivity` varies it."""
 HALF_WEIGHT_FRAMES = 6.0
-"""Number of frames at which a measured offset gets half its weight. Chosen by hand;
-`make sensitivity` varies it."""
+"""Number of frames at which a measured offset gets half its weight. Half and twice are no
+better (`make sensitivity`)."""
 DEFAULT_ERROR_M = 0.1
-"""Meters: expected error of a joint without observations. Chosen by hand; `make sensitivity`
-varies it."""
+"""Meters: expected error of a joint without observations. Half and twice are no better
+(`make sensitivity`)."""
 
 
 class SynthesisErrors(NamedTuple):
@@ -55,16 +54,14 @@ def cross_validate_limbs(
     for limb in map(list, LIMBS):
         is_observed = np.isfinite(postures[:, limb]).all(axis=-1)
         observed = np.where(is_observed, reliability[:, limb], 0.0)
-        usable = np.flatnonzero(
-            (observed > MIN_COMPARED_RELIABILITY).sum(axis=1) > len(limb) / 2
-        )
+        usable = np.flatnonzero((observed > OBSERVED_RELIABILITY).sum(axis=1) > len(limb) / 2)
         if not len(usable):
             continue
         frames = usable[np.unique(np.linspace(0, len(usable) - 1, MAX_FRAMES).astype(int))]
         held_out = reliability[frames].copy()
         held_out[:, limb] = 0.0
         residuals = (postures[frames] - synthesize(frames, held_out))[:, limb]
-        weight = np.where(observed[frames] > MIN_COMPARED_RELIABILITY, observed[frames], 0.0)
+        weight = np.where(observed[frames] > OBSERVED_RELIABILITY, observed[frames], 0.0)
         residuals = np.where(weight[..., None] > 0.0, residuals, 0.0)
         total = weight.sum(axis=0)
         mean = (

@@ -7,11 +7,11 @@ from ...arrays import Array
 
 SIMILAR_FRACTION = 0.2
 """Fraction, a ratio, of the hidden windows that count: those whose ends move most like those of
-the gap. Chosen by hand: x0.5 and x2 change 0.1 % of one figure
+the gap. Sweep: x0.5 and x2 change 0.1 % of one figure
 (`test_resting_joint_stays_where_it_was_though_the_library_errs`)."""
 MIN_MOVEMENT_M = 0.05
-"""Smallest movement (m, on each axis) that is not rest. Chosen by hand on subjects 1 and 3 of
-UI-PRMD: x3 costs 0.2 % (`test_library_pose_dominates_inside_a_long_gap`)."""
+"""Smallest movement (m, on each axis) that is not rest. Sweep on subjects 1 and 3 of UI-PRMD:
+x3 costs 0.2 % (`test_library_pose_dominates_inside_a_long_gap`)."""
 MAX_WINDOWS = 400
 """Maximum number of windows to hide. It bounds the run time: windows are evenly spaced."""
 

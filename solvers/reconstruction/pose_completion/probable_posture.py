@@ -8,8 +8,8 @@ from ..pose_space import MIN_VARIANCE_M2, EnergyTargets, PostureSpaces
 
 MODEL_ERROR_M = 0.1
 """Standard deviation (m) of a reliable joint about the space of its neighbors; chosen on
-development clips. It is large because few neighbors underestimate the variance. Chosen by hand;
-`make sensitivity` varies it."""
+development clips. It is large because few neighbors underestimate the variance. Half and twice
+are no better (`make sensitivity`)."""
 
 
 def probable_postures(spaces: PostureSpaces, targets: EnergyTargets) -> tuple[Array, Array]:

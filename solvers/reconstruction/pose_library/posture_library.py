@@ -55,7 +55,7 @@ LAYOUT = ArchiveLayout(
 )
 PACE_S = 0.1
 """Seconds that convert velocity differences of poses to distances, where clips are thinned out.
-By hand: from x0.001 to x1000 0.02 %. The shipped library was made with it."""
+Sweep: from x0.001 to x1000 0.02 %. The shipped library was made with it."""
 MAX_LENGTH_ERROR = 0.05
 """Ratio by which a direction's length may differ from 1. It guards damaged files."""
 

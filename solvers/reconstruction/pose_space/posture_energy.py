@@ -87,7 +87,7 @@ def control_term(x: Array, targets: EnergyTargets) -> Array:
 
 
 def style_distances(x: Array, targets: EnergyTargets) -> Array:
-    """Mean squared distance to each neighbor; eq. 11 is their minimum."""
+    """Mean squared distance, m², of postures (F, S, 20, 3) to neighbors: (F, S, N), eq. 11."""
     flat = x.reshape(*x.shape[:2], -1)
     neighbors = targets.neighbors
     squares = np.einsum("fsi,fsi->fs", flat, flat)[..., None]
@@ -97,14 +97,14 @@ def style_distances(x: Array, targets: EnergyTargets) -> Array:
 
 
 def kinematics_term(x: Array, targets: EnergyTargets) -> Array:
-    """Mean squared difference of the lengths of segments (eq. 12)."""
+    """Mean squared difference, m², of the lengths of segments of postures: (F, S), eq. 12."""
     lengths = np.linalg.norm(x - x[..., PARENT_INDICES, :], axis=-1)
     differences = (lengths - targets.lengths)[..., 1:]
     return np.asarray(np.einsum("fsi,fsi->fs", differences, differences) / N_BONES)
 
 
 def continuity_term(x: Array, targets: EnergyTargets) -> Array:
-    """Mean squared change of displacement (eq. 14)."""
+    """Mean squared change, m², of the displacement of postures: (F, S), eq. 14."""
     if targets.expected is None:
         return np.zeros(x.shape[:2])
     differences = x - targets.expected[:, None]

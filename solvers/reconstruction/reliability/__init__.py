@@ -9,6 +9,7 @@ from .scores import (
     posture_reliability,
 )
 from .settings import (
+    OBSERVED_RELIABILITY,
     REPLACED_RELIABILITY,
     WRONG_RELIABILITY,
     ReliabilityMethod,
@@ -16,6 +17,7 @@ from .settings import (
 )
 
 __all__ = [
+    "OBSERVED_RELIABILITY",
     "REPLACED_RELIABILITY",
     "WRONG_RELIABILITY",
     "Reliability",

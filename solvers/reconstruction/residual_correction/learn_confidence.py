@@ -82,7 +82,7 @@ def calibrate_confidence(
 
 
 def with_calibration(prior: ResidualPrior, measured: Sequence[Array]) -> ResidualPrior:
-    """Return the prior, calibrated from `predicted_and_measured` of left-out actors."""
+    """Return the prior, calibrated by the (2, 20, 2) `predicted_and_measured` of each actor."""
     with_offset, without_offset = np.concatenate(measured, axis=1)
     lines = (
         fit_calibration(with_offset, keep_level=True),

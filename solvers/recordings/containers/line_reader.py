@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...errors import InvalidFileError
-from ...files import open_regular, unreadable
+from ...files import open_regular, unreadable_error
 from .text import BYTE_ORDER_MARK, WIDE_MARKS, as_utf8
 
 BLOCK_BYTES = 1 << 22
@@ -132,7 +132,7 @@ def _blocks(path: Path) -> Iterator[tuple[list[bytes], float]]:
             if lines := b"".join(incomplete).splitlines():
                 yield lines, 1.0
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
 
 
 def _count_bytes(lines: list[bytes]) -> int:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO
 
 from ...errors import InvalidFileError
-from ...files import open_regular, unreadable
+from ...files import open_regular, unreadable_error
 from ...progress import Progress
 from .ebml import (
     MAX_HEAD_BYTES,
@@ -129,7 +129,7 @@ def index_matroska(
         with open_regular(path) as file:
             _scan(file, path.stat().st_size, index, wanted, progress)
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
     except (ValueError, IndexError, struct.error):
         raise InvalidFileError(
             f"{path} is damaged: it is not in the Matroska format. Copy or record it again."

@@ -25,7 +25,7 @@ WORDS = Values("U", None)
 
 
 def read_array(path: Path | str) -> NDArray[np.float64]:
-    """Return the numbers of a `.npy` file; raise InvalidFileError for other content."""
+    """Return the numbers of a `.npy` file in its shape; raise InvalidFileError for others."""
     try:
         with open_regular(path) as file:
             header = array_header(file)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 from ...errors import InvalidFileError
-from ...files import open_regular, unreadable
+from ...files import open_regular, unreadable_error
 
 CHUNK_BYTES = 1 << 17
 """Bytes read from the file, and decompressed, at a time."""
@@ -46,7 +46,7 @@ class PlainBytes:
                 file.seek(self.offset + start)
                 content = file.read(count)
         except OSError as error:
-            raise unreadable(self.path, error) from None
+            raise unreadable_error(self.path, error) from None
         if len(content) < count:
             raise truncation_error(self.path)
         return content
@@ -118,7 +118,7 @@ class PackedBytes:
             with open_regular(self.path) as file:
                 return self._unpack(file, checkpoint, start, count)
         except OSError as error:
-            raise unreadable(self.path, error) from None
+            raise unreadable_error(self.path, error) from None
         except zlib.error:
             raise damage_error(self.path) from None
 

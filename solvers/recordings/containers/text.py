@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...files import open_regular, unreadable
+from ...files import open_regular, unreadable_error
 from ...progress import Progress, unwatched
 from .names import shown
 
@@ -84,7 +84,7 @@ def map_bytes(path: Path | str) -> bytes | mmap.mmap:
     except ValueError:  # An empty file cannot be mapped.
         return b""
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
 
 
 def read_bytes(path: Path | str) -> bytes:
@@ -96,7 +96,7 @@ def read_bytes(path: Path | str) -> bytes:
         with open_regular(path) as file:
             return as_utf8(file.read())
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
 
 
 def spaces_from_commas(line: bytes) -> bytes:
@@ -147,7 +147,7 @@ def read_rows(
 def parse_rows(
     lines: Sequence[bytes], width: int, path: Path | str, line_numbers: Sequence[int]
 ) -> NDArray[np.float64]:
-    """Parse one row of numbers per line, as `read_rows` does, all lines at once."""
+    """Parse lines of `width` numbers, as `read_rows` does, all at once: (n_lines, width)."""
     rows = _read_block(lines, width, path, line_numbers)
     rows[np.isinf(rows)] = np.nan
     return rows

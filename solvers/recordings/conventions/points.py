@@ -86,7 +86,7 @@ def estimate_axes_of_points(
     default_up: str = "",
     labels: Sequence[str] = (),
 ) -> FileConventions:
-    """Return the axes by which `points_z_up` rotates points, in meters, that state `up`.
+    """Return the axes by which `points_z_up` rotates points, (F, n, 3) m, that state `up`.
 
     If it is unknown, it is estimated, also from the labels of head and feet; with too few
     points for a body it is `default_up`, if that is given.
@@ -139,7 +139,7 @@ def points_z_up(points: NDArray[np.float64], up: str) -> NDArray[np.float64]:
 
 
 def is_upside_down(points: NDArray[np.float64], up: str) -> bool:
-    """Return whether a stated axis, such as `-Z`, would hang points, in meters, below zero."""
+    """Return whether a stated axis, such as `-Z`, would hang (F, n, 3) points below zero."""
     if up[:1] != "-" or up[-1:] not in {"X", "Y", "Z"} or points.shape[1] < MIN_BODY_JOINTS:
         return False
     along = points[..., "XYZ".index(up[-1])]
@@ -152,7 +152,7 @@ def is_upside_down(points: NDArray[np.float64], up: str) -> bool:
 def other_standing_axis(
     points: NDArray[np.float64], up: str, labels: Sequence[str] = ()
 ) -> str:
-    """Return the axis along which points, in meters, stand if the stated one cannot be right.
+    """Return the axis along which points, (F, n, 3) m, stand if the stated one must be wrong.
 
     So it is where they are half below the floor along the stated axis, and along another one
     are all above it and much farther apart. Labels may show that the actor stands along a

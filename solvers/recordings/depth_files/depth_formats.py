@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 
 from ...depth_scene import DepthRecording
 from ...errors import InvalidFileError, InvalidMotionError
-from ...files import open_regular, unreadable
+from ...files import open_regular, unreadable_error
 from ...progress import Progress, unwatched
 from ..containers import check_folder_access
 from .camera_orientation import rotate_upright
@@ -116,7 +116,7 @@ def detect_depth_format(path: Path | str) -> DepthFormat | None:
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
     return next(
         (depth_format for depth_format in DEPTH_FILES if depth_format.fits(path, head)), None
     )

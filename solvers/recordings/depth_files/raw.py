@@ -6,7 +6,7 @@ import numpy as np
 
 from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidFileError
-from ...files import unreadable
+from ...files import unreadable_error
 from ...progress import Progress, unwatched
 from ..containers import PlainBytes
 from ..conventions import DEFAULT_FRAME_RATE, MILLIMETER
@@ -22,9 +22,9 @@ MAX_DEPTH_MM = 10_000
 (`FREENECT_DEPTH_MM_MAX_VALUE`)."""
 MIN_OBSERVED_FRACTION, MAX_STEP_MM = 0.02, 40
 """Minimum fraction of neighbors that both have a reading, and maximum median step between them,
-mm. Both guard `test_other_numbers_of_16_bits_are_no_depth`. Chosen by hand: an actor without
-his room, as in the images of skeltrack, fills 0.22 to 0.28 with steps of 0 mm; random numbers
-up to the maximum have steps of 2,900 mm."""
+mm. Both guard `test_other_numbers_of_16_bits_are_no_depth`. Measured: an actor without his
+room, as in the images of skeltrack, fills 0.22 to 0.28 with steps of 0 mm; random numbers up to
+the maximum have steps of 2,900 mm."""
 
 
 def is_depth_raw(path: Path, head: bytes) -> bool:
@@ -69,7 +69,7 @@ def read_depth_raw(
     try:
         size = path.stat().st_size
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
     n_frames, rest = divmod(size, camera.width * camera.height * PIXEL_BYTES)
     if rest or not n_frames:
         raise InvalidFileError(

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...depth_scene import Camera, DepthImage, DepthRecording
 from ...errors import InvalidFileError
-from ...files import unreadable
+from ...files import unreadable_error
 from ..containers import PngHeader, read_png_header
 from ..conventions import DEFAULT_FRAME_RATE
 from ..depth_files import (
@@ -162,7 +162,7 @@ class GrowingFolder:
             self.issue = str(error)
             return None
         except OSError as error:
-            raise unreadable(self._path, error) from None
+            raise unreadable_error(self._path, error) from None
         if layout is None:
             return None
         for name in layout.depth:

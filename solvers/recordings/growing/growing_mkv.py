@@ -8,7 +8,7 @@ import numpy as np
 
 from ...depth_scene import Camera, DepthImage, DepthRecording
 from ...errors import InvalidFileError
-from ...files import unreadable
+from ...files import unreadable_error
 from ...progress import unwatched
 from ..containers import Matroska, index_matroska
 from ..conventions import DEFAULT_FRAME_RATE
@@ -59,7 +59,7 @@ class GrowingMkv:
             self.is_gone = self.is_gone or self._size > 0
             return []
         except OSError as error:
-            raise unreadable(self._path, error) from None
+            raise unreadable_error(self._path, error) from None
         if not self._size:
             self.issue = (
                 f"{self._path} contains no image yet. Check that the recorder writes depth to"

@@ -88,7 +88,8 @@ def build_recording(
 ) -> JointRecording:
     """Build a recording as `joint_recording` does, from a header; a missing state becomes 0.
 
-    Positions are in the unit and axes of the file. Times are used if there is no frame rate.
+    Positions, (F, n_joints, 3), are in the unit and axes of the file; states and confidence are
+    (F, n_joints). Times, (F,) in seconds, are used if there is no frame rate.
     """
     if confidence is not None:
         confidence = np.nan_to_num(confidence)

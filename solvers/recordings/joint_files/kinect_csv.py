@@ -110,7 +110,7 @@ def _split_line(line: bytes) -> bytes:
 
 
 def checked_states(values: NDArray[np.float64], path: Path | str) -> NDArray[np.int8]:
-    """Convert tracking states to integers; raise InvalidFileError for other values."""
+    """Convert tracking states, (F, n), to integers; raise InvalidFileError for others."""
     if not np.isin(values, (0.0, 1.0, 2.0)).all():
         raise InvalidFileError(
             f"{path} has tracking states other than 0, 1 and 2: it is damaged, or its columns"

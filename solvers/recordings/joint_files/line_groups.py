@@ -29,7 +29,8 @@ def group_equal_lines(numbers: Array) -> tuple[NDArray[np.intp], NDArray[np.intp
 
 
 def first_repeated_line(cells: tuple[NDArray[np.intp], ...]) -> int | None:
-    """Return the first line that has the person, frame and joint of another one; else None."""
+    """Return the first line that has the person, frame and joint, (n_lines,) each, of another
+    one; else None."""
     order = np.lexsort(cells)
     ordered = np.stack(cells)[:, order]
     is_same = (np.diff(ordered) == 0).all(axis=0)

@@ -90,7 +90,7 @@ def recording_of_points(
 
 
 def refuse_other_points(path: Path | str, points: Array) -> None:
-    """Raise InvalidFileError if points without names are not the joints of a body."""
+    """Raise InvalidFileError if points, (F, n, 3), without names are not joints of a body."""
     if body_of_points(path, points) is None:
         raise InvalidFileError(
             f"{path} is a table without titles, and its numbers form no body in a known order"

@@ -13,8 +13,8 @@ from .table_titles import MIN_POINTS, N_SAMPLED_LINES, TableTitles, cells_of_lin
 VALUES_OF_JOINT = ("xyz", "xyzc", "xyzqqqq", "xyzqqqqc", "cxyzqqqq")
 """Values of a joint: its position, with a confidence or a tracking state, with a quaternion."""
 MAX_NORM_ERROR = 0.01
-"""Deviation from 1 of the length of a quaternion, a ratio. Chosen by hand: it guards positions,
-and three digits are off by 0.002."""
+"""Deviation from 1 of the length of a quaternion, a ratio. It guards positions; by rounding to
+three digits, quaternions are off by 0.002."""
 
 
 def numbered_titles(lines: Sequence[bytes]) -> TableTitles | None:

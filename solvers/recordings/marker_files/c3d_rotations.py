@@ -16,7 +16,7 @@ WORDS = 17
 ENDING = "_4X4"
 MAX_DEFORMATION = 0.05
 """Deviation, a ratio, of a rotation's columns from unit length and right angles, of damaged
-data. Chosen by hand: rounding to single precision gives 0.0000001."""
+data. It guards against damaged data: rounding to single precision gives 0.0000001."""
 MIN_RATE_HZ, MAX_RATE_HZ = 1e-3, 1e6
 
 

@@ -18,7 +18,7 @@ MIN_RATE_HZ, MAX_RATE_HZ = 1e-3, 1e6
 
 
 def mark_missing(points: NDArray[np.float64], path: Path | str) -> None:
-    """Set points to NaN, in place, that are at the origin, incomplete or implausible.
+    """Set points, (F, n, 3), to NaN in place that are at the origin, incomplete or too far.
 
     Raises InvalidFileError if no point is left, with its place for the path.
     """

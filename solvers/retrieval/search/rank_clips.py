@@ -23,8 +23,8 @@ from ..postures import N_PARTS
 from .find_settings import FindSettings
 
 CLIPS_PER_NEIGHBOR = 20
-"""Clips per neighbor in re-ranking: in a small library the nearest clips are not similar.
-Chosen by hand; `make sensitivity` varies it."""
+"""Clips per neighbor in re-ranking: in a small library the nearest clips are not similar. Half
+and twice are no better (`make sensitivity`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,8 @@ def rank_clips(
 ) -> Ranking:
     """Rank the clips of the index by similarity to the first segment of a query.
 
-    Return at least `settings.n_matches` clips, if there are as many, or all.
+    Return at least `settings.n_matches` clips, if there are as many, or all. Weights are of
+    the parts of the body, (5,).
     """
     candidates = collect_candidates(query, weights, index, settings, ignore)
     warped = candidates.segments[: len(candidates.summaries)]

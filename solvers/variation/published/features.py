@@ -102,7 +102,10 @@ def states_from_curves(body: MovingBody, joints: Array, root: Array, steps: Arra
 def curves_from_states(
     body: MovingBody, states: Array, n_joints: int, n_samples: int
 ) -> tuple[Array, Array]:
-    """Return joints and root at all samples: the inverse of `states_from_curves`."""
+    """Return joints, (n, n_samples, n_joints, 3), and root, (n, n_samples, 4), of states.
+
+    It is the inverse of `states_from_curves`.
+    """
     n, steps = states.shape[:2]
     samples = np.linspace(0.0, steps - 1.0, n_samples)
     channels = np.concatenate([np.cumsum(states[:, :, :1], axis=1), states[:, :, 1:]], axis=2)

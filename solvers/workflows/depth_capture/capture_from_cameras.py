@@ -29,7 +29,7 @@ from .capture_recording import (
 ALIGNMENT_SETTINGS = AlignmentSettings()
 MAX_MISMATCH_M = 0.05
 """Mean distance of the skeletons of two cameras, meters, above which one of them is likely to
-be wrong. Chosen by hand: made sequences have 1 to 4 cm, and a wrong frame rate 10."""
+be wrong. Measured: made sequences have 1 to 4 cm, and a wrong frame rate 10."""
 
 
 def capture_from_cameras(

@@ -11,8 +11,8 @@ MAX_OCCLUDED_FRACTION = 0.2
 joints on average; it decides a sentence of the report only."""
 MIN_OVERLAP, MAX_DEPTH_OFFSET_M = 0.55, 0.035
 """Minimum fraction of pixels covered by both body and actor, and maximum distance between them
-in depth, for a good fit. Chosen by hand: typical values are 0.8 and 0.02 m. They decide a
-sentence of the report only."""
+in depth, for a good fit. Measured: typical values are 0.8 and 0.02 m. They decide a sentence of
+the report only."""
 MAX_THICKNESS_RATIO = 1.3
 """Maximum thickness of a body for its length, relative to the default body. A wrong focal
 length changes how long and wide a body appears, but not how deep. Chosen by hand, see

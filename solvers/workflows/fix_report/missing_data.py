@@ -70,7 +70,7 @@ def describe_empty_frames(take: Take) -> str:
 
 
 def observed_samples(recording: Motion | Tracks) -> Flags:
-    """Return what was observed of the points, or of the joints that can rotate."""
+    """Return what was observed, (n_frames, n), of points or of joints that can rotate."""
     if isinstance(recording, Tracks):
         return recording.visible
     skeleton = recording.skeleton

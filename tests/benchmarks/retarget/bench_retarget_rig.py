@@ -141,7 +141,7 @@ def retarget(
 def off(source: bpy.types.Object, target: bpy.types.Object) -> float:
     """Compare the evaluated rig with the solver's result."""
     from mocap_ext.mocap_assist.retarget.button_settings import RetargetBundle, RetargetChoices
-    from mocap_ext.mocap_assist.retarget.retargeting import read_retarget
+    from mocap_ext.mocap_assist.retarget.scene_retargeting import read_retarget
     from mocap_ext.solvers import retargeting
     from mocap_ext.solvers.motion import forward_kinematics
 

@@ -19,7 +19,9 @@ def waits_for_rig(sample, blank, load, make_button, window, monkeypatch):
     blank.ops.mocap_assist.load_sample()
     rig, sample = blank.context.object, blank.data.objects[sample.name]
     blank.context.view_layer.objects.active = sample
-    monkeypatch.setattr(load("mocap_assist.retarget.retargeting"), "MAX_SHORT_SOLVE_FRAMES", 0)
+    monkeypatch.setattr(
+        load("mocap_assist.retarget.scene_retargeting"), "MAX_SHORT_SOLVE_FRAMES", 0
+    )
     settings, jobs = load("mocap_assist.fix.button_settings"), []
     retargeting = load("mocap_assist.fix.retargeting")
     start = retargeting.Job
@@ -47,7 +49,7 @@ def test_esc_while_the_rig_waits_keeps_the_fixed_take_as_an_undo_step(
 ):
     button, rig = waits_for_rig
     steps = []
-    monkeypatch.setattr(load("mocap_assist.fix.fixing"), "push_undo", steps.append)
+    monkeypatch.setattr(load("mocap_assist.fix.scene_fixing"), "push_undo", steps.append)
     before = rig.animation_data.action
 
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}

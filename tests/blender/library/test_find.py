@@ -59,7 +59,7 @@ def test_preview_range_limits_the_query(find, newcomer, blank, bring, load, tmp_
 
     find(frame_range="PREVIEW")
 
-    search = load("mocap_assist.find_similar.searches").listed(blank.context)
+    search = load("mocap_assist.find_similar.searches").listed_search(blank.context)
     assert (search.start, search.step) == (61.0, 1.0)
     assert len(search.finding.stage.positions) == 60
     assert search.query == armature.animation_data.action.name
@@ -68,7 +68,7 @@ def test_preview_range_limits_the_query(find, newcomer, blank, bring, load, tmp_
 def test_alignment_covers_query_and_match(find, newcomer, blank, load):
     newcomer("squat")
     find()
-    search = load("mocap_assist.find_similar.searches").listed(blank.context)
+    search = load("mocap_assist.find_similar.searches").listed_search(blank.context)
 
     for found in search.finding.found:
         pairs = found.pairs
@@ -80,7 +80,7 @@ def test_alignment_covers_query_and_match(find, newcomer, blank, load):
 def test_thumbnails_show_the_clip(find, newcomer, blank, load):
     newcomer("squat")
     find()
-    search = load("mocap_assist.find_similar.searches").listed(blank.context)
+    search = load("mocap_assist.find_similar.searches").listed_search(blank.context)
     pictures = [found.picture for found in search.finding.found]
 
     assert {picture.shape for picture in pictures} == {(128, 128, 3)}

@@ -43,7 +43,7 @@ def test_matching_frames_start_at_the_position_of_the_query(
     armature = newcomer("walk", seconds=6.0)
     blank.context.scene.frame_set(1)
     find()
-    search, match = load("mocap_assist.find_similar.searches").chosen(blank.context)
+    search, match = load("mocap_assist.find_similar.searches").chosen_match(blank.context)
     start = search.scene_frame(match.pairs[0, 0])
     before = poses(armature, [start])["Hips"][0]
 
@@ -67,7 +67,7 @@ def test_loaded_match_starts_at_the_query_for_any_armature_heading(
     armature.rotation_mode = "XYZ"
     blank.context.view_layer.update()
     find()
-    search, match = load("mocap_assist.find_similar.searches").chosen(blank.context)
+    search, match = load("mocap_assist.find_similar.searches").chosen_match(blank.context)
     frame = search.scene_frame(match.pairs[0, 0])
     before = poses(armature, [frame])["Hips"][0]
 
@@ -117,7 +117,7 @@ def test_strip_starts_at_the_current_frame_with_the_query_timing(find, newcomer,
     armature = newcomer("walk")
     played = armature.animation_data.action
     find()
-    search, match = load("mocap_assist.find_similar.searches").chosen(blank.context)
+    search, match = load("mocap_assist.find_similar.searches").chosen_match(blank.context)
     blank.context.scene.frame_set(40)
 
     assert blank.ops.mocap_assist.load_match(result_as="NLA_TRACK") == {"FINISHED"}

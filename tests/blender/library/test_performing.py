@@ -29,10 +29,10 @@ def test_performance_fills_the_list_and_waves_page_it(
 
     assert listed.query == "your performance" and len(listed.rows) == 6
     assert message == performing.chosen_sentence() and message.startswith("1 of 6: ")
-    assert performing.page(blank.context, 1).startswith("2 of 6: ")
-    assert performing.page(blank.context, -1) == message
-    assert performing.page(blank.context, -1).startswith("6 of 6: ")
-    assert performing.page(blank.context, 1) == message
+    assert performing.show_next_match(blank.context, 1).startswith("2 of 6: ")
+    assert performing.show_next_match(blank.context, -1) == message
+    assert performing.show_next_match(blank.context, -1).startswith("6 of 6: ")
+    assert performing.show_next_match(blank.context, 1) == message
 
 
 def test_library_is_browsed_and_a_clip_searched_with(
@@ -45,19 +45,19 @@ def test_library_is_browsed_and_a_clip_searched_with(
     shown = performing.show_all(blank.context)
 
     assert shown.startswith("1 of 6: ") and "%" not in shown and len(listed.rows) == 6
-    search = load("mocap_assist.find_similar.searches").listed(blank.context)
+    search = load("mocap_assist.find_similar.searches").listed_search(blank.context)
     ghost, found = load("mocap_assist.find_similar.ghost"), search.finding.found[0]
     last = (found.entry.n_frames - 1) / found.entry.frame_rate * 30.0
     assert ghost.clip_frame(found, last) == pytest.approx(found.entry.n_frames - 1, abs=1.0)
     assert len(ghost.ghost_lines(search.finding.stage, found, 3.0)) == 19
 
-    assert performing.page(blank.context, 1).startswith("2 of 6: ")
+    assert performing.show_next_match(blank.context, 1).startswith("2 of 6: ")
     name = listed.rows[1].name
     with pytest.raises(RuntimeError, match="These clips were not searched for"):
         blank.ops.mocap_assist.learn_from_matches()
     with pytest.raises(RuntimeError, match="These clips were not searched for"):
         blank.ops.mocap_assist.use_matches()
-    assert performing.choose(blank.context).startswith("1 of 5: ")
+    assert performing.search_with_shown(blank.context).startswith("1 of 5: ")
     assert listed.query == name and name not in [row.name for row in listed.rows]
 
     monkeypatch.setattr(load("mocap_assist.find_similar.solve_finding"), "MAX_MATCHES", 4)
@@ -65,9 +65,9 @@ def test_library_is_browsed_and_a_clip_searched_with(
     monkeypatch.setattr(performing, "run", lambda solve: solve())
     performing.show_all(blank.context)
     assert len(listed.rows) == 4
-    back = [performing.page(blank.context, -1)[:6] for _ in range(3)]
+    back = [performing.show_next_match(blank.context, -1)[:6] for _ in range(3)]
     assert back == ["6 of 6", "5 of 6", "4 of 6"]
-    assert performing.page(blank.context, 1).startswith("5 of 6: ")
+    assert performing.show_next_match(blank.context, 1).startswith("5 of 6: ")
 
     shrunk = performing.show_all(blank.context, first=48, row=-1)
     assert shrunk.startswith("4 of 6: ")
@@ -127,13 +127,15 @@ def test_the_newest_command_fills_the_list_and_reports_its_end(
 
     assert performing.show_all(blank.context) == "Reading the library..."
     assert performing.search_with(blank.context, performance).startswith("Searching with")
-    assert jobs(finding, None) == 1 and performing.news() == ""
+    assert jobs(finding, None) == 1 and performing.new_message() == ""
     assert jobs(finding, finding) == 0
-    assert listed.query == "your performance" and performing.news() == "No search yet."
+    assert listed.query == "your performance" and performing.new_message() == "No search yet."
 
     performing.show_all(blank.context)
     assert jobs(finding, finding, damaged) == 0
-    assert performing.news() == "The library is damaged." and performing.news() == ""
+    assert (
+        performing.new_message() == "The library is damaged." and performing.new_message() == ""
+    )
 
 
 def test_waves_while_a_page_is_read_count_from_its_first_or_last_clip(
@@ -142,21 +144,21 @@ def test_waves_while_a_page_is_read_count_from_its_first_or_last_clip(
     newcomer("walk")
     find()
     listed = blank.context.window_manager.mocap_assist_matches
-    found = load("mocap_assist.find_similar.searches").listed(blank.context).finding
+    found = load("mocap_assist.find_similar.searches").listed_search(blank.context).finding
     page = replace(found, first=0)
 
     performing.show_all(blank.context)
-    assert [performing.page(blank.context, step) for step in (1, 1)] == ["", ""]
+    assert [performing.show_next_match(blank.context, step) for step in (1, 1)] == ["", ""]
     assert jobs(page) == 0 and listed.active == 2
 
     performing.show_all(blank.context, row=-1)
-    performing.page(blank.context, -1)
+    performing.show_next_match(blank.context, -1)
     assert jobs(page, page) == 0 and listed.active == len(listed.rows) - 2
 
     of_two = replace(page, n_clips=2 * len(page.found))
     performing.show_all(blank.context)
-    performing.page(blank.context, -1)
-    performing.page(blank.context, -1)
+    performing.show_next_match(blank.context, -1)
+    performing.show_next_match(blank.context, -1)
     assert jobs(page, page, of_two) == 1
     assert jobs(page, page, of_two, of_two) == 0
     assert listed.active == len(listed.rows) - 2
@@ -173,10 +175,10 @@ def test_list_of_find_similar_stays_when_an_older_command_ends(
     listed = blank.context.window_manager.mocap_assist_matches
     names, query = [row.name for row in listed.rows], listed.query
     nothing = load("mocap_assist.find_similar.solve_finding").Finding((), None, 0)
-    assert performing.page(blank.context, 1).startswith("2 of ")
+    assert performing.show_next_match(blank.context, 1).startswith("2 of ")
     assert jobs(nothing) == 0
     assert [row.name for row in listed.rows] == names and listed.query == query
-    assert performing.news() == performing.chosen_sentence()
+    assert performing.new_message() == performing.chosen_sentence()
 
 
 def test_show_library_turns_on_the_ghost(performing, blank):
@@ -185,7 +187,7 @@ def test_show_library_turns_on_the_ghost(performing, blank):
 
     assert "There is no library yet" in performing.show_library(blank.context)
     assert blank.context.window_manager.mocap_assist_ghost
-    assert performing.page(blank.context, 1) == "No search yet."
+    assert performing.show_next_match(blank.context, 1) == "No search yet."
 
 
 def test_show_library_leaves_an_open_sidebar_as_it_is(performing, blank):

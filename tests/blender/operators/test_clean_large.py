@@ -66,7 +66,7 @@ def read_in_slices(load, monkeypatch, blank, work_of):
             denoising.DenoiseSettings(),
             denoising.PlantSettings(),
         )
-        reading = load("mocap_assist.clean.cleaning").read_cleaning
+        reading = load("mocap_assist.clean.scene_cleaning").read_cleaning
         work, done = time_slices.Work(reading, blank.context.scene, armature, settings), []
         while not work.run_slice(N_TIME_CHECKS):
             done.append(work_of())

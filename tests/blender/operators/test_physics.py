@@ -73,7 +73,7 @@ def test_unfollowable_take_is_reported_and_unchanged(walker, blank, keys_of, loa
 
 def test_report_names_the_first_frame_of_the_action_that_was_not_followed(walker, blank, load):
     """Frames of the action, which starts at frame 1, not rows of an array."""
-    simulating, scene = load("mocap_assist.physics.simulating"), blank.context.scene
+    simulating, scene = load("mocap_assist.physics.scene_simulating"), blank.context.scene
     settings = simulating.SimulateBundle(load("solvers.physics").SimulateSettings())
     solved = simulating.read_simulating(scene, walker, settings)()
     followed = solved.simulated.followed.copy()

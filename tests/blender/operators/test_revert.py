@@ -38,7 +38,7 @@ def test_revert_removes_a_result_that_was_cut_and_keeps_its_action(noisy, clean,
     track.strips.new("second half", 101, result).action_slot = result.slots[0]
     result.use_fake_user = False
 
-    message = load("mocap_assist.check.reverting").revert(noisy)
+    message = load("mocap_assist.check.reverting").revert_to_recorded(noisy)
 
     assert not noisy.animation_data.nla_tracks and result.use_fake_user
     assert noisy.animation_data.action.name == RAW and "Other" not in message
@@ -76,7 +76,7 @@ def test_strips_of_the_animator_stay_and_play_as_before(noisy, clean, load, chan
     before = [(each.action, each.frame_start, each.frame_end) for each in track.strips]
 
     clean()
-    message = load("mocap_assist.check.reverting").revert(noisy)
+    message = load("mocap_assist.check.reverting").revert_to_recorded(noisy)
 
     assert [
         (each.action, each.frame_start, each.frame_end)
@@ -162,5 +162,5 @@ def test_linked_result_is_not_reverted_but_its_raw_action_is_shown(
     raw_view.show_raw(blank.context)
     tracks = linked.animation_data.nla_tracks
     assert tracks[-1].strips[0].action.name == RAW
-    raw_view.restore()
+    raw_view.restore_played()
     assert [track.name for track in tracks] == [CLEAN]

@@ -44,7 +44,7 @@ def test_the_message_of_the_button_reports_backward_knees(
     mirrored_walker, make_rig, blank, load
 ):
     target = make_rig("Mixamo")
-    retargeting = load("mocap_assist.retarget.retargeting")
+    retargeting = load("mocap_assist.retarget.scene_retargeting")
     button_settings = load("mocap_assist.retarget.button_settings")
     settings = button_settings.RetargetBundle(
         button_settings.RetargetChoices(target=target.name),

@@ -104,7 +104,7 @@ def test_fk_and_ik_keys_give_the_same_pose(hero, walker, give, poses, blank):
 
 def test_body_rotates_as_solved(hero, walker, give, load, blank):
     """Every mapped part is where the solver wants it, which its own tests judge."""
-    retargeting = load("mocap_assist.retarget.retargeting")
+    retargeting = load("mocap_assist.retarget.scene_retargeting")
     button_settings = load("mocap_assist.retarget.button_settings")
     solvers = load("solvers.retargeting")
     motion = load("solvers.motion")

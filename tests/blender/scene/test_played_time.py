@@ -188,7 +188,7 @@ def test_held_key_shows_the_recorded_action_in_the_time_of_the_strip(blank, load
     scene.frame_set(118)
     scene.frame_set(117)
     assert_allclose(bone.location, recorded, atol=1e-5)
-    raw_view.restore()
+    raw_view.restore_played()
     scene.frame_set(117)
 
     assert_allclose(bone.location, played, atol=1e-5)
@@ -214,7 +214,7 @@ def test_held_key_shows_the_recorded_action_on_each_strip_of_a_cut_result(blank,
     for frame, scene_frame in ((17, 17), (40, 140)):
         scene.frame_set(scene_frame)
         shown[frame] = bone.location.copy()
-    raw_view.restore()
+    raw_view.restore_played()
     assert recorded[17] != recorded[40]
     assert_allclose(shown[17], recorded[17], atol=1e-5)
     assert_allclose(shown[40], recorded[40], atol=1e-5)
@@ -236,7 +236,7 @@ def test_held_key_removes_its_own_track_alone(blank, load, result):
 
     raw_view.show_raw(blank.context)
     assert len(animation.nla_tracks) == 3
-    raw_view.restore()
+    raw_view.restore_played()
 
     assert [(track.name, len(track.strips)) for track in animation.nla_tracks] == before
     assert animation.nla_tracks[-1].strips[0] == strip

@@ -46,7 +46,7 @@ def test_body_is_shown_during_tracking(points, press_button, load, window, blank
 
 
 def test_no_body_is_shown_without_live_preview(points, load, blank):
-    fixing = load("mocap_assist.fix.fixing")
+    fixing = load("mocap_assist.fix.scene_fixing")
     blank.context.scene.mocap_assist.track.watch = False
 
     assert fixing.watch_fixing(blank.context.scene, points, None) is None

@@ -26,8 +26,8 @@ def matched(load, blank):
         for name in ("walk", "run")
     )
     stage = finding.QueryPath(np.zeros((10, 3)), np.zeros(10), np.ones(20), 20.0)
-    search = searches.keep("take", (1.0, 1.0), 1.0, finding.Finding(found, stage, 5))
-    load("mocap_assist.find_similar.finding").fill_list(blank.context, search)
+    search = searches.store_search("take", (1.0, 1.0), 1.0, finding.Finding(found, stage, 5))
+    load("mocap_assist.find_similar.scene_finding").fill_list(blank.context, search)
     return search
 
 
@@ -63,8 +63,10 @@ def test_panel_shows_matches_with_previews_and_buttons(draw, matched, blank):
 
 def test_browsed_clips_are_no_best_matches(draw, matched, load, blank):
     browsed = dataclasses.replace(matched.finding, first=0)
-    search = load("mocap_assist.find_similar.searches").keep("all", (1.0, 1.0), 1.0, browsed)
-    load("mocap_assist.find_similar.finding").fill_list(blank.context, search)
+    search = load("mocap_assist.find_similar.searches").store_search(
+        "all", (1.0, 1.0), 1.0, browsed
+    )
+    load("mocap_assist.find_similar.scene_finding").fill_list(blank.context, search)
 
     shown = draw("MOCAP_PT_library")
 

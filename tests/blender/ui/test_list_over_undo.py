@@ -49,7 +49,7 @@ def test_undo_keeps_the_list_of_the_action_that_is_still_played(blank, noisy, re
 
     assert blank.context.scene.frame_current != 9
     assert state_of_list(blank) == before
-    assert renewing.timers == [renewing.renew]  # the keys may be others
+    assert renewing.timers == [renewing.check_again]  # the keys may be others
     assert renewing._awaited == {blank.context.scene.session_uid: True}
 
 
@@ -79,7 +79,7 @@ def test_list_of_a_result_is_not_shown_for_the_recorded_action(blank, noisy, ren
     blank.ops.ed.undo()
 
     assert state_of_list(blank) in {raw, ("", ())}
-    assert renewing.timers == [renewing.renew]
+    assert renewing.timers == [renewing.check_again]
 
 
 def test_undo_ends_a_check_of_what_was_played_before(blank, noisy, renewing, check, window):
@@ -104,7 +104,7 @@ def test_revert_is_checked_again(blank, actor, renewing):
 
     blank.ops.mocap_assist.revert_to_raw()
 
-    assert renewing.timers == [renewing.renew]
+    assert renewing.timers == [renewing.check_again]
 
 
 class ShownList(NamedTuple):

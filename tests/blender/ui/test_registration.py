@@ -121,7 +121,7 @@ def test_extension_works_without_preferences(blank, extension, draw, load):
 
         assert bpy.types.MOCAP_PT_clean.bl_category == "Mocap"
         assert "mocap_assist_overlay" in draw("MOCAP_PT_compare")
-        assert tuple(module.preferred("raw_color")) == (1.0, 0.45, 0.1, 0.8)
+        assert tuple(module.preference_value("raw_color")) == (1.0, 0.45, 0.1, 0.8)
         assert not bpy.ops.mocap_assist.reset_preferences.poll()
     finally:
         addons.new().module = module.EXTENSION

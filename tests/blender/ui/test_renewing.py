@@ -17,7 +17,7 @@ def test_results_are_checked_again_where_check_was_pressed_before(blank, actor, 
     assert not timers  # a check makes no result
     blank.ops.mocap_assist.denoise(strength=0.5)
 
-    assert timers == [renewing.renew]
+    assert timers == [renewing.check_again]
 
 
 def test_results_are_checked_again_in_a_window_of_their_scene(blank, load, monkeypatch):
@@ -35,7 +35,7 @@ def test_results_are_checked_again_in_a_window_of_their_scene(blank, load, monke
     monkeypatch.setattr(renewing, "bpy", SimpleNamespace(context=context, ops=ops))
     monkeypatch.setattr(renewing, "_awaited", {2: False})
 
-    renewing.renew()
+    renewing.check_again()
 
     assert pressed == windows[1:]
     assert renewing._awaited == {2: False}  # nothing there can be checked yet
@@ -83,12 +83,12 @@ def test_result_is_checked_once_its_scene_is_shown_again(
     monkeypatch.setattr(renewing.bpy, "ops", ops, raising=False)
     blank.ops.mocap_assist.denoise(plant_feet=False)
 
-    renewing.renew()
+    renewing.check_again()
     assert not pressed
     windows[0] = SimpleNamespace(scene=ours, screen=SimpleNamespace(areas=[view]))
     scene_is_shown()
-    assert renewing.timers == [renewing.renew]
-    renewing.renew()
+    assert renewing.timers == [renewing.check_again]
+    renewing.check_again()
 
     assert pressed == [{"is_quiet": True}]
 
@@ -138,7 +138,7 @@ def test_a_list_of_what_is_played_is_not_renewed(blank, actor, load, monkeypatch
         with monkeypatch.context() as patch:
             patch.setattr(renewing, "_awaited", {scene.session_uid: False})
             patch.setattr(renewing, "bpy", SimpleNamespace(context=context, ops=ops))
-            renewing.renew()
+            renewing.check_again()
 
     assert pressed == [{"is_quiet": True}]  # after Clean
 
@@ -205,7 +205,7 @@ def test_check_that_a_press_ended_is_taken_up_after_that_solve(
 
     assert pressed.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 
-    assert renewing.timers == [renewing.renew]
+    assert renewing.timers == [renewing.check_again]
 
 
 def test_no_check_reads_the_recorded_action_while_its_key_is_held(actor, blank, renewing, load):
@@ -215,10 +215,10 @@ def test_no_check_reads_the_recorded_action_while_its_key_is_held(actor, blank, 
     raw_view.show_raw(blank.context)
     renewing.timers.clear()
 
-    assert renewing.renew() is None  # and it touches no window
-    raw_view.restore()
+    assert renewing.check_again() is None  # and it touches no window
+    raw_view.restore_played()
 
-    assert renewing.timers == [renewing.renew]
+    assert renewing.timers == [renewing.check_again]
 
 
 def test_nothing_is_taken_up_after_a_check_has_ended(actor, blank, renewing, check, window):
@@ -240,7 +240,7 @@ def test_a_list_whose_action_was_deleted_is_renewed(actor, blank, renewing):
 
     blank.ops.mocap_assist.denoise(plant_feet=False)
 
-    assert renewing.timers == [renewing.renew]
+    assert renewing.timers == [renewing.check_again]
 
 
 def test_panels_keep_what_they_say_of_a_result_while_the_recorded_action_is_shown(
@@ -256,7 +256,7 @@ def test_panels_keep_what_they_say_of_a_result_while_the_recorded_action_is_show
     raw_view.show_raw(blank.context)
     assert actor.animation_data.action.name == "walk"
     assert [draw(name) for name in names] == before
-    raw_view.restore()
+    raw_view.restore_played()
 
     actor.animation_data.action = blank.data.actions["walk"]
     assert draw("MOCAP_PT_check") != before[0]

@@ -27,7 +27,7 @@ def cleaned(blank, actor):
 def raw_view(load):
     found = load("mocap_assist.check.raw_view")
     yield found
-    found.restore()
+    found.restore_played()
 
 
 @pytest.fixture

@@ -189,7 +189,7 @@ def test_panel_accepts_an_index_stored_by_another_version(blank, draw, walker, n
 
 
 def test_panel_does_not_read_variants(vary, draw, load, monkeypatch):
-    retargeting, looks = load("mocap_assist.retarget.retargeting"), []
+    retargeting, looks = load("mocap_assist.retarget.scene_retargeting"), []
     look = retargeting.animated_paths
 
     def counted(action, slot):

@@ -146,7 +146,7 @@ def number(value: Any, location: str) -> float:
 
 
 def point(value: Any, location: str) -> Array:
-    """Return x, y, z of a list or of an object with these keys."""
+    """Return (3,) from a list of x, y, z or from an object with these keys."""
     if isinstance(value, Mapping):
         lower = {str(key).lower(): coordinate for key, coordinate in value.items()}
         value = [lower.get(axis) for axis in "xyz"]
@@ -154,7 +154,7 @@ def point(value: Any, location: str) -> Array:
 
 
 def stack_body(body: str, frames: list[BodiesFrame]) -> tuple[Array, Array | None]:
-    """Return positions and confidence, 0 to 1, of a body; NaN and 0 in frames without it.
+    """Return positions, (F, n, 3), and confidence, (F, n), of a body; NaN and 0 without it.
 
     Raises ValueError if it has different joints in different frames.
     """

@@ -182,7 +182,7 @@ class BvhChannels:
 
 
 def vote_for_offset(offset: NDArray[np.float64], median: NDArray[np.float64]) -> int:
-    """Return 1 where a median position is nearer to zero than to an OFFSET, -1 where farther.
+    """Return 1 if a median position, (3,), is nearer to zero than to an OFFSET, -1 if farther.
 
     Return 0 where both are as near.
     """

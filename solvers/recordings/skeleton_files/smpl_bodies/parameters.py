@@ -142,7 +142,7 @@ def plain_name(name: str) -> str:
 
 
 def member(arrays: Mapping[str, Array], names: Collection[str]) -> Array | None:
-    """Return the first of these arrays that the file has; without a leading batch of one."""
+    """Return the first of these arrays that the file has; (1, n, k) becomes (n, k)."""
     array = next((arrays[name] for name in names if name in arrays), None)
     if array is None:
         return None

@@ -48,5 +48,5 @@ def split_people(
 
 
 def people_of_parameters(arrays: Mapping[str, Array]) -> list[dict[str, Array]]:
-    """Return the arrays of each person of a file, all rotations as rotation vectors."""
+    """Return the arrays of each person of a file, (n_frames, ...), rotations as vectors."""
     return split_people(with_rotation_vectors(arrays, ALL_ROTATIONS), SIZES)

@@ -37,7 +37,7 @@ ROWS: dict[str, Collection[int]] = {
 
 
 def rows_of_frames(arrays: Mapping[str, Array]) -> dict[str, Array]:
-    """Return arrays with frames on the first axis; a row may hold one frame or all.
+    """Return arrays (n_frames, ...); in the file a row may hold one frame or all.
 
     All frames are as many as the positions, or as those that change least from one to the next:
     bodies move little between frames. Rows of rotation matrices become rows of vectors.
@@ -75,7 +75,7 @@ def _change(poses: Array) -> float:
 def joined_frames(
     path: Path | str, name: str, frames: Sequence[Mapping[str, Mapping[str, Array]]]
 ) -> dict[str, Array]:
-    """Return the arrays of a person in all frames, NaN where the person or one is missing."""
+    """Return the arrays, (n_frames, ...), of a person; NaN where a frame lacks them."""
     if len(frames) == 1:
         return dict(frames[0][name])
     own = [frame.get(name) for frame in frames]

@@ -17,19 +17,19 @@ damaged packets."""
 
 
 def points_from_unity(points: Array) -> Array:
-    """Convert points of Unity: left-handed, Y up, facing +Z, the left side at -X."""
+    """Convert points, (..., 3), of Unity: left-handed, Y up, facing +Z, the left side at -X."""
     x, y, z = np.moveaxis(points, -1, 0)
     return np.stack([-x, -z, y], axis=-1)
 
 
 def points_to_unity(points: Array) -> Array:
-    """Undo `points_from_unity`."""
+    """Undo `points_from_unity` of points, (..., 3)."""
     x, y, z = np.moveaxis(points, -1, 0)
     return np.stack([-x, z, -y], axis=-1)
 
 
 def rotations_from_unity(rotations: Array) -> Array:
-    """Convert quaternions w x y z of Unity.
+    """Convert quaternions w x y z, (..., 4), of Unity.
 
     Mirrored axes reverse rotations: the axis of each is mirrored, then reversed.
     """
@@ -38,13 +38,13 @@ def rotations_from_unity(rotations: Array) -> Array:
 
 
 def rotations_to_unity(rotations: Array) -> Array:
-    """Undo `rotations_from_unity`."""
+    """Undo `rotations_from_unity` of quaternions, (..., 4)."""
     w, x, y, z = np.moveaxis(rotations, -1, 0)
     return np.stack([w, x, -z, y], axis=-1)
 
 
 def checked_positions(positions: Array) -> Array:
-    """Return positions in meters.
+    """Return positions, (..., 3) meters.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def is_rotation(quaternion: Sequence[float]) -> bool:
 
 
 def checked_rotations(rotations: Array) -> Array:
-    """Return unit quaternions.
+    """Return unit quaternions, (..., 4).
 
     Raises
     ------

@@ -84,7 +84,7 @@ def skeleton_from_offsets(offsets: Mapping[str, Array]) -> Skeleton:
 
 
 def standing(names: Sequence[str], parents: Sequence[int], offsets: Array) -> Skeleton:
-    """Return a skeleton whose root is above the origin, and whose lowest joint on the floor."""
+    """Return a skeleton of offsets, (n, 3), above the origin, whose lowest joint is at 0."""
     offsets = np.array(offsets, dtype=np.float64)
     offsets[0] = 0.0
     skeleton = Skeleton(tuple(names), tuple(parents), offsets)
@@ -93,7 +93,7 @@ def standing(names: Sequence[str], parents: Sequence[int], offsets: Array) -> Sk
 
 
 def default_offset(role: str) -> Array:
-    """Return the offset of a bone of an adult, meters."""
+    """Return the offset, (3,) meters, of a bone of an adult."""
     side = next((side for side in SIDES if role.startswith(side)), "")
     offset = LEFT_OFFSETS_M.get(role.removeprefix(side), FINGER_OFFSET_M)
     return np.array(offset) * ((-1.0 if side == "right" else 1.0), 1.0, 1.0)

@@ -162,7 +162,7 @@ class RokokoDecoder:
 
 
 def encode_rokoko(frame: PoseFrame, positions: Array, rotations: Array) -> bytes:
-    """Return version 3 of the JSON, from world positions and rotations of humanoid roles."""
+    """Return version 3 of the JSON, from (n, 3) world positions and (n, 4) rotations."""
     rest = np.array([T_POSE[role] for role in frame.names])
     rotated = multiply(rotations_to_unity(rotations), rest).round(6)
     points = points_to_unity(positions).round(5)

@@ -26,18 +26,18 @@ from ..actions.armature_read import read_take
 from ..actions.contact_keys import write_contacts
 from ..actions.limits import has_limits, read_limits
 from ..blender.time_slices import Sliced, Steps
-from ..check.checking import list_issues, read_played
+from ..check.scene_checking import list_issues, read_played
 from ..clean.button_settings import CleanBundle, CleanChoices
-from ..clean.cleaning import read_cleaning, write_cleaned
+from ..clean.scene_cleaning import read_cleaning, write_cleaned
 from ..clean.solve_cleaning import Cleaned
 from ..depth.depth_preview import recording_of, shows_depth
 from ..jobs.protocol import PreviewSolve
-from ..markers.solving import SolveBundle, read_solving, write_solved
+from ..markers.scene_skeleton import SolveBundle, read_solving, write_solved
 from ..panel_parts.fix_card import keep_card
 from ..reconstruct.button_settings import ReconstructBundle, ReconstructChoices
-from ..reconstruct.reconstructing import read_reconstructing, write_reconstructed
+from ..reconstruct.scene_reconstructing import read_reconstructing, write_reconstructed
 from ..reconstruct.solve_reconstructing import Rebuilt
-from ..retarget.retargeting import target_called
+from ..retarget.scene_retargeting import target_called
 from ..runtime.selection import (
     played_source,
     selected_armature,

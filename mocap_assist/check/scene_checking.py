@@ -24,7 +24,7 @@ from ..runtime.selection import (
     timeline_frames,
 )
 from ..runtime.subject import Subject, check_unchanged
-from ..scene.scene_objects import choose
+from ..scene.scene_objects import select_only
 from .button_settings import CheckBundle
 from .solve_checking import Checked, check
 
@@ -139,7 +139,7 @@ def jump_to(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> None:
     markers = markers_of(subject)
     for name, marker in zip(point_names(markers), markers, strict=True):
         if name == issue.name:
-            choose(context, [marker], marker)
+            select_only(context, [marker], marker)
 
 
 def _select_bone(armature: bpy.types.Object, name: str) -> None:

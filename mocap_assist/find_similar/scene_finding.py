@@ -86,7 +86,7 @@ def list_found(
     time = played_time(first_animated_object(subject))
     grid = time.scene_frame(query.grid.frames[0]), time.scale * query.grid.step
     name = played_source(subject)[0].name
-    fill_list(bpy.context, searches.keep(name, grid, unit_of(scene), finding))
+    fill_list(bpy.context, searches.store_search(name, grid, unit_of(scene), finding))
     n_found = len(finding.found)
     if not n_found:
         return f"No clip of the library ({finding.n_clips} clips) is similar to {name}."

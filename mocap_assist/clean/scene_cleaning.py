@@ -62,7 +62,7 @@ def read_cleaning(
         planting=settings.planting if plants else None,
         contacts=contacts,
     )
-    solution = yield from redo.recall.steps(problem)
+    solution = yield from redo.stored_solution.steps(problem)
     return (partial if solution is None else ShortSolve)(clean, problem, finish, solution)
 
 
@@ -82,7 +82,7 @@ def write_cleaned(
     examples, found = yield from _read(here, settings.choices)
     problem = _problem(found.raw, settings, examples)
     yield from check_unchanged.steps(here.find()[1], solved_digest, problem)
-    yield from redo.remember.steps(problem, cleaned.solution)
+    yield from redo.store_solution.steps(problem, cleaned.solution)
     types = yield from in_thread.steps(
         partial(key_types, cleaned.solution.recordings_of(problem), cleaned.solution.denoised)
     )

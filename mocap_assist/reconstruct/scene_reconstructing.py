@@ -20,10 +20,10 @@ from ..actions.take import ArmatureTake
 from ..blender.compat import Source
 from ..blender.path_properties import absolute
 from ..blender.time_slices import Sliced, Steps
-from ..clean.cleaning import ease_of
 from ..clean.example_source import ExampleSource
 from ..clean.examples import read_examples
-from ..clean.report import figures
+from ..clean.report import overall_figures
+from ..clean.scene_cleaning import ease_of
 from ..jobs.job import ShortSolve
 from ..library.library_prior import library_prior
 from ..runtime import redo
@@ -82,7 +82,7 @@ def read_reconstructing(
         planting=settings.planting if settings.choices.plant_feet else None,
         contacts=animators_contacts(reading.played, reading.take.frames),
     )
-    solution = yield from redo.recall.steps(problem)
+    solution = yield from redo.stored_solution.steps(problem)
     return (partial if solution is None else ShortSolve)(rebuild, problem, finish, solution)
 
 
@@ -101,7 +101,7 @@ def write_reconstructed(
     read = Played.of(scene, armature)
     reading, problem = yield from _read(read.here, settings)
     yield from check_unchanged.steps(read.find()[1], solved_digest, problem)
-    yield from redo.remember.steps(problem, rebuilt.solution)
+    yield from redo.store_solution.steps(problem, rebuilt.solution)
     _, armature, played = read.find()
     recorded = history.raw_of(played[0]) or played
     names = problem.body.skeleton.names
@@ -212,8 +212,8 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
         "method": rebuilt.solution.method,
         "rebuilt_share": rebuilt.solution.rebuilt_fraction,
         "remarks": list(rebuilt.remarks),
-        "before": figures(rebuilt.before),
-        "after": figures(rebuilt.after),
+        "before": overall_figures(rebuilt.before),
+        "after": overall_figures(rebuilt.after),
     }
 
 

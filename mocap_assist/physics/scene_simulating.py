@@ -34,7 +34,7 @@ def read_simulating(
     check_writable(armature)
     read = yield from read_take.steps(armature, scene, source=played_source(armature))
     take = take_of(read.parts[0].motion, settings.simulating)
-    cached = yield from redo.recall.steps(take)
+    cached = yield from redo.stored_solution.steps(take)
     kind = partial if cached is None else ShortSolve
     return kind(simulate_take, take, settings.simulating.strength, cached)
 
@@ -55,7 +55,7 @@ def write_simulated(
     read = yield from read_take.steps(armature, scene, source=played_source(armature))
     take = take_of(read.parts[0].motion, settings.simulating)
     yield from check_unchanged.steps(present.find()[1], solved_digest, take)
-    yield from redo.remember.steps(take, result.simulated)
+    yield from redo.store_solution.steps(take, result.simulated)
     _, armature, played = present.find()
     read = read.with_recordings((result.body, *read.recordings[1:]))
     action, slot = yield from write_take.steps(
