@@ -45,6 +45,7 @@ LABELED = {
     "mocap_assist/exporting/menu.py": {"ENTRY"},
     "mocap_assist/fix/fixing.py": {"SUMMARY"},
     "mocap_assist/fix/panel.py": {"CONTINUE", "_draw_card"},
+    "mocap_assist/fix/queue.py": {"Status"},
     "mocap_assist/importing/bind_meshes.py": {"UNFITTING", "_count"},
     "mocap_assist/importing/dialog/body_choice.py": {"BEST", "EVERY", "ONLY_THIS"},
     "mocap_assist/importing/depth_objects.py": {"make_preview"},

@@ -15,7 +15,7 @@ from ..panel_parts.preference_values import preferred
 from ..panel_parts.visibility import shows_take
 from ..track.tracking import selected_preview
 from .fixing import why_not_fix
-from .queue import Status, selected_takes, shown_queue
+from .queue import ICONS, Status, selected_takes, shown_queue
 
 FIX, ACCEPT, REVERT = (
     f"mocap_assist.{name}" for name in ("fix_take", "accept_fix", "revert_to_raw")
@@ -45,10 +45,10 @@ class MOCAP_UL_takes(bpy.types.UIList):
         active_property: str,
         index: int,
     ) -> None:
-        title, symbol = Status[item.status].value
+        status = Status[item.status]
         row = layout.split(factor=0.65)
-        row.label(text=item.name, icon=symbol, translate=False)
-        row.label(text=title)
+        row.label(text=item.name, icon=ICONS[status], translate=False)
+        row.label(text=status.value)
 
 
 class FixPanel(PanelMixin):
