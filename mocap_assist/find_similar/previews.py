@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from .searches import Search
 
-FIGURE_COLOR = (0.27, 0.6, 0.95)
-"""Red, green and blue, of a blue that is readable in the dark and in the light theme. Chosen by
-hand."""
+FIGURE_COLOR = (0.15, 0.45, 0.85)
+"""Red, green and blue, each a fraction. Chosen by hand for a contrast of 2.2 or more both to the
+gray 0.24 of the dark theme's panels and to the 0.7 of the light theme's."""
 
 _icons: list[Any] = []
 _shown: list[int] = []
