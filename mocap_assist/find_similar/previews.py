@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from .searches import Search
 
 FIGURE_COLOR = (0.15, 0.45, 0.85)
-"""Red, green and blue, each a fraction. Chosen by hand for a contrast of 2.2 or more both to the
-gray 0.24 of the dark theme's panels and to the 0.7 of the light theme's."""
+"""Red, green and blue, each a fraction. Chosen by hand for a contrast of 2.2 or more both to
+the gray 0.24 of the dark theme's panels and to the 0.7 of the light theme's."""
 
 _icons: list[Any] = []
 _shown: list[int] = []
