@@ -80,7 +80,7 @@ def source_texts(root: Path) -> set[str]:
             found |= arguments | sentences
             found |= set(_labels(tree, hidden, LABELED.get(name, set()), LABEL))
             found |= set(_labels(tree, hidden, TERMS.get(name, set()), TERM))
-    return {text for text in found if _can_be_recognized(text) and not ARRAYS.search(text)}
+    return {text for text in found if _can_be_recognized(text)}
 
 
 def _files(root: Path) -> list[Path]:
@@ -200,6 +200,9 @@ def _placeholder(expression: ast.expr, used: list[str]) -> str:
 
 
 def _can_be_recognized(text: str) -> bool:
+    """Whether a text is of the window and is found again once its placeholders are filled."""
     literal = "".join(part for part, *_ in Formatter().parse(text))
+    if ARRAYS.search(literal):
+        return False
     n_letters = sum(letter.isalpha() for letter in literal)
     return n_letters >= (MIN_LETTERS if "{" in text else 1)

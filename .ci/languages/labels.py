@@ -18,6 +18,7 @@ LABELED = {
     "mocap_assist/fix/queue.py": {"Status"},
     "mocap_assist/importing/changing_axes.py": {"why_fixed"},
     "mocap_assist/importing/bind_meshes.py": {"UNFITTING", "_count"},
+    "mocap_assist/importing/dialog/job.py": {"_show"},
     "mocap_assist/importing/dialog/body_choice.py": {"BEST", "EVERY", "ONLY_THIS"},
     "mocap_assist/importing/depth_objects.py": {"make_preview"},
     "mocap_assist/importing/menu.py": {"ENTRY"},
