@@ -73,7 +73,15 @@ def installed(archive: Path, name: str) -> ModuleType:
 
 def all_texts(bpy: ModuleType) -> set[str]:
     """Return every text of the window."""
-    return set(class_texts(bpy)) | source_texts(ROOT)
+    return set(class_texts(bpy)) | source_texts(ROOT) | set(preset_texts())
+
+
+def preset_texts() -> Iterator[str]:
+    """Yield names and tooltips of the shipped presets."""
+    shipped = importlib.import_module(f"{PACKAGE}.solvers.presets").PRESETS
+    for presets in shipped.values():
+        for name, preset in presets.items():
+            yield from (name, preset.help)
 
 
 def class_texts(bpy: ModuleType) -> Iterator[str]:

@@ -6,10 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from string import Formatter
 
+from labels import LABELED, TERMS
+
 FOLDERS = ("mocap_assist", "operators", "solvers")
 NOT_SHOWN = (
     "mocap_assist/batch/", "solvers/command_line/",  # in English
-    "mocap_assist/languages/",
+    "mocap_assist/languages/", "mocap_assist/ui/diagnostics.py",
     "solvers/samples/", "solvers/pictures/", "solvers/processes/",
     "solvers/depth_tracking/forest/", "solvers/depth_tracking/forest_training/",
     "solvers/depth_tracking/several_cameras/",
@@ -33,61 +35,14 @@ scripts that learn, damaged packets of streams, and checks of arrays that only p
 damaged libraries fail."""
 SHOWN = ("solvers/command_line/farm/flamenco_",)
 """Beginnings of paths among those whose texts Submit Folder shows."""
-LABELED = {
-    "mocap_assist/blender/fbx_curves.py": {"describe_missing_curves"},
-    "mocap_assist/check/scene_checking.py": {"_summary"},
-    "mocap_assist/check/compare_panel.py": {"HOLD"},
-    "mocap_assist/check/panel.py": {"_draw_figures", "KINDS"},
-    "mocap_assist/check/held_operator.py": {"HELD_TEXT", "CLICKED_TEXT"},
-    "mocap_assist/clean/feet_panel.py": {"LABELS"},
-    "mocap_assist/clean/report.py": {"clean_report"},
-    "mocap_assist/overlays/marked_ranges.py": {"StripRow", "Mark"},
-    "mocap_assist/exporting/menu.py": {"ENTRY"},
-    "mocap_assist/fix/scene_fixing.py": {"SUMMARY"},
-    "mocap_assist/fix/panel.py": {"CONTINUE", "_draw_card"},
-    "mocap_assist/importing/bind_meshes.py": {"UNFITTING", "_count"},
-    "mocap_assist/importing/dialog/body_choice.py": {"BEST", "EVERY", "ONLY_THIS"},
-    "mocap_assist/importing/depth_objects.py": {"make_preview"},
-    "mocap_assist/importing/menu.py": {"ENTRY"},
-    "mocap_assist/importing/solve_bodies.py": {"describe_left_out"},
-    "mocap_assist/importing/marker_objects.py": {"make_markers"},
-    "mocap_assist/importing/recording_objects.py": {"make_objects", "_never_observed",
-                                                    "_make_armature", "add_takes"},
-    "mocap_assist/library/background.py": {"message_of"},
-    "mocap_assist/live/listening.py": {"MODES"},
-    "mocap_assist/panel_parts/figure_rows.py": {"FIGURES"},
-    "mocap_assist/retarget/bone_list.py": {"PRESETS"},
-    "mocap_assist/retarget/role_labels.py": {"PARTS", "FINGERS"},
-    "mocap_assist/runtime/watch.py": {"CANCELS", "time_left"},
-    "solvers/denoising/default_method.py": {"_joints"},
-    "solvers/denoising/quality/gap_issues.py": {"gap_issues", "_lost_together"},
-    "solvers/denoising/quality/worst_issues.py": {"_spikes", "_describe_lasting_jump",
-                                                  "_describe_jitter", "_slides",
-                                                  "_beyond_limits", "_cuts"},
-    "solvers/denoising/window_estimates/channel_groups.py": {"_describe_prior"},
-    "solvers/motion/skeletons/file_conventions.py": {"sentence", "OFFSET_ADDED",
-                                                     "_confidence_in_up", "_up_at_rest"},
-    "solvers/recordings/containers/frame_files.py": {"describe_frame_files"},
-    "solvers/recordings/conventions/body_axes.py": {"describe_guessed_axis"},
-    "solvers/recordings/conventions/body_unit.py": {"question_of_size"},
-    "solvers/recordings/conventions/swapped_sides.py": {"SWAPPED"},
-    "solvers/recordings/conventions/unit_estimate.py": {"describe_guessed_unit"},
-    "solvers/recordings/skeleton_files/segment_recordings.py": {"POINTS_ONLY"},
-    "solvers/retargeting/body.py": {"SOURCE", "TARGET", "MOTION"},
-    "solvers/workflows/fix_report/take_figures.py": {"_texts"},
-}  # fmt: skip
-"""By file: constants, enums and functions with texts that are no full sentences."""
-TERMS = {
-    "solvers/denoising/edge_poses.py": {"NAMES"},
-    "solvers/motion/skeletons/file_conventions.py": {"UNIT_NAMES"},
-}
-"""By file: constants whose every word is a text."""
 TAKES_TEXT = {
     "translated": 0, "pgettext_iface": 0, "poll_message_set": 0, "_in_slices": 0,
     "progress": 1, "draw_sentence": 2, "Remark": 0,
 }  # fmt: skip
 """By function: the argument that is a text of the window."""
 SENTENCE = re.compile(r"\A[A-Z0-9{\"'(].* .*[.!]\Z", re.DOTALL)
+REMARK = re.compile(r"\A[A-Z][a-z]+(?=(?:.*?\b[a-z]{2,}\b){4}).*\w[\"')}]?\Z", re.DOTALL)
+"""A sentence without a period, as remarks of readers are: four words of small letters."""
 SENTENCE_END = re.compile(r"(?<=[.!?]) (?=\S)")
 """Where messages of solvers are parted: many have a sentence in common, such as "Export it
 again."."""
@@ -116,13 +71,16 @@ def source_texts(root: Path) -> set[str]:
             tree = ast.parse(path.read_text(encoding="utf-8"))
             hidden = {id(node) for node in _not_shown(tree)}
             shown = [node for node in ast.walk(tree) if id(node) not in hidden]
+            arguments = set(_arguments(shown))
             sentences = set(_sentences(shown))
+            if not name.endswith("settings.py"):
+                sentences |= set(_remarks(tree, shown)) - arguments
             if name.startswith("solvers"):
                 sentences = {each for text in sentences for each in SENTENCE_END.split(text)}
-            found |= set(_arguments(shown)) | sentences
+            found |= arguments | sentences
             found |= set(_labels(tree, hidden, LABELED.get(name, set()), LABEL))
             found |= set(_labels(tree, hidden, TERMS.get(name, set()), TERM))
-    return {text for text in found if _can_be_recognized(text) and not ARRAYS.search(text)}
+    return {text for text in found if _can_be_recognized(text)}
 
 
 def _files(root: Path) -> list[Path]:
@@ -142,6 +100,27 @@ def _sentences(nodes: list[ast.AST]) -> Iterator[str]:
         if isinstance(node, ast.JoinedStr | ast.Constant):
             text = OTHER_SENTENCE.sub("", _text(node).strip())
             yield from SENTENCE.findall(text)
+
+
+def _remarks(tree: ast.Module, nodes: list[ast.AST]) -> Iterator[str]:
+    """Yield sentences without a period that are no help of settings and no line of a log."""
+    others = {id(node) for other in ast.walk(tree) if _is_never_shown(other)
+              for node in ast.walk(other)}  # fmt: skip
+    for node in nodes:
+        if isinstance(node, ast.JoinedStr | ast.Constant) and id(node) not in others:
+            yield from REMARK.findall(OTHER_SENTENCE.sub("", _text(node).strip()))
+
+
+def _is_never_shown(node: ast.AST) -> bool:
+    """Whether this describes a setting, which Blender knows, or writes to a log or database."""
+    if isinstance(node, ast.ClassDef):
+        return any(getattr(base, "id", "") == "Choice" for base in node.bases)
+    if not isinstance(node, ast.Call):
+        return False
+    called = node.func
+    name = called.attr if isinstance(called, ast.Attribute) else getattr(called, "id", "")
+    owner = getattr(getattr(called, "value", None), "id", "")
+    return name in {"setting", "execute", "executescript"} or owner == "logger"
 
 
 def _labels(
@@ -221,6 +200,9 @@ def _placeholder(expression: ast.expr, used: list[str]) -> str:
 
 
 def _can_be_recognized(text: str) -> bool:
+    """Whether a text is of the window and is found again once its placeholders are filled."""
     literal = "".join(part for part, *_ in Formatter().parse(text))
+    if ARRAYS.search(literal):
+        return False
     n_letters = sum(letter.isalpha() for letter in literal)
     return n_letters >= (MIN_LETTERS if "{" in text else 1)

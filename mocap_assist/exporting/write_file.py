@@ -190,5 +190,5 @@ def _run(addon: str, operator: Any, options: dict[str, Any]) -> None:
         operator(**options)
     except RuntimeError as error:
         lines = str(error).strip().removeprefix("Error:").strip().splitlines()
-        reason = lines[-1] if lines else "no reason is given"
-        raise InvalidFileError(f"Blender's exporter failed: {reason}") from None
+        reason = lines[-1].rstrip(".") if lines else "no reason is given"
+        raise InvalidFileError(f"Blender's exporter failed: {reason}.") from None

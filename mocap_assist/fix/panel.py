@@ -14,7 +14,7 @@ from ..panel_parts.panel_layout import draw_job, draw_sentence, operator_exists,
 from ..panel_parts.preference_values import preference_value
 from ..panel_parts.visibility import shows_take
 from ..track.tracking import selected_preview
-from .queue import Status, selected_takes, shown_queue
+from .queue import ICONS, Status, selected_takes, shown_queue
 from .scene_fixing import why_not_fix
 
 FIX, ACCEPT, REVERT = (
@@ -45,10 +45,10 @@ class MOCAP_UL_takes(bpy.types.UIList):
         active_property: str,
         index: int,
     ) -> None:
-        title, symbol = Status[item.status].value
+        status = Status[item.status]
         row = layout.split(factor=0.65)
-        row.label(text=item.name, icon=symbol, translate=False)
-        row.label(text=title)
+        row.label(text=item.name, icon=ICONS[status], translate=False)
+        row.label(text=status.value)
 
 
 class FixPanel(PanelMixin):

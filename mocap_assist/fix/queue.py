@@ -1,11 +1,12 @@
 """Takes that Fix My Take works on one after another, and their status in the sidebar."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Collection, Generator, Sequence
 from enum import Enum
 from pathlib import Path
 from typing import Protocol
 
 import bpy
+from bpy.app import handlers
 
 from ...solvers.errors import InvalidFileError, InvalidMotionError
 from ..actions.markers.holders import holder_of
@@ -21,13 +22,24 @@ Bringing = Generator[tuple[float, str], None, Subject]
 
 
 class Status(Enum):
-    """State of a take in the list, and its icon."""
+    """State of a take; its value is the label in the list."""
 
-    WAITING = "Waiting", "TIME"
-    RUNNING = "Running", "PLAY"
-    DONE = "Fixed", "CHECKMARK"
-    FAILED = "Failed", "ERROR"
-    CANCELLED = "Cancelled", "X"
+    WAITING = "Waiting"
+    RUNNING = "Running"
+    DONE = "Fixed"
+    REMOVED = "Removed"
+    FAILED = "Failed"
+    CANCELLED = "Cancelled"
+
+
+ICONS = {
+    Status.WAITING: "TIME",
+    Status.RUNNING: "PLAY",
+    Status.DONE: "CHECKMARK",
+    Status.REMOVED: "LOOP_BACK",
+    Status.FAILED: "ERROR",
+    Status.CANCELLED: "X",
+}
 
 
 class QueuedTake(Protocol):
@@ -128,12 +140,42 @@ def show_takes(takes: Sequence[QueuedTake]) -> None:
         show_status(index, Status.WAITING)
 
 
-def show_status(index: int, status: Status, note: str = "") -> None:
-    """Show the status of a take, with a sentence about it."""
+def show_status(
+    index: int, status: Status, note: str = "", results: Collection[int] = ()
+) -> None:
+    """Show the status of a take, a sentence about it, and keep the numbers of its actions."""
     row = shown_queue().takes[index]
     row.status, row.note = status.name, note
+    row.results = " ".join(map(str, results))
+
+
+def action_numbers() -> set[int]:
+    """Return the numbers of all actions; in a session they survive undo."""
+    return {each.session_uid for each in bpy.data.actions}
+
+
+@handlers.persistent
+def renew_statuses(*_: object) -> None:
+    """Show whether the results of fixed takes are still there."""
+    here = {str(number) for number in action_numbers()}
+    for row in shown_queue().takes:
+        if row.status in {Status.DONE.name, Status.REMOVED.name}:
+            is_here = here.issuperset(row.results.split())
+            row.status = (Status.DONE if is_here else Status.REMOVED).name
 
 
 def shown_queue() -> bpy.types.PropertyGroup:
     """Return the list of the sidebar."""
     return getattr(bpy.context.window_manager, QUEUE)
+
+
+def register() -> None:
+    """Renew the statuses at each undo and redo."""
+    for steps in (handlers.undo_post, handlers.redo_post):
+        steps.append(renew_statuses)
+
+
+def unregister() -> None:
+    """Remove the handlers."""
+    for steps in (handlers.undo_post, handlers.redo_post):
+        steps.remove(renew_statuses)

@@ -11,7 +11,15 @@ from ..blender.path_properties import FOLDER, HIDDEN, absolute, path_property
 from ..jobs.job import POLL_INTERVAL_S
 from ..languages import translated
 from ..runtime.watched_operator import WatchedOperator
-from .queue import QueuedTake, Status, show_status, show_takes, shown_queue, takes_of
+from .queue import (
+    QueuedTake,
+    Status,
+    action_numbers,
+    show_status,
+    show_takes,
+    shown_queue,
+    takes_of,
+)
 from .scene_fixing import push_undo
 
 POINTER = {"MOUSEMOVE", "LEFTMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN"}
@@ -80,7 +88,7 @@ class QueueOperator(WatchedOperator):
             try:
                 yield from self._wait_while_paused()
                 show_status(index, Status.RUNNING)
-                self._started = monotonic()
+                self._started, before = monotonic(), action_numbers()
                 self._subject = yield from take.bring(bpy.context)
                 message = yield from super()._perform()
             except (SolveCancelled, GeneratorExit) as end:
@@ -95,7 +103,7 @@ class QueueOperator(WatchedOperator):
                     push_undo(take.name)  # its import stays
                 show_status(index, Status.FAILED, str(error) or "Memory ran out.")
             else:
-                show_status(index, Status.DONE, message)
+                show_status(index, Status.DONE, message, action_numbers() - before)
                 push_undo(take.name)
         return _summary(len(self._takes), n_failed)
 

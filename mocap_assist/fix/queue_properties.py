@@ -8,6 +8,7 @@ class MOCAP_PG_queued_take(bpy.types.PropertyGroup):
 
     status: bpy.props.StringProperty(name="Status")
     note: bpy.props.StringProperty(name="Text")
+    results: bpy.props.StringProperty(name="Results")
 
 
 class MOCAP_PG_fix_queue(bpy.types.PropertyGroup):

@@ -13,6 +13,7 @@ from ..blender.path_properties import (
     absolute,
     chosen_files,
 )
+from ..languages import translated
 from .auto_update_list import change_sources
 from .sources import asset_folders
 
@@ -37,7 +38,8 @@ def draw_sources(layout: bpy.types.UILayout, library: bpy.types.PropertyGroup) -
     row.operator(ADD_FILES, text="Files", icon="ADD")
     n_assets = len(asset_folders())
     if n_assets or library.asset_libraries:
-        column.prop(library, "asset_libraries", text=f"{n_assets} asset libraries")
+        text = translated(f"{n_assets} asset libraries")
+        column.prop(library, "asset_libraries", text=text, translate=False)
 
 
 def _add(context: bpy.types.Context, chosen: list[str]) -> set[str]:

@@ -13,6 +13,7 @@ from bl_ui.utils import PresetPanel
 
 from ...solvers.presets import PRESETS, mentioned_settings
 from ...solvers.settings import Choice, in_title_case
+from ..languages import translated
 
 USE_OPERATOR = "mocap_assist.use_preset"
 VERBS = {"clean": "denoise"} | {each: each for each in PRESETS if each != "denoise"}
@@ -30,7 +31,7 @@ class MOCAP_OT_use_preset(bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: Any) -> str:
-        return PRESETS[VERBS[properties.group]][properties.preset].help
+        return translated(PRESETS[VERBS[properties.group]][properties.preset].help)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         use_preset(context.scene, self.group, self.preset)

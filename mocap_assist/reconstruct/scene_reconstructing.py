@@ -220,11 +220,11 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
 def _message_of(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
     """Return the message for the status bar, with warnings."""
     percent = 100 * rebuilt.solution.rebuilt_fraction
-    short = f"{name}: rebuilt {percent:.1f} % of joint samples"
+    remarks = [f"{name}: rebuilt {percent:.1f} % of joint samples."]
     if planted := rebuilt.planted:
-        slides = (100 * planted.slide_before, 100 * planted.slide_after)
-        short += "; slide on the floor {:.1f} → {:.1f} cm".format(*slides)
-    remarks = [f"{short}.", *rebuilt.remarks]
+        before, after = 100 * planted.slide_before, 100 * planted.slide_after
+        remarks.append(f"Slide on the floor {before:.1f} → {after:.1f} cm.")
+    remarks += rebuilt.remarks
     if n_modified:
         remarks.append(f"Applied the modifiers of {n_modified} curves.")
     return " ".join(remarks)

@@ -211,13 +211,13 @@ def _scene_from_motion(preview: bpy.types.Object, floor: FloorPlane | None) -> M
 
 def _report(result: Tracked) -> str:
     mean = mean_cm(result.residual)
-    distance = "" if mean is None else f"; mean distance from the points {mean:.1f} cm"
+    distance = "" if mean is None else f" Mean distance from the points {mean:.1f} cm."
     n_restarts, n_ranges = len(result.restarts), len(result.low_confidence)
     redetected = f" Redetected {n_restarts} times." if n_restarts else ""
     ranges = {0: "No low-confidence ranges.", 1: "1 low-confidence range."}.get(
         n_ranges, f"{n_ranges} low-confidence ranges."
     )
-    summary = f"{result.motion.n_frames} frames{distance}.{redetected} {ranges}"
+    summary = f"{result.motion.n_frames} frames.{distance}{redetected} {ranges}"
     return " ".join([summary, *result.remarks])
 
 

@@ -6,6 +6,7 @@ from ..clean import example_list
 from ..exporting import menu as export_menu
 from ..find_similar import match_grid
 from ..find_similar import panel as library_panel
+from ..fix import queue
 from ..importing import menu as import_menu
 from ..library import source_list
 from ..overlays import color_icons, confidence_switch
@@ -45,6 +46,7 @@ PARTS = (
     issue_views,
     renewing,
     list_over_undo,
+    queue,
     key_map,
     manual,
 )

@@ -8,6 +8,7 @@ from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
 from ..blender.mixins import PanelMixin
 from ..find_similar import searches
+from ..languages import translated
 from ..panel_parts.panel_layout import (
     draw_sentence,
     folded_settings,
@@ -104,7 +105,8 @@ def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
         draw_sentence(column, context, HINT)
     draw_ticks(column, context, found, "vary")
     if search := searches.listed_search(context):
-        column.operator(USE_OPERATOR, text=f"Best Matches of {search.query}", icon="VIEWZOOM")
+        text = translated(f"Best Matches of {search.query}")
+        column.operator(USE_OPERATOR, text=text, translate=False, icon="VIEWZOOM")
 
 
 def _draw_settings(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) -> None:

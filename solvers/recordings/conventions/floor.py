@@ -71,6 +71,7 @@ NO_FLOOR = (
     ("left_collar", "right_collar", "spine3", "left_foot"),
 )
 """Joints of mocopi, and of SMPL, in BVH files: nothing of the room was measured."""
+SIDES_OF_FLOOR = ("above", "below")
 
 
 def put_on_floor(recording: Recording) -> Recording:
@@ -181,7 +182,7 @@ def question_of_floor(recording: Motion | Tracks | JointRecording) -> str:
     if nearest < MIN_OFF_FLOOR_FRACTION * tall:
         return ""
     level = float(np.median(lowest))
-    side = "above" if level > 0.0 else "below"
+    side = SIDES_OF_FLOOR[level < 0.0]
     if nearest > MAX_FLIGHT_STATURES * tall:
         return (
             f"The actor stays {abs(level):.2g} m {side} the floor: positions and bone lengths"

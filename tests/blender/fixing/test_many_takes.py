@@ -67,7 +67,7 @@ def test_selected_takes_are_fixed(blank, folder, listed, draw):
     assert sorted(listed()) == [("a", "DONE"), ("c", "DONE")]
 
 
-def test_each_fixed_take_is_an_undo_step_of_its_own(blank, folder):
+def test_each_fixed_take_is_an_undo_step_of_its_own(blank, folder, listed):
     window = blank.context.window_manager.windows[0]
     with blank.context.temp_override(window=window, screen=window.screen):
         blank.ops.ed.undo_push(message="empty")
@@ -78,6 +78,10 @@ def test_each_fixed_take_is_an_undo_step_of_its_own(blank, folder):
         assert blank.data.objects["a"].animation_data.action.name == "a.clean"
         blank.ops.ed.undo()  # the damaged file has no step: it has added nothing
         assert not blank.data.objects and "a.clean" not in blank.data.actions
+        assert [status for _, status in listed()] == ["REMOVED", "FAILED", "REMOVED"]
+
+        blank.ops.ed.redo()
+        assert [status for _, status in listed()] == ["DONE", "FAILED", "REMOVED"]
 
 
 def test_fix_folder_fixes_what_the_file_browser_chose(blank, folder, listed):

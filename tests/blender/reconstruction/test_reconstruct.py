@@ -183,7 +183,7 @@ def test_message_fits_the_status_bar(walk, reconstruct, capfd):
     assert (
         message.startswith("walk.reconstructed: rebuilt 6.") and "% of joint samples" in message
     )
-    assert "slide on the floor" in message and message.endswith(" cm.")
+    assert "Slide on the floor" in message and message.endswith(" cm.")
 
 
 def test_button_is_disabled_without_an_armature(blank):
