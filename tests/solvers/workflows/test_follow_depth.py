@@ -120,7 +120,7 @@ def test_actor_who_comes_late_after_the_empty_room_keeps_his_time(
     [
         (0, False, "No depth image came"),
         (0, True, "No depth image came"),
-        (3, True, "The recording ended before the actor was measured. Capture it without"),
+        (3, True, "The recording ended before the actor was measured. Track it when it"),
     ],
 )
 def test_nothing_to_track_is_one_sentence(images, n_images, is_ended, words):
