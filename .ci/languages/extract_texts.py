@@ -14,8 +14,6 @@ NOT_SHOWN = (
     "solvers/depth_tracking/forest/", "solvers/depth_tracking/forest_training/",
     "solvers/depth_tracking/several_cameras/",
     "solvers/workflows/depth_capture/capture_from_cameras.py",
-    "solvers/depth_tracking/following/", "solvers/recordings/growing/",
-    "solvers/workflows/following/",
     "solvers/reconstruction/residual_correction/learn_", "solvers/rotations/",
     "solvers/retrieval/index/", "solvers/retrieval/library/values.py",
     "solvers/retrieval/find_in_libraries.py",
@@ -59,6 +57,8 @@ LABELED = {
     "mocap_assist/retarget/bone_list.py": {"PRESETS"},
     "mocap_assist/retarget/role_labels.py": {"PARTS", "FINGERS"},
     "mocap_assist/runtime/watch.py": {"CANCELS", "time_left"},
+    "mocap_assist/track/follow_button.py": {"STOP", "FINISHING", "ESC_ENDS",
+                                              "ESC_DISCARDS"},
     "solvers/denoising/default_method.py": {"_joints"},
     "solvers/denoising/quality/gap_issues.py": {"gap_issues", "_lost_together"},
     "solvers/denoising/quality/worst_issues.py": {"_spikes", "_describe_lasting_jump",
@@ -80,6 +80,7 @@ LABELED = {
 TERMS = {
     "solvers/denoising/edge_poses.py": {"NAMES"},
     "solvers/motion/skeletons/file_conventions.py": {"UNIT_NAMES"},
+    "solvers/recordings/growing/left_out_images.py": {"Why"},
 }
 """By file: constants whose every word is a text."""
 TAKES_TEXT = {

@@ -162,6 +162,10 @@ class SolverOperator(SettingsMixin):
     def show_previews(self, job: Job[Any]) -> None:
         """Show previews of a running solve; does nothing by default."""
 
+    def progress_of(self, job: Job[Any]) -> tuple[float, str]:
+        """Return the fraction, 0 to 1, and the message of a running job."""
+        return job.progress()
+
     def ends_early(self, job: Job[Any]) -> bool:
         """Return whether a job that Esc is to end goes on to its result so far.
 
@@ -230,7 +234,7 @@ class SolverOperator(SettingsMixin):
         while not job.done():
             self.show_previews(job)
             try:
-                yield job.progress()
+                yield self.progress_of(job)
             except SolveCancelled:
                 if not self.ends_early(job):
                     raise

@@ -13,7 +13,7 @@ from ..runtime.watch import CANCEL_TEXT
 from ..runtime.watched_operator import WatchedOperator
 from .following import read_following, watch_following, write_followed
 
-STOP = "Stop"
+STOP, FINISHING = "Stop", "Finishing the take"
 ESC_ENDS = "Esc ends the take and creates the armature"
 ESC_DISCARDS = "Esc discards the take"
 BLOCKS = (
@@ -68,6 +68,11 @@ class FollowButton(WatchedOperator):
         if outcome == {"RUNNING_MODAL"}:
             self._watch.ending, self._watch.button = ESC_ENDS, STOP
         return outcome
+
+    def progress_of(self, job: Job[Any]) -> tuple[float, str]:
+        """Return the progress of the take; it is endless until Esc."""
+        is_finishing = self._ended_at < float("inf")
+        return (1.0, FINISHING) if is_finishing else super().progress_of(job)
 
     def ends_early(self, job: Job[Any]) -> bool:
         """Let the first Esc end the take; a later one discards it."""

@@ -9,6 +9,7 @@ from ..panel_parts.panel_layout import draw_sentence, exists, settings_column
 from ..panel_parts.visibility import shows_all
 from ..runtime.selection import selected_subject
 from .following import NO_FOLDER
+from .tracked_armature.body import is_tracked
 
 FOLLOW = "mocap_assist.track_live"
 CAMERA = (
@@ -29,21 +30,23 @@ class TrackLivePanel(PanelMixin):
     def poll(cls, context: bpy.types.Context) -> bool:
         job = context.window_manager.mocap_assist_job
         is_running = job.running and job.owner == "track_live"
-        begins = selected_subject(context) is None  # a take is selected later
-        return exists(FOLLOW) and (begins or is_running or shows_all(context))
+        suits = selected_subject(context) is None or is_tracked(  # such as of the last take
+            context.view_layer.objects.active
+        )
+        return exists(FOLLOW) and (suits or is_running or shows_all(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, live = self.layout, context.scene.mocap_assist.track_live
         column = settings_column(layout, context, "track_live")
         column.prop(live, "recording_file")
-        for title, name, settings in (
-            ("Camera", "mocap_assist_live_camera", CAMERA),
-            ("Following", "mocap_assist_live_following", FOLLOWING),
-        ):
-            header, body = column.panel(name, default_closed=True)
-            header.label(text=title)
-            for each in settings if body else ():
-                body.prop(live, each)
+        header, body = column.panel("mocap_assist_live_camera", default_closed=True)
+        header.label(text="Camera")
+        for name in CAMERA if body else ():
+            body.prop(live, name)
+        header, body = column.panel("mocap_assist_live_following", default_closed=True)
+        header.label(text="Following")
+        for name in FOLLOWING if body else ():
+            body.prop(live, name)
         row = layout.row()
         row.enabled = bool(live.recording_file)
         row.operator(FOLLOW, icon="REC")

@@ -25,7 +25,6 @@ from ...solvers.workflows.following import (
 from .pose_previews import FloorPreview, PosePreviewSender, Show, no_preview
 from .solve_tracking import Tracked, build_tracked
 
-FINISHING = "Finishing the take"
 MAX_SHOWN_POINTS = 3000
 """Number of points of an image that are shown. It bounds the size of the previews."""
 SHOWN_INTERVAL_S = 0.1

@@ -25,7 +25,7 @@ class FollowState(NamedTuple):
     def sentence(self) -> str:
         """Numbers of images and the delay in words."""
         n_tracked, delay_ms, n_dropped = self.n_tracked, 1e3 * self.delay_s, self.n_dropped
-        return f"Tracking: {n_tracked} images, {delay_ms:.0f} ms behind, {n_dropped} dropped."
+        return f"Tracking image {n_tracked}, {delay_ms:.0f} ms behind, {n_dropped} dropped."
 
 
 StateCallback = Callable[[FollowState], None]
