@@ -50,7 +50,7 @@ WITHIN = ("depth",)
 
 
 @dataclass(frozen=True, kw_only=True)
-class LiveChoices(DepthCameraChoices):
+class FollowChoices(DepthCameraChoices):
     """The recording that Track Live follows, and what its files may not state."""
 
     recording_file: str = setting(
@@ -67,14 +67,14 @@ class LiveChoices(DepthCameraChoices):
 class FollowPanelBundle(NamedTuple):
     """Settings of the panel; the others are those of Track."""
 
-    recording: LiveChoices
+    recording: FollowChoices
     following: FollowSettings
 
 
 class FollowBundle(NamedTuple):
     """Settings of the button."""
 
-    recording: LiveChoices
+    recording: FollowChoices
     following: FollowSettings
     choices: FeetChoices
     tracking: CaptureSettings

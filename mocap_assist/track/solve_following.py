@@ -105,15 +105,16 @@ def follow_recording(
 
 
 class _Display:
-    """Sends floor and points to the window, and tells it the progress."""
+    """Sends floor, points and progress to the window."""
 
     def __init__(self, show: Show, progress: Progress) -> None:
         self._show, self._progress = show, progress
-        self._is_measured, self._shown_at = False, -np.inf
+        self._has_begun, self._is_measured, self._shown_at = False, False, -np.inf
         self.floor: FloorPlane | None = None
 
     def add(self, state: FollowState) -> None:
         """Show what is known after an image."""
+        self._has_begun = True
         if state.actor is not None and not self._is_measured:
             self._is_measured, self.floor = True, state.actor.floor
             self._show(FloorPreview(self.floor))
@@ -123,8 +124,9 @@ class _Display:
             self._show(PointsPreview(points_of(state.camera, state.depth)))
 
     def progress(self, fraction: float, message: str = "") -> None:
-        """Tell how far the measurement is; what else is done ends with the recording."""
-        self._progress(1.0 if self._is_measured else fraction, message)
+        """Report how far the measurement is; how long the rest takes is unknown."""
+        is_measuring = self._has_begun and not self._is_measured
+        self._progress(fraction if is_measuring else 1.0, message)
 
 
 def points_of(camera: Camera, depth: DepthImage) -> Single:

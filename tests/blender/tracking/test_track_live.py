@@ -6,12 +6,11 @@ import threading
 import numpy as np
 import pytest
 from depth_folders import save_png
+from followed_fixtures import CAMERA, FAST
 from modal_events import event, nothing_is_left, wait
 from process_checks import children_of, descendants_of, wait_until_gone
 
 RATE_HZ = 30.0
-CAMERA = {"unit": "MILLIMETRES", "focal_length": 285.63}
-FAST = {"calibration": 0.5, "max_silence": 1.0, "max_wait": 20.0, "max_delay": 0.0}
 JOINTS = {"head": "Head", "leftUpperArm": "LeftArm", "rightLowerLeg": "RightLeg"}
 pytestmark = pytest.mark.timeout(900)
 
@@ -19,11 +18,6 @@ pytestmark = pytest.mark.timeout(900)
 @pytest.fixture
 def n_frames():
     return 30
-
-
-@pytest.fixture
-def folder(tmp_path):
-    return tmp_path / "take"
 
 
 @pytest.fixture
@@ -62,30 +56,8 @@ def track_live(blank, folder):
 
 
 @pytest.fixture
-def bundle(load, folder):
-    """Settings of the button, with those of `FollowSettings` that are given."""
-    following, recordings = load("mocap_assist.track.following"), load("solvers.recordings")
-    capture = load("solvers.depth_tracking.capturing.capture").CaptureSettings
-
-    def make(**settings):
-        unit = recordings.Unit.MILLIMETRES
-        return following.FollowBundle(
-            following.LiveChoices(
-                recording_file=str(folder), unit=unit, focal_length=CAMERA["focal_length"]
-            ),
-            load("solvers.workflows.following").FollowSettings(**FAST | settings),
-            load("mocap_assist.track.tracking").FeetChoices(),
-            capture(refine=False),
-            load("solvers.depth_scene.foreground").ForegroundSettings(),
-            load("solvers.denoising").PlantSettings(),
-        )
-
-    return make
-
-
-@pytest.fixture
-def press(press_button, bundle):
-    return lambda **settings: press_button("track_live", bundle(**settings))
+def press(press_button, follow_bundle):
+    return lambda **settings: press_button("track_live", follow_bundle(**settings))
 
 
 def heads(armature, names):
@@ -285,172 +257,3 @@ def test_script_in_a_window_is_refused(track_live, load, monkeypatch):
     monkeypatch.setattr(button, "in_background", lambda: False)
     with pytest.raises(RuntimeError, match=r"INVOKE_DEFAULT, or use capture --follow\."):
         track_live()
-
-
-@pytest.mark.parametrize(
-    ("chosen", "recording"),
-    [
-        ("take", "take"),
-        ("take/000001.png", "take"),
-        ("take/depth/1.5.png", "take"),
-        ("take/film.mkv", "take/film.mkv"),
-    ],
-)
-def test_chosen_image_stands_for_its_folder(load, tmp_path, chosen, recording):
-    found = load("mocap_assist.track.following").recording_of(tmp_path / chosen)
-
-    assert found == tmp_path / recording
-
-
-class TestWriting:
-    """What is written of a motion that is given: nothing is solved."""
-
-    @pytest.fixture
-    def n_frames(self):
-        return 20
-
-    @pytest.fixture
-    def followed(self, load, given_poses):
-        def make(first=5, rate=30.0):
-            body = load("solvers.depth_tracking.body.model").default_body()
-            motion = load("solvers.depth_tracking.body.motion")
-            tracked = load("mocap_assist.track.solve_tracking").Tracked(
-                first=first,
-                motion=motion.body_motion(body, given_poses, rate, None),
-                body=body,
-                floor=None,
-                confidence={"hips": np.ones(20)},
-                residual=np.full(20, 0.01),
-                coverage=1.0,
-                restarts=(),
-                low_confidence=(),
-                remarks=(),
-            )
-            camera = load("solvers.depth_scene").Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
-            return load("mocap_assist.track.solve_following").Followed(tracked, camera, 3.0)
-
-        return make
-
-    @pytest.fixture
-    def write(self, load, blank, bundle, followed):
-        def write(settings=None, **options):
-            scene = blank.context.scene
-            return load("mocap_assist.track.following").write_followed(
-                scene, scene, settings or bundle(), followed(**options)
-            )
-
-        return write
-
-    @pytest.fixture
-    def recorded(self, folder, truth):
-        for number in range(30):
-            save_png(folder / f"{number:06}.png", truth["depth"][number % 20])
-
-    def test_points_and_motion_have_the_same_time(self, write, recorded, blank, load):
-        """Image 5 is the first of the motion, which begins at frame 3."""
-        write()
-
-        shown = load("mocap_assist.depth.depth_preview").Shown.read(
-            blank.data.objects["take"].data
-        )
-        assert shown.frame(5) == 3.0 and shown.step == 1.0
-        action = blank.context.object.animation_data.action
-        assert action.frame_range[:] == pytest.approx((3.0, 22.0))
-
-    def test_scene_with_other_animation_keeps_its_time(self, write, recorded, blank):
-        blank.ops.mesh.primitive_cube_add()
-        blank.context.object.keyframe_insert("location", frame=1)
-
-        write()
-
-        scene = blank.context.scene
-        assert (scene.render.fps, scene.frame_end) == (24, 250)
-        last = 3.0 + 19 * 24.0 / 30.0
-        action = blank.context.object.animation_data.action
-        assert action.frame_range[1] == pytest.approx(last, abs=1e-3)
-
-    def test_points_of_a_recording_at_another_rate_keep_their_own_time(
-        self, write, recorded, blank, load
-    ):
-        write(rate=15.0)
-
-        mesh = blank.data.objects["take"].data
-        shown = load("mocap_assist.depth.depth_preview").Shown.read(mesh)
-        assert shown.step == 0.5 and shown.frame(10) == 3.0
-        action = blank.context.object.animation_data.action
-        assert action.frame_range[:] == pytest.approx((3.0, 22.0))
-
-    def test_recording_that_is_gone_has_an_armature_without_points(self, write, blank, load):
-        message = write()
-
-        assert "There is no file " in message
-        points = blank.data.objects["take"]
-        assert "take" in load("mocap_assist.depth.depth_preview").problem_of(points)
-        assert blank.context.object.type == "ARMATURE"
-
-    def test_images_of_several_sizes_have_an_armature_without_points(
-        self, write, recorded, folder, truth, blank
-    ):
-        save_png(folder / "000030.png", truth["depth"][0, :100])
-
-        message = write()
-
-        assert "000030.png has 320 x 100 pixels, the others 320 x 240" in message
-        assert blank.context.object.type == "ARMATURE"
-
-    def test_earlier_images_of_the_same_folder_are_forgotten(
-        self, write, recorded, folder, truth, blank, load
-    ):
-        preview = load("mocap_assist.depth.depth_preview")
-        write()
-        save_png(folder / "000030.png", truth["depth"][0])
-
-        write()
-
-        mesh = blank.data.objects["take.001"].data
-        assert preview.recording_of(mesh).n_frames == 31
-
-    def test_error_leaves_the_scene_as_it_was(self, write, recorded, blank, load, monkeypatch):
-        following = load("mocap_assist.track.following")
-        monkeypatch.setattr(following, "add_armature", lambda *_, **__: 1 / 0)
-
-        with pytest.raises(ZeroDivisionError):
-            write()
-
-        scene = blank.context.scene
-        assert not blank.data.objects and not blank.data.meshes
-        assert (scene.render.fps, scene.frame_end) == (24, 250)
-
-
-def test_panel_offers_the_button_once_a_folder_is_chosen(blank, draw):
-    assert "Choose the folder that" in " ".join(draw("MOCAP_PT_tracklive"))
-    blank.context.scene.mocap_assist.track_live.recording_file = "/tmp/take"
-
-    drawn = draw("MOCAP_PT_tracklive")
-
-    assert "mocap_assist.track_live" in drawn and "focal_length" in drawn
-    assert "Choose the folder that" not in " ".join(drawn)
-
-
-def test_settings_of_track_are_shared(load, blank):
-    """Those of the panel Track Live and those of Track are copied, but none that is given."""
-    scene = blank.context.scene
-    scene.mocap_assist.track.refine = False
-    scene.mocap_assist.track.plant_feet = False
-    scene.mocap_assist.track_live.calibration = 4.0
-    button = load("operators.track_live").MOCAP_OT_track_live
-    given = {}
-
-    class Pressed(button.__bases__[0]):
-        setting_names = button.setting_names
-
-        class properties:
-            is_property_set = staticmethod("plant_feet".__eq__)
-
-        def __setattr__(self, name, value):
-            given[name] = value
-
-    Pressed().prepare(blank.context)
-
-    assert given["refine"] is False and given["calibration"] == 4.0
-    assert "plant_feet" not in given and "method" in given
