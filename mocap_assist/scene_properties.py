@@ -23,6 +23,7 @@ from .reconstruct.button_settings import ReconstructBundle
 from .retarget.bone_highlight import show_pair
 from .retarget.bone_map import explain_edited
 from .retarget.button_settings import RetargetBundle, UnbakeBundle
+from .track.following import FollowPanelBundle
 from .track.retracking import RetrackBundle
 from .track.tracking import TrackBundle
 from .variants.button_settings import CrowdBundle, VaryBundle
@@ -73,6 +74,11 @@ class MOCAP_PG_simulate(bpy.types.PropertyGroup):
 @settings_from(TrackBundle)
 class MOCAP_PG_track(bpy.types.PropertyGroup):
     """Settings of the button Track."""
+
+
+@settings_from(FollowPanelBundle)
+class MOCAP_PG_track_live(bpy.types.PropertyGroup):
+    """Settings of the button Track Live; it has those of Track too."""
 
 
 @settings_from(RetrackBundle)
@@ -176,6 +182,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     reconstruct: bpy.props.PointerProperty(type=MOCAP_PG_reconstruct)
     simulate: bpy.props.PointerProperty(type=MOCAP_PG_simulate)
     track: bpy.props.PointerProperty(type=MOCAP_PG_track)
+    track_live: bpy.props.PointerProperty(type=MOCAP_PG_track_live)
     retrack: bpy.props.PointerProperty(type=MOCAP_PG_retrack)
     retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
     unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
@@ -217,6 +224,7 @@ CLASSES = (
     MOCAP_PG_retarget,
     MOCAP_PG_simulate,
     MOCAP_PG_track,
+    MOCAP_PG_track_live,
     MOCAP_PG_retrack,
     MOCAP_PG_unbake,
     MOCAP_PG_reconstruct,

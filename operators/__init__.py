@@ -46,6 +46,7 @@ from .solve_skeleton import MOCAP_OT_solve_skeleton
 from .stack_variants import MOCAP_OT_stack_variants
 from .submit_folder import MOCAP_OT_submit_folder
 from .track_depth import MOCAP_OT_track_depth
+from .track_live import MOCAP_OT_track_live
 from .use_matches import MOCAP_OT_use_matches
 from .vary import MOCAP_OT_vary
 
@@ -63,6 +64,7 @@ OPERATORS = (
     MOCAP_OT_change_axes,
     MOCAP_OT_show_depth,
     MOCAP_OT_track_depth,
+    MOCAP_OT_track_live,
     MOCAP_OT_retrack,
     MOCAP_OT_denoise,
     MOCAP_OT_reconstruct,

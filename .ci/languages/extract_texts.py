@@ -16,8 +16,6 @@ NOT_SHOWN = (
     "solvers/depth_tracking/forest/", "solvers/depth_tracking/forest_training/",
     "solvers/depth_tracking/several_cameras/",
     "solvers/workflows/depth_capture/capture_from_cameras.py",
-    "solvers/depth_tracking/following/", "solvers/recordings/growing/",
-    "solvers/workflows/following/",
     "solvers/reconstruction/residual_correction/learn_", "solvers/rotations/",
     "solvers/retrieval/index/", "solvers/retrieval/library/values.py",
     "solvers/retrieval/find_in_libraries.py",

@@ -34,6 +34,8 @@ LABELED = {
     "mocap_assist/retarget/bone_list.py": {"PRESETS"},
     "mocap_assist/retarget/role_labels.py": {"PARTS", "FINGERS"},
     "mocap_assist/runtime/watch.py": {"CANCELS", "time_left"},
+    "mocap_assist/track/follow_button.py": {"STOP", "FINISHING", "ESC_ENDS",
+                                              "ESC_DISCARDS"},
     "solvers/denoising/default_method.py": {"_joints"},
     "solvers/denoising/quality/gap_issues.py": {"gap_issues", "_lost_together"},
     "solvers/denoising/quality/worst_issues.py": {"_spikes", "_describe_lasting_jump",
@@ -58,5 +60,6 @@ TERMS = {
     "solvers/denoising/edge_poses.py": {"NAMES"},
     "solvers/motion/skeletons/file_conventions.py": {"UNIT_NAMES"},
     "solvers/recordings/conventions/floor.py": {"SIDES_OF_FLOOR"},
+    "solvers/recordings/growing/left_out_images.py": {"Why"},
 }
 """By file: constants whose every word is a text."""

@@ -272,11 +272,15 @@ def _is_allowed(mesh: bpy.types.Mesh) -> bool:
         return True  # It names no recording; `_show` reports that.
 
 
-@handlers.persistent
-def _loaded(*_: object) -> None:
+def close_recordings() -> None:
     """Close all recordings, since their files may have changed."""
     _open.cache_clear()
     _rays.cache_clear()
+
+
+@handlers.persistent
+def _loaded(*_: object) -> None:
+    close_recordings()
     _follow(bpy.context.scene)
 
 
@@ -290,5 +294,4 @@ def unregister() -> None:
     """Stop following, and close all recordings."""
     handlers.load_post.remove(_loaded)
     handlers.frame_change_pre.remove(_follow)
-    _open.cache_clear()
-    _rays.cache_clear()
+    close_recordings()

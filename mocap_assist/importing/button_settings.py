@@ -3,13 +3,9 @@
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
-from ...solvers.recordings import (
-    CameraOrientation,
-    DepthSettings,
-    FloorPlacementSettings,
-    ReadingSettings,
-)
+from ...solvers.recordings import DepthSettings, FloorPlacementSettings, ReadingSettings
 from ...solvers.settings import Choice, setting
+from ..depth.camera_choices import DepthCameraChoices
 from ..scene.scene_rate import FrameRate
 
 
@@ -37,7 +33,7 @@ class Rotation(Choice):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ImportChoices(FloorPlacementSettings, ReadingSettings):
+class ImportChoices(DepthCameraChoices, FloorPlacementSettings, ReadingSettings):
     """Settings of the import of recordings."""
 
     target: ImportTarget = setting(
@@ -81,42 +77,6 @@ class ImportChoices(FloorPlacementSettings, ReadingSettings):
         "Extend the scene to the end of the recording; never shortens it",
         label="Extend Scene",
     )
-    focal_length: float = setting(
-        0.0,
-        "Focal length in pixels; higher makes the actor narrower; 0 reads it from the file",
-        minimum=0.0,
-        maximum=100_000.0,
-    )
-    focal_length_y: float = setting(
-        0.0,
-        "Vertical focal length, if different; higher makes the actor shorter; 0 reads the file",
-        minimum=0.0,
-        maximum=100_000.0,
-        label="Focal Length Y",
-    )
-    center_x: float = setting(
-        0.0,
-        "Column where the camera axis meets the image; 0 reads the file or uses the middle",
-        minimum=0.0,
-        maximum=100_000.0,
-        label="Center X",
-    )
-    center_y: float = setting(
-        0.0,
-        "Row where the camera axis meets the image; 0 reads the file or uses the middle",
-        minimum=0.0,
-        maximum=100_000.0,
-        label="Center Y",
-    )
-    held: CameraOrientation = setting(
-        CameraOrientation.KNOWN,
-        "Set how the depth camera was held",
-        label="Camera Orientation",
-    )
-    mirrored: bool = setting(
-        False,
-        "Treat the depth images as mirrored: the actor's right hand is on the right",
-    )
 
     @property
     def reading(self) -> ReadingSettings:
@@ -127,15 +87,7 @@ class ImportChoices(FloorPlacementSettings, ReadingSettings):
     @property
     def depth(self) -> DepthSettings:
         """Settings for depth images."""
-        return DepthSettings(
-            scale=self.unit.meters or 0.0,
-            fx=self.focal_length,
-            fy=self.focal_length_y,
-            cx=self.center_x,
-            cy=self.center_y,
-            held=self.held,
-            mirrored=self.mirrored,
-        )
+        return self.depth_settings(self.unit)
 
 
 class ImportBundle(NamedTuple):

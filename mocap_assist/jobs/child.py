@@ -56,9 +56,7 @@ def outcome_of(folder: Path, protocol: ModuleType) -> Any:
     solve = protocol.read_value(folder / protocol.REQUEST)
     gc.enable()
     try:
-        return (
-            solve(progress=reporter(protocol), **preview_argument(solve, folder, protocol)),
-        )
+        return (solve(progress=reporter(protocol), **more_arguments(solve, folder, protocol)),)
     except MemoryError:
         raise
     except Exception as error:  # passed on complete, to be raised in Blender
@@ -97,13 +95,17 @@ def reporter(protocol: ModuleType) -> Callable[..., None]:
     return report
 
 
-def preview_argument(
+def more_arguments(
     solve: Any, folder: Path, protocol: ModuleType
-) -> dict[str, Callable[..., None]]:
-    """Return the argument `show=` of a solve with previews, otherwise no argument."""
-    if not isinstance(solve, protocol.PreviewSolve):
-        return {}
-    return {"show": partial(protocol.append_preview, (folder / protocol.PREVIEWS).open("wb"))}
+) -> dict[str, Callable[..., Any]]:
+    """Return the arguments `show=` and `is_ended=` of solves that are called with them."""
+    arguments: dict[str, Callable[..., Any]] = {}
+    if isinstance(solve, protocol.PreviewSolve):
+        file = (folder / protocol.PREVIEWS).open("wb")
+        arguments["show"] = partial(protocol.append_preview, file)
+    if isinstance(solve, protocol.EndableSolve):
+        arguments["is_ended"] = (folder / protocol.END).exists
+    return arguments
 
 
 def import_ahead(extension: str) -> None:
@@ -134,6 +136,8 @@ def solve_and_exit(folder: Path, extension: str, *, waits: bool) -> None:
     parent.exit_at_once(main(folder, extension))
 
 
+if __name__ == "__mp_main__":  # a worker of this process, for which names are the same
+    make_importable(sys.argv[2], OURS.parent)
 if __name__ == "__main__":
     # The word of `protocol`, which cannot be imported yet.
     solve_and_exit(Path(sys.argv[1]), sys.argv[2], waits="wait" in sys.argv[3:])

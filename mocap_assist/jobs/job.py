@@ -14,6 +14,7 @@ from ...solvers.files import reason_of
 from ...solvers.progress import Progress, unwatched
 from .child_process import ChildProcess
 from .protocol import (
+    END,
     REQUEST,
     RESULT,
     Ending,
@@ -178,6 +179,16 @@ class Job(Generic[Result]):
             reader.shutdown(wait=False)
             wait([self._reading], SHORT_WAIT_S)
         return self._reading.done()
+
+    def end_early(self) -> None:
+        """Ask an `EndableSolve` for its result so far.
+
+        Raises
+        ------
+        OSError
+            The file cannot be made.
+        """
+        (self._path / END).touch()
 
     def cancel(self) -> None:
         """End the process at once; `result` then raises SolveCancelled."""

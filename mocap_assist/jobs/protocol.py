@@ -10,7 +10,7 @@ from typing import Any, BinaryIO, TypeVar
 
 from ...solvers.faults import escaped
 
-REQUEST, RESULT, LOG, PREVIEWS = "request", "result", "log", "previews"
+REQUEST, RESULT, LOG, PREVIEWS, END = "request", "result", "log", "previews", "end"
 WAIT = "wait"
 """Argument of child.py: the request is written later."""
 TAIL_BYTES = 4096
@@ -34,6 +34,10 @@ class Ending(IntEnum):
 
 class PreviewSolve(partial[Result]):
     """A solve that is also called with `show=`, a callback for previews."""
+
+
+class EndableSolve(PreviewSolve[Result]):
+    """A solve that is also called with `is_ended=`, whether to end with the result so far."""
 
 
 def write_value(path: Path, value: Any) -> None:

@@ -70,7 +70,10 @@ class SolverOperator(SettingsMixin):
 
     def prepare(self, context: bpy.types.Context) -> None:
         """Copy the sidebar's settings, except those that the caller has set."""
-        shown = getattr(context.scene.mocap_assist, self.settings_group)
+        self.copy_settings(getattr(context.scene.mocap_assist, self.settings_group))
+
+    def copy_settings(self, shown: bpy.types.PropertyGroup) -> None:
+        """Copy settings of the sidebar, except those that the caller has set."""
         for name in type(self).setting_names:
             if hasattr(shown, name) and not self.properties.is_property_set(name):
                 setattr(self, name, getattr(shown, name))
@@ -122,7 +125,8 @@ class SolverOperator(SettingsMixin):
         if not watch.is_on:
             return {"CANCELLED"}
         escaped = event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS"
-        escaped = escaped or watch.is_cancelled
+        escaped = (escaped and not event.is_repeat) or watch.is_cancelled
+        watch.is_cancelled = False
         if not escaped and event.type != "TIMER":
             return {"PASS_THROUGH"} if self.lets_pass(context, event) else {"RUNNING_MODAL"}
         try:
@@ -157,6 +161,17 @@ class SolverOperator(SettingsMixin):
 
     def show_previews(self, job: Job[Any]) -> None:
         """Show previews of a running solve; does nothing by default."""
+
+    def progress_of(self, job: Job[Any]) -> tuple[float, str]:
+        """Return the fraction, 0 to 1, and the message of a running job."""
+        return job.progress()
+
+    def ends_early(self, job: Job[Any]) -> bool:
+        """Return whether a job that Esc is to end goes on to its result so far.
+
+        By default it does not: it is cancelled.
+        """
+        return False
 
     def result_from_job(self, job: Job[Any]) -> Any:
         """Return the result of a job that has ended."""
@@ -201,9 +216,7 @@ class SolverOperator(SettingsMixin):
             yield from self._in_slices("Starting", in_thread, start, 0.0)
             self._job = job = started[0]
             self._is_solving = True
-            while not job.done():
-                self.show_previews(job)
-                yield job.progress()
+            yield from self._watch_job(job)
         except SolveCancelled:
             if not started:
                 raise
@@ -216,6 +229,15 @@ class SolverOperator(SettingsMixin):
         finally:
             self._is_solving = False
         return self.result_from_job(started[0])
+
+    def _watch_job(self, job: Job[Any]) -> Generator[tuple[float, str], None, None]:
+        while not job.done():
+            self.show_previews(job)
+            try:
+                yield self.progress_of(job)
+            except SolveCancelled:
+                if not self.ends_early(job):
+                    raise
 
     def _read_arguments(self) -> tuple[Any, ...]:
         return (*self._subject.find(), self.settings())

@@ -13,7 +13,7 @@ TIMER_INTERVAL_S = 0.05
 """Seconds between two looks at a solve, and between two displays of its progress. It bounds the
 delay of its result."""
 CANCEL = "mocap_assist.cancel_solve"
-CANCELS = "Esc cancels"
+CANCELS, CANCEL_TEXT = "Esc cancels", "Cancel"
 MIN_FRACTION = 0.05
 """Fraction of a solve from which the time left is shown. It guards estimates from a few
 frames."""
@@ -62,7 +62,7 @@ class Watch:
         self._began = monotonic()
         self._shown_at = float("-inf")
         self._display_s = TIMER_INTERVAL_S if interval_s < TIMER_INTERVAL_S else 0.0
-        self.ending = CANCELS
+        self.ending, self.button = CANCELS, CANCEL_TEXT
         manager = context.window_manager
         if not is_quiet:
             manager.mocap_assist_job.owner = owner
@@ -91,7 +91,7 @@ class Watch:
         def draw(header: bpy.types.Header, context: bpy.types.Context) -> None:
             row = header.layout.row(align=True)
             row.label(text=shown, translate=False)
-            row.operator(CANCEL, text="Cancel", icon="X")
+            row.operator(CANCEL, text=translated(self.button), icon="X", translate=False)
 
         context.workspace.status_text_set(draw)
         redraw(context)

@@ -39,38 +39,18 @@ def stage_of_preview(preview: bpy.types.Object) -> BodyDisplay:
     return BodyDisplay(np.array(preview.matrix_world), shown_by(preview.data))
 
 
-class LiveBody:
-    """Shows the newest pose until it is closed; then restores the scene's frame.
+class DrawnBody:
+    """A body that is drawn over the 3D View until it is closed."""
 
-    As with any change of the frame, unkeyed changes of animated properties are lost.
-    """
-
-    def __init__(self, scene: bpy.types.Scene, stage_of: StageOf) -> None:
-        self._scene, self._stage_of = scene.session_uid, stage_of
-        self._frame = (scene.frame_current, scene.frame_subframe)
+    def __init__(self) -> None:
         self._receiver = PosePreviewReceiver()
         self.drawn: Solid | None = None
         self._drawing = ViewDrawing(self._draw)
         self._body: Any = None
-        self._not_before = 0.0
 
     def _draw(self, context: bpy.types.Context) -> None:
         if self.drawn is not None:
             draw_solid(self.drawn, context.region_data)
-
-    def show(
-        self, scene: bpy.types.Scene, target: bpy.types.Object, previews: Iterable[Any]
-    ) -> None:
-        """Show the last pose of the previews, if there is one."""
-        poses = list(self._receiver.poses(previews))
-        began = monotonic()
-        if not poses or began < self._not_before:
-            return
-        stage = self._stage_of(target)
-        frame = stage.shown.frame(poses[-1].frame)
-        scene.frame_set(int(np.floor(frame)), subframe=float(frame % 1.0))
-        self.drawn = self.solid_of(poses[-1], stage.scene_from_camera)
-        self._not_before = monotonic() + (monotonic() - began) * (1.0 / MAX_TIME_FRACTION - 1.0)
 
     def solid_of(self, preview: PosePreview, scene_from_camera: Array) -> Solid:
         """Return a pose as capsules in the confidence colors of their joints."""
@@ -87,8 +67,39 @@ class LiveBody:
         )
 
     def close(self) -> None:
-        """Remove the body, and restore the frame."""
+        """Remove the body."""
         self._drawing.close()
+
+
+class LiveBody(DrawnBody):
+    """Shows the newest pose until it is closed; then restores the scene's frame.
+
+    As with any change of the frame, unkeyed changes of animated properties are lost.
+    """
+
+    def __init__(self, scene: bpy.types.Scene, stage_of: StageOf) -> None:
+        super().__init__()
+        self._scene, self._stage_of = scene.session_uid, stage_of
+        self._frame = (scene.frame_current, scene.frame_subframe)
+        self._not_before = 0.0
+
+    def show(
+        self, scene: bpy.types.Scene, target: bpy.types.Object, previews: Iterable[Any]
+    ) -> None:
+        """Show the last pose of the previews, if there is one."""
+        poses = list(self._receiver.poses(previews))
+        began = monotonic()
+        if not poses or began < self._not_before:
+            return
+        stage = self._stage_of(target)
+        frame = stage.shown.frame(poses[-1].frame)
+        scene.frame_set(int(np.floor(frame)), subframe=float(frame % 1.0))
+        self.drawn = self.solid_of(poses[-1], stage.scene_from_camera)
+        self._not_before = monotonic() + (monotonic() - began) * (1.0 / MAX_TIME_FRACTION - 1.0)
+
+    def close(self) -> None:
+        """Remove the body, and restore the frame."""
+        super().close()
         for scene in bpy.data.scenes:
             if scene.session_uid == self._scene:
                 scene.frame_set(self._frame[0], subframe=self._frame[1])

@@ -59,6 +59,8 @@ class Tracked(NamedTuple):
     remarks: tuple[str, ...]
     person: int | None = None
     """Index of the person in the recording; None if only one was tracked."""
+    images_per_frame: float = 1.0
+    """Images of the recording from one frame of the motion to the next."""
     others: tuple[Any, ...] = ()
     """The other people, each `Tracked`."""
 

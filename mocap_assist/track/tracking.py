@@ -1,6 +1,6 @@
 """Track: read the scene and add the tracked armature."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
@@ -39,12 +39,18 @@ CAPTURED = "mocap_assist_captured"
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrackChoices(Settings):
-    """Steps after tracking."""
+class FeetChoices(Settings):
+    """Steps after tracking one person."""
 
     plant_feet: bool = setting(
         True, "Keep planted feet from sliding, where the recording shows feet"
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackChoices(FeetChoices):
+    """Steps after tracking."""
+
     all_people: bool = setting(
         False,
         "Track all visible people together; creates an armature for each",
@@ -158,22 +164,27 @@ def write_tracked(
     check_unchanged(preview, solved_digest, recording_of(preview.data))
     with undo_on_error(bpy.context):
         others = [
-            _add_armature(scene, preview, settings, other) for other in reversed(result.others)
+            add_armature(scene, preview, settings, other) for other in reversed(result.others)
         ]
-        first = _add_armature(scene, preview, settings, result, fixed)
+        first = add_armature(scene, preview, settings, result, fixed)
     return " ".join([first, *reversed(others)])
 
 
-def _add_armature(
+def add_armature(
     scene: bpy.types.Scene,
     preview: bpy.types.Object,
     settings: TrackBundle,
     result: Tracked,
     fixed: FixedMotion | None = None,
+    *,
+    origin: Mapping[str, Any] = {"operation": "track_depth"},
 ) -> str:
-    """Add the armature of one actor; return a message."""
+    """Add the armature of one actor over the points; return a message.
+
+    The action stores the `origin`, next to settings and figures.
+    """
     shown, context, meters_per_unit = Shown.read(preview.data), bpy.context, unit_of(scene)
-    image_indices = result.first + np.arange(result.motion.n_frames)
+    image_indices = result.images_per_frame * (result.first + np.arange(result.motion.n_frames))
     frames = shown.start + shown.step * image_indices
     name = f"{preview.name} tracked"
     if result.person is not None:
@@ -198,7 +209,7 @@ def _add_armature(
     body = TrackedBody(result.body, shown, result.floor, settings.actor, result.person)
     body.write(armature, dict(zip(result.motion.skeleton.names, bones, strict=True)))
     action = source[0]
-    store_json(action, CAPTURED, _entry(settings, result, shown))
+    store_json(action, CAPTURED, {**origin, **_entry(settings, result, shown)})
     list_low_confidence(scene, action, frames, result.low_confidence, _report(result))
     return f"{armature.name}: {_report(result)}"
 
@@ -224,7 +235,6 @@ def _report(result: Tracked) -> str:
 def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, object]:
     return {
         "version": version(),
-        "operation": "track_depth",
         "settings": history.json_ready(
             settings.choices, settings.tracking, settings.actor, settings.planting
         ),

@@ -37,6 +37,7 @@ CHAPTERS = {
     "bpy.types.mocap_pg_reconstruct*": "reconstruct",
     "bpy.types.windowmanager.mocap_assist_confidence*": "reconstruct",
     "bpy.ops.mocap_assist.track_depth*": "track",
+    "bpy.ops.mocap_assist.track_live*": "track",
     "bpy.types.mocap_pg_track*": "track",
     "bpy.ops.mocap_assist.retrack*": "track",
     "bpy.types.mocap_pg_retrack*": "track",

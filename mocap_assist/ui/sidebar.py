@@ -15,6 +15,7 @@ from ..panel_parts.sidebar_tab import TAB, tab_name
 from ..physics.panel import PhysicsPanel
 from ..reconstruct.panel import ReconstructPanel
 from ..retarget.panel import RetargetPanel
+from ..track.follow_panel import TrackLivePanel
 from ..track.panel import TrackPanel
 from ..variants.panel import VaryPanel
 
@@ -44,6 +45,7 @@ BODIES = (
     FixPanel,
     CheckPanel,
     TrackPanel,
+    TrackLivePanel,
     MarkersPanel,
     ReconstructPanel,
     CleanPanel,

@@ -23,7 +23,7 @@ import pytest
 
 pytest_plugins = (
     "armature_fixtures", "common_fixtures", "panel_fixtures", "renewing_fixtures",
-    "rig_fixtures", "rigify_fixtures", "solve_fixtures",
+    "rig_fixtures", "rigify_fixtures", "solve_fixtures", "followed_fixtures",
     "tracked_fixtures", "window_fixtures",
 )  # fmt: skip
 

@@ -79,6 +79,10 @@ RECORDINGS = {
         "gait.c3d": "formats/c3d/PiG_Motion-FlatFoot-Hole.c3d",
     },
     "track": {"walk.npz": "depth/truth/walk_front.npz"},
+    "track_live": {
+        "walk.npz": "depth/truth/walk_front.npz",
+        "record_images.py": FOLDER / "window" / "record_images.py",
+    },
     "undo": {},
     "vary": {
         f"kicks/{name}": f"mocap/hdm05/{name}"

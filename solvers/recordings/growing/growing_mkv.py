@@ -122,6 +122,9 @@ class GrowingMkv:
 
     def remarks(self) -> tuple[str, ...]:
         """Return a sentence on each kind of image that was left out."""
-        what = "became shorter" if self._was_cut_off else "was removed"
-        gone = f"{self._path} {what} while it was followed. The motion ends there."
+        gone = (
+            f"{self._path} became shorter while it was followed. The motion ends there."
+            if self._was_cut_off
+            else f"{self._path} was removed while it was followed. The motion ends there."
+        )
         return (*self._left_out.sentences(), *((gone,) if self.is_gone else ()))

@@ -41,5 +41,5 @@ class WrittenRate:
         return (
             f"The recorder wrote about {rate:.3g} images a second, but the motion has"
             f" {assumed.frame_rate:.3g}: it may play {assumed.frame_rate / rate:.2g} times as"
-            " fast as the actor moved. Set --frame-rate to the rate of the camera."
+            " fast as the actor moved. Set the frame rate of the camera."
         )

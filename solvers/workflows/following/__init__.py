@@ -2,8 +2,10 @@
 
 from .clock import Clock
 from .detector_process import DetectorProcess
-from .follow_depth import FollowedMotion, follow_depth
+from .follow_depth import follow_depth
 from .follow_settings import FollowSettings
+from .follow_state import FollowState
+from .followed_motion import FollowedMotion
 from .followed_take import FollowedTake, TakeSettings
 from .measure_followed import measure_followed
 
@@ -11,6 +13,7 @@ __all__ = [
     "Clock",
     "DetectorProcess",
     "FollowSettings",
+    "FollowState",
     "FollowedMotion",
     "FollowedTake",
     "TakeSettings",

@@ -2,66 +2,35 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
-from ...denoising import Planted, PlantSettings
-from ...depth_scene import ForegroundSettings
+from ...denoising import PlantSettings
+from ...depth_scene import DepthImage, ForegroundSettings
 from ...depth_tracking.body import BodyModel, MotionPrior, load_motion_prior
-from ...depth_tracking.capturing import Capture, CaptureMethod, CaptureSettings
+from ...depth_tracking.capturing import CaptureMethod, CaptureSettings
 from ...depth_tracking.following import PoseDetector
 from ...depth_tracking.tracking import PoseCallback, ignore_pose
 from ...errors import InvalidMotionError, InvalidSettingError
-from ...motion import Motion
 from ...progress import Progress, unwatched
 from ...recordings.growing import GrowingDepth
 from ..depth_capture import capture_remarks
 from ..planting import plant_feet_if_possible
 from .clock import SYSTEM_CLOCK, Clock
 from .follow_settings import FollowSettings
+from .follow_state import FollowState, StateCallback, ignore_state
+from .followed_motion import FollowedMotion
 from .followed_take import TOO_EARLY, FollowedTake, TakeSettings, WaitingImage
 
+MIN_SILENCE_S = 1.0
+"""Seconds without an image from which the progress says so. It guards the numbers of what is
+tracked, which would flicker between two images."""
 POLL_INTERVAL_S = 0.004
 """Seconds between two looks at the recording. It bounds the delay, and the processor's load."""
 COUNT_CYCLE = 100
 """Number of images after which the progress begins again: how many come is unknown."""
 FOLLOW_SETTINGS, CAPTURE_SETTINGS = FollowSettings(), CaptureSettings()
 FOREGROUND_SETTINGS = ForegroundSettings()
-
-
-@dataclass(frozen=True, eq=False)
-class FollowedMotion:
-    """The motion of a recording that was followed.
-
-    Attributes
-    ----------
-    motion : Motion
-        Z up, without gaps; feet are planted if requested and possible.
-    captured : Capture
-    planted : Planted or None
-    first : int
-        Frame of the recording at which the motion begins.
-    n_dropped : int
-        Number of images that were dropped since then, as newer ones waited.
-    delays : shape (n_tracked,), seconds
-        From the time of each image's file to its pose. Files that were there before following
-        began count from then.
-    detection_delays : tuple of int
-        Number of frames from each request of a detection to its pose.
-    remarks : tuple of str
-        Sentences the animator should read.
-    """
-
-    motion: Motion
-    captured: Capture
-    planted: Planted | None
-    first: int
-    n_dropped: int
-    delays: Array
-    detection_delays: tuple[int, ...]
-    remarks: tuple[str, ...]
 
 
 def never() -> bool:
@@ -81,6 +50,7 @@ def follow_depth(
     foreground: ForegroundSettings = FOREGROUND_SETTINGS,
     planting: PlantSettings | None = None,
     on_pose: PoseCallback = ignore_pose,
+    on_state: StateCallback = ignore_state,
     is_ended: Callable[[], bool] = never,
     clock: Clock = SYSTEM_CLOCK,
     progress: Progress = unwatched,
@@ -109,6 +79,8 @@ def follow_depth(
         None skips planting; so does a depth image that ends above the feet.
     on_pose : PoseCallback
         Called with each pose as soon as it is tracked.
+    on_state : StateCallback
+        Called after each image, also before the actor is measured.
     is_ended : callable
         Returns whether to end now; the motion so far is kept.
     clock : Clock
@@ -134,8 +106,8 @@ def follow_depth(
         motion_prior = load_motion_prior()
     wanted = TakeSettings(settings.calibration, capture, foreground, body, motion_prior, empty)
     following = _Following(
-        source, detector, settings, wanted, on_pose, is_ended, clock, progress
-    )
+        source, detector, settings, wanted, on_pose, on_state, is_ended, clock, progress
+    )  # fmt: skip
     while following.step():
         continue
     return following.result(planting)
@@ -151,12 +123,13 @@ class _Following:
         settings: FollowSettings,
         wanted: TakeSettings,
         on_pose: PoseCallback,
+        on_state: StateCallback,
         is_ended: Callable[[], bool],
         clock: Clock,
         progress: Progress,
     ) -> None:
         self._source, self._detector, self._settings = source, detector, settings
-        self._wanted, self._on_pose = wanted, on_pose
+        self._wanted, self._on_pose, self._on_state = wanted, on_pose, on_state
         self._is_ended, self._progress, self._clock = is_ended, progress, clock
         self._take: FollowedTake | None = None
         self._waiting: deque[WaitingImage] = deque()
@@ -186,7 +159,14 @@ class _Following:
             self._measure(self._take)
         else:
             self._progress(fraction, "Waiting until the actor can be measured")
+        self._on_state(self._state(self._take, waiting.depth))
         return not self._is_ended()
+
+    def _state(self, take: FollowedTake, depth: DepthImage | None) -> FollowState:
+        actor = take.actor if take.is_measured else None
+        delay_s = self._delays[-1] if self._delays else 0.0
+        n_tracked = len(self._delays)
+        return FollowState(take.camera, depth, actor, n_tracked, self._n_dropped, delay_s)
 
     def _read(self, take: FollowedTake, waiting: WaitingImage) -> WaitingImage:
         """Return an image with its depth, or left out if it is damaged."""
@@ -205,8 +185,8 @@ class _Following:
             written = max(image.written, self._began_at)
             self._delays.append(self._clock.written() - written)
             self._on_pose(pose)
-        count = len(self._delays)
-        self._progress(count % COUNT_CYCLE / COUNT_CYCLE, f"Tracking image {count}")
+        fraction = len(self._delays) % COUNT_CYCLE / COUNT_CYCLE
+        self._progress(fraction, self._state(take, depth).sentence)
 
     def _drop(self) -> None:
         """Drop images that have waited too long, as newer ones come.
@@ -237,7 +217,8 @@ class _Following:
         if self._source.is_gone or silence_s > limit_s:
             take = self._take
             return take is not None and not take.is_measured and self._measure(take)
-        self._progress(0.0, "Waiting for images")
+        if self._take is None or silence_s > MIN_SILENCE_S:
+            self._progress(0.0, "Waiting for images")
         self._clock.sleep(POLL_INTERVAL_S)
         return not self._is_ended()
 

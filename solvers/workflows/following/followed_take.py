@@ -20,7 +20,7 @@ from ...recordings.growing import GrowingDepth, ImagePositions, NewImage
 from ..live import TimeSlots
 from .measure_followed import measure_followed
 
-TOO_EARLY = "The recording ended before the actor was measured. Capture it without --follow."
+TOO_EARLY = "The recording ended before the actor was measured. Track it when it is complete."
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,8 @@ class FollowedTake:
         self._source, self._settings, self._detector = source, settings, detector
         self._now = now
         self._step = subsampling_step(source.camera, DEFAULT_TRACKER.image_width)
-        self._camera = source.camera.every(self._step)
+        self.camera = source.camera.every(self._step)
+        """Of coarse images."""
         self._first: list[WaitingImage] = []
         self._started: _StartedFollowing | None = None
         self.fault = ""
@@ -134,7 +135,7 @@ class FollowedTake:
         given, positions, there = self._settings, self._positions(), self._with_depth()
         try:
             actor, body = measure_followed(
-                [each for _, each in there], self._camera, positions.frame_rate, given.body,
+                [each for _, each in there], self.camera, positions.frame_rate, given.body,
                 empty=[index for index, (n, _) in enumerate(there) if n in given.empty],
                 foreground=given.foreground, refine=given.capture.refine, progress=progress,
             )  # fmt: skip
@@ -143,7 +144,7 @@ class FollowedTake:
             self._forget([n for n, _ in there if n >= given.empty.stop])
             return []
         new_tracker = partial(
-            LiveTracker, self._camera, positions.frame_rate, body, self._detector,
+            LiveTracker, self.camera, positions.frame_rate, body, self._detector,
             given.motion_prior, recovery=given.capture,
         )  # fmt: skip
         first, self._first = self._first, []

@@ -93,5 +93,6 @@ DRAWN: tuple[str, ...] = (
     "mocap_assist/retarget/bone_list.ROLE_COLUMN",
     "mocap_assist/retarget/rest_preview.*",
     "mocap_assist/track/*.OPACITY",
+    "mocap_assist/track/following_view.POINT_*",
 )
 """Patterns of keys of constants that decide what is drawn only."""

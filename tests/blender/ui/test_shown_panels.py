@@ -33,8 +33,8 @@ def _is_within(panel, visible):
     return not parent or parent in visible
 
 
-def test_empty_scene_has_only_import_with_the_first_steps(shown, draw):
-    assert shown() == ["import"]
+def test_empty_scene_has_only_import_and_track_live(shown, draw):
+    assert shown() == ["import", "tracklive"]
     assert draw("MOCAP_PT_import") == [
         "mocap_assist.import_recording", "Or drop files into the 3D", "View.",
         "mocap_assist.load_sample", "wm.url_open", "mocap_assist.add_workspace",
@@ -44,14 +44,14 @@ def test_empty_scene_has_only_import_with_the_first_steps(shown, draw):
 def test_other_objects_change_nothing(blank, shown):
     blank.ops.mesh.primitive_cube_add()
 
-    assert shown() == ["import"]
+    assert shown() == ["import", "tracklive"]
 
 
 def test_selected_armature_that_is_not_active_gets_a_hint(blank, actor, shown, draw):
     blank.context.view_layer.objects.active = None
     actor.select_set(True)
 
-    assert shown() == ["import"]
+    assert shown() == ["import", "tracklive"]
     drawn = " ".join(draw("MOCAP_PT_import"))
     assert "Shift-click the selected armature" in drawn and "load_sample" not in drawn
     with pytest.raises(RuntimeError, match="Shift-click the selected armature"):
@@ -85,7 +85,7 @@ def test_markers_have_their_panel_and_none_of_armatures(blank, load, shown, tmp_
 
 
 def test_all_panels_are_shown_on_request(all_panels, shown, draw):
-    assert set(shown()) == {*FOR_ARMATURES, "markers", "track"}
+    assert set(shown()) == {*FOR_ARMATURES, "markers", "track", "tracklive"}
     assert "mocap_assist.load_sample" in draw("MOCAP_PT_import")
 
 
@@ -106,5 +106,5 @@ def test_matches_keep_the_library_in_sight(blank, shown):
     rows = blank.context.window_manager.mocap_assist_matches.rows
     rows.add()
 
-    assert shown() == ["import", "library"]
+    assert shown() == ["import", "tracklive", "library"]
     rows.clear()

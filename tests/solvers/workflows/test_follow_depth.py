@@ -83,6 +83,23 @@ def test_ending_early_keeps_the_motion_so_far(images, followed):
     assert_array_equal(found.captured.poses, followed.captured.poses[:20])
 
 
+def test_state_counts_what_is_tracked_and_has_the_actor_once_measured(images):
+    states, sentences = [], []
+
+    follow(
+        Written(images),
+        on_state=states.append,
+        progress=lambda fraction, message: sentences.append(message),
+    )
+
+    assert len(states) == 15 + N_FRAMES  # those of the measurement are tracked afterwards
+    assert [each.n_tracked for each in states] == [0] * 15 + [*range(1, N_FRAMES + 1)]
+    assert [each.actor is not None for each in states[:16]] == [False] * 14 + [True] * 2
+    assert states[0].depth.shape == (states[0].camera.height, states[0].camera.width)
+    assert states[-1].sentence == sentences[-1]
+    assert f"Tracking image {N_FRAMES}, " in sentences[-1] and "0 dropped." in sentences[-1]
+
+
 def test_actor_who_comes_later_is_measured_then(images):
     empty = [np.zeros_like(images[0])] * 30
 
@@ -120,7 +137,7 @@ def test_actor_who_comes_late_after_the_empty_room_keeps_his_time(
     [
         (0, False, "No depth image came"),
         (0, True, "No depth image came"),
-        (3, True, "The recording ended before the actor was measured. Capture it without"),
+        (3, True, "The recording ended before the actor was measured. Track it when it"),
     ],
 )
 def test_nothing_to_track_is_one_sentence(images, n_images, is_ended, words):
