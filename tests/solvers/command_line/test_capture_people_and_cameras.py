@@ -54,7 +54,7 @@ def test_numbers_of_people_are_checked(call, two_people, tmp_path):
         (("--people", "none"), "'none' is no number of people"),
         (("--people", "3"), "Only 2 of 3 people are found."),
         (("--people", "2", "--keep-body", tmp_path / "body.npz"), "Leave out --body and"),
-        (("--people", "2", "--method", "wei"), "The method wei tracks one person."),
+        (("--people", "2", "--method", "wei"), "The method wei tracks one person in the"),
     ):
         status, out, err = call("capture", two_people, target, *words, *FAST_OPTIONS)
         assert (status, out) == (2, "") and sentence in err and err.count("\n") == 1
