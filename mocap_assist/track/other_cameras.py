@@ -22,9 +22,9 @@ from ..depth.depth_preview import (
 from .solve_cameras import OtherCamera, SeveralCameras
 from .solve_tracking import FoundCamera, ObjectNumber, Tracked
 
-SAME_PLACE = 1e-4
-"""Scene units, and sines of angles, below which points have not moved: rounding of Blender's
-matrices."""
+MATRIX_ROUNDING = 1e-4
+"""Ratio to a scene unit of a difference that is no movement. It guards the rounding of matrices
+to 32 bits."""
 
 
 def other_previews(preview: bpy.types.Object) -> list[bpy.types.Object]:
@@ -47,7 +47,7 @@ def check_others(preview: bpy.types.Object, *, all_people: bool) -> None:
         )
     paths: dict[Path, str] = {}
     for each in (preview, *others):
-        path = Path(absolute(shown_by(each.data).path)).resolve()
+        path = Path(absolute(shown_by(each.data).path))
         if path in paths:
             raise InvalidMotionError(
                 f"{each.name} shows the same recording as {paths[path]}. Select recordings of"
@@ -113,7 +113,7 @@ def place_cameras(
         return []
     scene_from_first = scene_from_first_camera(preview, result)
     shown, rate = shown_by(preview.data), recording_of(preview.data).frame_rate
-    places = [(preview, scene_from_first, shown)]
+    targets = [(preview, scene_from_first, shown)]
     for each in result.cameras:
         other = _object_of(each)
         own = shown_by(other.data)
@@ -124,11 +124,11 @@ def place_cameras(
             step=frames_per_second / recording_of(other.data).frame_rate,
         )
         matrix = scene_from_first @ Matrix(each.first_from_camera.tolist())
-        places.append((other, matrix, in_time))
+        targets.append((other, matrix, in_time))
     return [
         sentence
-        for number, place in enumerate(places, start=1)
-        if (sentence := _move(number, *place, scene.frame_current_final))
+        for number, target in enumerate(targets, start=1)
+        if (sentence := _move(number, *target, scene.frame_current_final))
     ]
 
 
@@ -136,7 +136,7 @@ def _move(
     number: int, preview: bpy.types.Object, matrix: Matrix, shown: Shown, frame: float
 ) -> str:
     """Move points in space and time; return a sentence, empty if they stood there."""
-    stands_there = np.allclose(preview.matrix_world, matrix, atol=SAME_PLACE)
+    stands_there = np.allclose(preview.matrix_world, matrix, atol=MATRIX_ROUNDING)
     if stands_there and shown_by(preview.data) == shown:
         return ""
     if not (preview.is_editable and preview.data.is_editable):

@@ -63,8 +63,7 @@ class TrackChoices(Settings):
     )
     other_cameras: bool = setting(
         False,
-        "Join the other selected depth recordings, of the same take by other cameras; the actor"
-        " calibrates the cameras",
+        "Join the other selected recordings, of the same take by other depth cameras",
         label="Other Cameras",
     )
 

@@ -15,7 +15,7 @@ from ..progress import Progress
 from ..recordings import depth_takes_in
 from ..recordings.depth_files import DepthSettings
 from .arguments import arguments_from, find_recordings
-from .files_of_people import take_of_person
+from .batches import take_of_person
 from .follow_recording import add_follow_options, check_follow
 from .unused_options import check_unused_options
 

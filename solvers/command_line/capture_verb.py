@@ -31,8 +31,8 @@ from .arguments import (
     settings_from_arguments,
     write,
 )
+from .batches import check_files_of_people, left_of_earlier_run, path_of_person
 from .capture_options import add_capture_options, read_body
-from .files_of_people import check_files_of_people, left_of_earlier_run, path_of_person
 from .follow_recording import follow_recording
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from depth_files import depth_npz
 
-from solvers.command_line.files_of_people import left_of_earlier_run
+from solvers.command_line.batches import left_of_earlier_run
 from solvers.command_line.sharing import Record, Records
 
 
@@ -45,7 +45,7 @@ def test_options_that_agree_with_following_are_no_contradiction(call, tmp_path):
     assert "has no effect" not in err and "none.mkv" in err
 
 
-def test_file_that_nobody_named_is_not_replaced_by_a_person(call, take, tmp_path):
+def test_file_that_was_not_named_is_not_replaced_by_a_person(call, take, tmp_path):
     precious = tmp_path / "out_person2.bvh"
     precious.write_text("precious")
     words = ("capture", take, tmp_path / "out.bvh", "--people", "2")

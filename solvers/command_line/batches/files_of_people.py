@@ -3,10 +3,10 @@
 import re
 from pathlib import Path
 
-from ..errors import InvalidFileError
-from ..files import is_missing
-from .arguments import Task, check_target
-from .sharing import Records
+from ...errors import InvalidFileError
+from ...files import is_missing
+from ..arguments import Task, check_target
+from ..sharing import Records
 
 PERSON = re.compile(r"(.+)_person\d+", re.DOTALL)
 """The name of a person but the first, without the extension."""
