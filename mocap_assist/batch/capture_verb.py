@@ -69,7 +69,7 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     others = [path for path in arguments.files if path not in takes]
     inside = find_recordings(others, list_recordings=depth_recordings_in)
     paths = [*takes, *(path for path, _ in inside)]
-    for cameras in [paths] if arguments.other_cameras else [[path] for path in paths]:
+    for cameras in [paths] if settings.choices.other_cameras else [[path] for path in paths]:
         path = cameras[0]
         screen.title = path.name
         before = {*bpy.data.objects}
