@@ -14,8 +14,6 @@ NOT_SHOWN = (
     "mocap_assist/languages/", "mocap_assist/ui/diagnostics.py",
     "solvers/samples/", "solvers/pictures/", "solvers/processes/",
     "solvers/depth_tracking/forest/", "solvers/depth_tracking/forest_training/",
-    "solvers/depth_tracking/several_cameras/",
-    "solvers/workflows/depth_capture/capture_from_cameras.py",
     "solvers/reconstruction/residual_correction/learn_", "solvers/rotations/",
     "solvers/retrieval/index/", "solvers/retrieval/library/values.py",
     "solvers/retrieval/find_in_libraries.py",

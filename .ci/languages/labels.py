@@ -42,6 +42,7 @@ LABELED = {
                                                   "_describe_jitter", "_slides",
                                                   "_beyond_limits", "_cuts"},
     "solvers/denoising/window_estimates/channel_groups.py": {"_describe_prior"},
+    "solvers/depth_tracking/several_cameras/capture_cameras.py": {"about_camera"},
     "solvers/feet/plant_in_window.py": {"plant_in_window"},
     "solvers/motion_fitting/fit_motion.py": {"fit_motion"},
     "solvers/motion/skeletons/file_conventions.py": {"sentence", "OFFSET_ADDED",

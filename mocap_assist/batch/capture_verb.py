@@ -1,6 +1,7 @@
 """`capture`: import depth recordings and track their actors."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 from typing import get_type_hints
 
@@ -18,6 +19,7 @@ from ...solvers.settings import Settings
 from ..importing.button_settings import ImportChoices
 from ..importing.depth_folders import depth_recordings_in, is_take
 from ..importing.importing import import_files
+from ..scene.scene_objects import choose
 from ..track.tracking import (
     TrackBundle,
     WatchChoices,
@@ -66,10 +68,12 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     takes = [path for path in arguments.files if is_take(path)]
     others = [path for path in arguments.files if path not in takes]
     inside = find_recordings(others, list_recordings=depth_recordings_in)
-    for path in [*takes, *(path for path, _ in inside)]:
+    paths = [*takes, *(path for path, _ in inside)]
+    for cameras in [paths] if settings.choices.other_cameras else [[path] for path in paths]:
+        path = cameras[0]
         screen.title = path.name
         before = {*bpy.data.objects}
-        sentence = attempt(path, _import_and_track, path, arguments, settings, screen)
+        sentence = attempt(path, _import_and_track, cameras, arguments, settings, screen)
         if isinstance(sentence, Failure):
             failed.append(sentence.sentence)
             continue
@@ -89,9 +93,23 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
 
 
 def _import_and_track(
-    path: Path, arguments: argparse.Namespace, settings: TrackBundle, screen: Screen
+    cameras: Sequence[Path],
+    arguments: argparse.Namespace,
+    settings: TrackBundle,
+    screen: Screen,
 ) -> str:
-    """Import one recording and track it; the new armature becomes active."""
+    """Import the recordings of one take and track it; the new armature becomes active."""
+    previews = [_imported(path, arguments, screen) for path in cameras]
+    choose(bpy.context, previews, previews[0])
+    scene, preview = bpy.context.scene, previews[0]
+    result = solve_in_subprocess(
+        read_tracking(scene, preview, settings), arguments, screen.progress
+    )
+    return write_tracked(scene, preview, settings, result)
+
+
+def _imported(path: Path, arguments: argparse.Namespace, screen: Screen) -> bpy.types.Object:
+    """Import a recording; return its points."""
     choices = settings_from_arguments(arguments, ImportChoices)
     imported = import_files(bpy.context, [path], choices, progress=screen.progress)
     if imported.failed:
@@ -99,8 +117,4 @@ def _import_and_track(
     preview = selected_preview(bpy.context)
     if preview is None:
         raise InvalidFileError("It has no depth images. Use import.")
-    scene = bpy.context.scene
-    result = solve_in_subprocess(
-        read_tracking(scene, preview, settings), arguments, screen.progress
-    )
-    return write_tracked(scene, preview, settings, result)
+    return preview

@@ -54,7 +54,7 @@ from ..track.tracking import (
     TrackBundle,
     TrackChoices,
     selected_preview,
-    why_not_track,
+    why_not_use,
     write_tracked,
 )
 from .button_settings import FixBundle
@@ -85,7 +85,7 @@ def selected_take(context: bpy.types.Context) -> bpy.types.Object | None:
 def why_not_fix(context: bpy.types.Context) -> str:
     """Return why the selection cannot be fixed, or an empty text."""
     if selected_preview(context) is not None:
-        return why_not_track(context)
+        return why_not_use(context)
     return why_not_clean(context)
 
 

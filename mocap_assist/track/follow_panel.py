@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..blender.mixins import PanelMixin
-from ..panel_parts.panel_layout import draw_sentence, exists, settings_column
+from ..panel_parts.panel_layout import draw_sentence, operator_exists, settings_column
 from ..panel_parts.visibility import shows_all
 from ..runtime.selection import selected_subject
 from .following import NO_FOLDER
@@ -33,7 +33,7 @@ class TrackLivePanel(PanelMixin):
         suits = selected_subject(context) is None or is_tracked(  # such as of the last take
             context.view_layer.objects.active
         )
-        return exists(FOLLOW) and (suits or is_running or shows_all(context))
+        return operator_exists(FOLLOW) and (suits or is_running or shows_all(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, live = self.layout, context.scene.mocap_assist.track_live

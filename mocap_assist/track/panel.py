@@ -17,6 +17,7 @@ from ..panel_parts.panel_layout import (
     split_column,
 )
 from ..panel_parts.visibility import shows_all
+from .camera_rows import draw_cameras
 from .retracking import why_not_retrack
 from .tracked_armature.body import is_tracked
 from .tracking import selected_preview, why_not_track
@@ -25,8 +26,8 @@ TRACK, RETRACK = "mocap_assist.track_depth", "mocap_assist.retrack"
 HOW = "Correct the pose at a wrong frame, then press Track from Here."
 CUT = ("min_distance", "max_distance")
 SHOWN = (
-    "all_people", "backward", "refine", "smoothing", "recorded", "plant_feet", "watch",
-    "keep_on_esc",
+    "all_people", "other_cameras", "backward", "refine", "smoothing", "recorded",
+    "plant_feet", "watch", "keep_on_esc",
 )  # fmt: skip
 
 
@@ -65,6 +66,8 @@ def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
         column.prop(track, name)
     if "method" in folded_settings(CaptureSettings, (), track):
         column.prop(track, "method")
+    if track.other_cameras:
+        draw_cameras(layout, context)
     layout.operator(TRACK, icon="OUTLINER_OB_ARMATURE")
     if reason := why_not_track(context):
         draw_sentence(layout, context, reason, icon="INFO")

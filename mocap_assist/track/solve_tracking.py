@@ -40,6 +40,23 @@ class LowConfidenceRange(NamedTuple):
     last: int
 
 
+ObjectNumber = tuple[str, int, str]
+"""Kind, session UID and name of an object, as in a `BlockReference`."""
+
+
+class FoundCamera(NamedTuple):
+    """Where and when another camera recorded."""
+
+    object_number: ObjectNumber
+    first_from_camera: NDArray[np.float64]
+    """Transform to the frame of the first camera, shape (4, 4), meters."""
+    offset: float
+    """Time of the first camera at which this one recorded its frame 0, seconds."""
+    mismatch: float
+    """Median distance of the joints of both skeletons, meters."""
+    shows_floor: bool
+
+
 class Tracked(NamedTuple):
     """Motion of the actor with its confidence."""
 
@@ -63,6 +80,10 @@ class Tracked(NamedTuple):
     """Images of the recording from one frame of the motion to the next."""
     others: tuple[Any, ...] = ()
     """The other people, each `Tracked`."""
+    cameras: tuple[FoundCamera, ...] = ()
+    """The other cameras."""
+    first_shows_floor: bool = True
+    """Whether the floor is that of the first camera, where there are others."""
 
 
 def track_recording(
@@ -119,9 +140,14 @@ def _track_people(
 
 
 def partial_result(
-    previews: Iterable[Any], recording: DepthRecording, settings: CaptureSettings
+    previews: Iterable[Any],
+    recording: DepthRecording,
+    settings: CaptureSettings,
+    several_cameras: bool = False,
 ) -> Tracked:
     """Return the result of a stopped `track_recording`, without planted feet.
+
+    Of `several_cameras`, it is the motion before the first.
 
     Raises InvalidMotionError if no pose was found yet.
     """
@@ -135,7 +161,10 @@ def partial_result(
         if n_frames < recording.n_frames
         else "Stopped after the last frame: feet were not planted."
     )
-    return build_tracked(first, captured.motion, captured, floor, (remark,))
+    remarks = [remark]
+    if several_cameras:
+        remarks.append("The cameras were not joined: this is the motion before the first.")
+    return build_tracked(first, captured.motion, captured, floor, tuple(remarks))
 
 
 def build_tracked(

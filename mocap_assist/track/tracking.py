@@ -10,9 +10,11 @@ import numpy as np
 from mathutils import Matrix
 
 from ...solvers.denoising import PlantSettings
-from ...solvers.depth_scene import FloorPlane, ForegroundSettings
+from ...solvers.depth_scene import ForegroundSettings
 from ...solvers.depth_tracking.body import scene_from_camera
-from ...solvers.depth_tracking.capturing import CaptureSettings
+from ...solvers.depth_tracking.capturing import CaptureSettings, check_default_method
+from ...solvers.depth_tracking.several_cameras import AlignmentSettings
+from ...solvers.errors import MocapAssistError
 from ...solvers.motion import Motion
 from ...solvers.settings import Settings, setting
 from ...solvers.version import version
@@ -29,6 +31,15 @@ from ..scene.scene_objects import undo_on_error
 from ..scene.units import unit_of
 from .live_body import LiveBody, stage_of_preview
 from .low_confidence import list_low_confidence
+from .other_cameras import (
+    camera_entries,
+    check_others,
+    place_cameras,
+    read_again,
+    read_cameras,
+    scene_from_first_camera,
+)
+from .solve_cameras import track_cameras
 from .solve_tracking import Tracked, mean_cm, partial_result, track_recording
 from .tracked_armature.body import TrackedBody
 from .tracked_armature.curves import write_residual
@@ -55,6 +66,11 @@ class TrackChoices(FeetChoices):
         False,
         "Track all visible people together; creates an armature for each",
         label="All People",
+    )
+    other_cameras: bool = setting(
+        False,
+        "Join the other selected recordings, of the same take by other depth cameras",
+        label="Other Cameras",
     )
 
 
@@ -89,6 +105,7 @@ class TrackBundle(NamedTuple):
     planting: PlantSettings
     watching: WatchChoices = WatchChoices()
     escaping: EscChoices = EscChoices()
+    alignment: AlignmentSettings = AlignmentSettings()
 
 
 class FixedMotion(NamedTuple):
@@ -110,7 +127,18 @@ def why_not_show(context: bpy.types.Context) -> str:
 
 
 def why_not_track(context: bpy.types.Context) -> str:
-    """Return why the selection cannot be tracked, or an empty text."""
+    """Return why Track cannot use the selection with its settings, or an empty text."""
+    if reason := why_not_use(context):
+        return reason
+    try:
+        _check(selected_preview(context), context.scene.mocap_assist.track.settings())
+    except MocapAssistError as error:
+        return str(error)
+    return ""
+
+
+def why_not_use(context: bpy.types.Context) -> str:
+    """Return why the selected points cannot be tracked, or an empty text."""
     preview = selected_preview(context)
     if preview is None:
         return "Select the points of an imported depth recording."
@@ -121,12 +149,27 @@ def read_tracking(
     scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
 ) -> PreviewSolve[Tracked]:
     """Open the displayed recording; return the picklable solve."""
+    _check(preview, settings)
     planting = settings.planting if settings.choices.plant_feet else None
+    if settings.choices.other_cameras:
+        return PreviewSolve(
+            track_cameras, read_cameras(preview), settings.tracking, settings.actor, planting,
+            settings.alignment,
+        )  # fmt: skip
     recording = recording_of(preview.data)
     return PreviewSolve(
         track_recording, recording, settings.tracking, settings.actor, planting,
         settings.choices.all_people,
     )  # fmt: skip
+
+
+def _check(preview: bpy.types.Object, settings: TrackBundle) -> None:
+    """Raise MocapAssistError if the settings contradict each other or the selection."""
+    choices = settings.choices
+    if choices.all_people or choices.other_cameras:
+        check_default_method(settings.tracking.method)
+    if choices.other_cameras:
+        check_others(preview, all_people=choices.all_people)
 
 
 def watch_tracking(
@@ -142,8 +185,12 @@ def rescue_partial(
     """Return a function that builds the partial result on Esc, if that is enabled."""
     if not settings.escaping.keep_on_esc:
         return None
-    recording = recording_of(preview.data)
-    return partial(partial_result, recording=recording, settings=settings.tracking)
+    return partial(
+        partial_result,
+        recording=recording_of(preview.data),
+        settings=settings.tracking,
+        several_cameras=settings.choices.other_cameras,
+    )
 
 
 def write_tracked(
@@ -161,13 +208,17 @@ def write_tracked(
 
     Raises InvalidMotionError if the points show another recording than the one that was solved.
     """
-    check_unchanged(preview, solved_digest, recording_of(preview.data))
+    shown: Any = recording_of(preview.data)
+    if result.cameras:
+        shown = read_again(preview, result.cameras)
+    check_unchanged(preview, solved_digest, shown)
     with undo_on_error(bpy.context):
         others = [
             add_armature(scene, preview, settings, other) for other in reversed(result.others)
         ]
         first = add_armature(scene, preview, settings, result, fixed)
-    return " ".join([first, *reversed(others)])
+        moved = place_cameras(scene, preview, result)
+    return " ".join([first, *reversed(others), *moved])
 
 
 def add_armature(
@@ -200,7 +251,7 @@ def add_armature(
         )
         played.use_fake_user = True
         history.record(played, source, fixed.entry)
-    armature.matrix_world = _scene_from_motion(preview, result.floor) @ Matrix.Scale(
+    armature.matrix_world = _scene_from_motion(preview, result) @ Matrix.Scale(
         meters_per_unit, 4
     )
     armature.show_in_front = True
@@ -214,10 +265,10 @@ def add_armature(
     return f"{armature.name}: {_report(result)}"
 
 
-def _scene_from_motion(preview: bpy.types.Object, floor: FloorPlane | None) -> Matrix:
+def _scene_from_motion(preview: bpy.types.Object, result: Tracked) -> Matrix:
     """Return the transform (4, 4) from the motion to the scene, where the points are."""
-    motion_from_camera = scene_from_camera(floor)
-    return preview.matrix_world @ Matrix(np.linalg.inv(motion_from_camera).tolist())
+    camera_from_motion = Matrix(np.linalg.inv(scene_from_camera(result.floor)).tolist())
+    return scene_from_first_camera(preview, result) @ camera_from_motion
 
 
 def _report(result: Tracked) -> str:
@@ -243,4 +294,5 @@ def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, ob
         "coverage": result.coverage,
         "restarts": list(result.restarts),
         "doubtful_ranges": len(result.low_confidence),
+        "cameras": camera_entries(result.cameras),
     }

@@ -8,14 +8,16 @@ from pathlib import Path
 from ..denoising import PlantSettings
 from ..depth_scene import ForegroundSettings
 from ..depth_tracking.body import BodyModel, load_body_model
-from ..depth_tracking.capturing import CaptureSettings
+from ..depth_tracking.capturing import CaptureMethod, CaptureSettings, check_default_method
 from ..depth_tracking.several_cameras import AlignmentSettings
 from ..errors import InvalidSettingError
 from ..progress import Progress
 from ..recordings import depth_takes_in
 from ..recordings.depth_files import DepthSettings
 from .arguments import arguments_from, find_recordings
+from .batches import take_of_person
 from .follow_recording import add_follow_options, check_follow
+from .unused_options import check_unused_options
 
 ALL = "all"
 """Of `--people`: as many as are visible at once."""
@@ -81,26 +83,13 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
     ------
     InvalidSettingError
         --keep-body or --body is combined with several people, --keep-body or --camera with
-        several takes, --camera with several people, or --follow with any of these.
+        several takes, --camera with several people, or --follow with any of these; an option
+        would have no effect, or a published method is to track more than it can.
     """
     check_follow(arguments)
-    if arguments.people != 1 and (arguments.body or arguments.keep_body) is not None:
-        raise InvalidSettingError(
-            "A body file holds one body. Leave out --body and --keep-body with --people."
-        )
-    if arguments.camera and arguments.people != 1:
-        raise InvalidSettingError(
-            "Several cameras track one person. Leave out --people or --camera."
-        )
-    cameras = [path.resolve() for path in (*arguments.files[:1], *arguments.camera)]
-    if len({*cameras}) < len(cameras):
-        raise InvalidSettingError(
-            "The same recording is given for two cameras. Name another one after --camera."
-        )
-    if arguments.camera and arguments.output_folder is not None:
-        raise InvalidSettingError(
-            "--camera adds a recording to one take. Name one file to read and one to write."
-        )
+    check_unused_options(arguments)
+    _check_people(arguments)
+    _check_cameras(arguments)
     takes = []
     if arguments.output_folder is not None:
         takes = find_recordings(arguments.files, list_recordings=depth_takes_in)
@@ -114,12 +103,39 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
     return None if arguments.body is None else load_body_model(arguments.body)
 
 
+def _check_people(arguments: argparse.Namespace) -> None:
+    """Raise InvalidSettingError if several people, cameras or images to come are too many."""
+    if arguments.people != 1 or arguments.camera or arguments.follow:
+        check_default_method(getattr(arguments, "method", CaptureMethod.DEFAULT))
+    if arguments.people != 1 and (arguments.body or arguments.keep_body) is not None:
+        raise InvalidSettingError(
+            "A body file holds one body. Leave out --body and --keep-body with --people."
+        )
+    if arguments.camera and arguments.people != 1:
+        raise InvalidSettingError(
+            "Several cameras track one person. Leave out --people or --camera."
+        )
+
+
+def _check_cameras(arguments: argparse.Namespace) -> None:
+    """Raise InvalidSettingError if the cameras are not those of one take."""
+    cameras = [path.resolve() for path in (*arguments.files[:1], *arguments.camera)]
+    if len({*cameras}) < len(cameras):
+        raise InvalidSettingError(
+            "The same recording is given for two cameras. Name another one after --camera."
+        )
+    if arguments.camera and arguments.output_folder is not None:
+        raise InvalidSettingError(
+            "--camera adds a recording to one take. Name one file to read and one to write."
+        )
+
+
 def _check_names(names: Collection[Path]) -> None:
     """Raise InvalidSettingError where a person of one take would be written as another take."""
     for name in names:
-        found = re.fullmatch(r"(.+)_person\d+", name.name)
-        if found is not None and name.with_name(found[1]) in names:
+        take = take_of_person(name.name)
+        if take is not None and name.with_name(take) in names:
             raise InvalidSettingError(
-                f"{name} and a person of {found[1]} would be written to one file. Rename one of"
+                f"{name} and a person of {take} would be written to one file. Rename one of"
                 " the recordings."
             )

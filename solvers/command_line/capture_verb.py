@@ -31,6 +31,7 @@ from .arguments import (
     settings_from_arguments,
     write,
 )
+from .batches import check_files_of_people, left_of_earlier_run, path_of_person
 from .capture_options import add_capture_options, read_body
 from .follow_recording import follow_recording
 
@@ -101,7 +102,11 @@ def _capture_actor(
 def _capture_people(
     task: Task, messages: list[Remark], progress: Progress
 ) -> Sequence[CapturedMotion]:
-    """Capture several people together."""
+    """Capture several people together.
+
+    Raises InvalidFileError if their files would replace those of another take.
+    """
+    check_files_of_people(task, task.arguments.people)
     (recording,) = _read([task.source], task, messages, within(progress, 0.0, 0.02))
     options = _options(task.arguments, within(progress, 0.02, 1.0))
     return capture_every_person(recording, n_people=task.arguments.people or None, **options)
@@ -126,6 +131,10 @@ def _write_people(
         f"Person {number}, {target.name}: {outcome.text}"
         for number, (target, outcome) in enumerate(zip(targets, outcomes, strict=True), start=1)
     ]
+    lines += [
+        f"{path.name} is of an earlier run: it is no person of this take."
+        for path in left_of_earlier_run(task.target, len(people))
+    ]
     figures = {
         "people": [
             {"output": str(target), **outcome.figures}
@@ -133,11 +142,6 @@ def _write_people(
         ]
     }
     return Outcome("\n".join(lines), figures)
-
-
-def path_of_person(target: Path, number: int) -> Path:
-    """Return the file of a person, counted from 1, of a take that is written to `target`."""
-    return target if number == 1 else target.with_stem(f"{target.stem}_person{number}")
 
 
 def _write(found: CapturedMotion | FollowedMotion, target: Path, progress: Progress) -> None:

@@ -13,7 +13,9 @@ if TYPE_CHECKING:
         capture_from_cameras,
         capture_recording,
         capture_remarks,
+        capture_seen_actor,
         capture_separated_people,
+        find_actor_of_cameras,
     )
     from .fix_chains import ChainResult
     from .fix_report import (
@@ -79,11 +81,13 @@ __all__ = [
     "capture_from_cameras",
     "capture_recording",
     "capture_remarks",
+    "capture_seen_actor",
     "capture_separated_people",
     "clean_from_library",
     "describe_missing_points",
     "drop_missing_points",
     "figure_texts",
+    "find_actor_of_cameras",
     "find_origin",
     "fix_take",
     "index_files",

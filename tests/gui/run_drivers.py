@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from window import own_window
+from window import made_depth, own_window
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared"
@@ -28,6 +28,7 @@ RECORDINGS = {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",
         "joints.txt": "kinect/irds/215_18_0_5_1_stand.txt",
     },
+    "cameras": {},
     "clean": {},
     "contacts": {
         "walking.glb": "corpus/glb/mixamo_blender/walking.glb",
@@ -60,6 +61,7 @@ RECORDINGS = {
     "listen": {},
     "marker_overlay": {"markers.trc": "formats/trc/subject02_running.trc"},
     "markers": {"markers.c3d": "markers/85_02.c3d"},
+    "people": {},
     "physics": {"walk.bvh": "mocap/cmu_walk/07_01.bvh"},
     "redo": {"walk.bvh": "mocap/cmu_walk/07_01.bvh"},
     "reconstruct": {"kinect.txt": "kinect/irds/217_18_0_3_1_wheelchair.txt"},
@@ -93,6 +95,8 @@ RECORDINGS = {
     },
 }  # fmt: skip
 """For each driver, the files copied next to it, and their paths, from ../shared/data on."""
+MADE = {"cameras": made_depth.write_cameras, "people": made_depth.write_people}
+"""Drivers whose recordings are made, and what writes them into a folder."""
 FIRST_FRAMES = {"track": 30}
 """Of a recording of depth: tracking a frame takes a second."""
 
@@ -147,6 +151,8 @@ def passes(name: str, zip_path: Path) -> bool:
 def lay_out(name: str, folder: Path) -> list[Path]:
     """Copy what a driver needs into `folder`, and return all files there."""
     folder.mkdir(parents=True)
+    if name in MADE:
+        MADE[name](folder)
     for copy_name, source in RECORDINGS[name].items():
         path = folder / copy_name
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -18,6 +18,12 @@ if TYPE_CHECKING:
         verb_name,
         work_if_unclaimed,
     )
+    from .files_of_people import (
+        check_files_of_people,
+        left_of_earlier_run,
+        path_of_person,
+        take_of_person,
+    )
     from .parallel import run_tasks, until_released, workers_for
     from .report import PAGE, PICTURE, has_picture, picture_file, remove_picture, write_report
     from .screen import Screen, escape_undecodable_names, printable
@@ -29,15 +35,18 @@ __all__ = [
     "FinishedTask",
     "Screen",
     "already_made",
+    "check_files_of_people",
     "check_output_folder",
     "draw_task",
     "escape_undecodable_names",
     "find_inputs",
     "has_called_hook",
     "has_picture",
+    "left_of_earlier_run",
     "made_record",
     "note_other_builds",
     "note_pipe",
+    "path_of_person",
     "picture_file",
     "printable",
     "record_end",
@@ -45,6 +54,7 @@ __all__ = [
     "report_folder",
     "run_tasks",
     "shared_tasks",
+    "take_of_person",
     "task_entries",
     "tasks_of",
     "until_released",

@@ -200,7 +200,15 @@ def made_record(task: Task) -> Record | None:
     if task.refusal or task.target is None or is_missing(task.target):
         return None
     record = current_record(task)
-    return None if record is None or record.error else record
+    if record is None or record.error or _lacks_person(task.target, record):
+        return None
+    return record
+
+
+def _lacks_person(target: Path, record: Record) -> bool:
+    """Return whether a file of another person of the take is missing."""
+    people = record.figures.get("people", ())
+    return any(is_missing(target.with_name(Path(each["output"]).name)) for each in people)
 
 
 def current_record(task: Task) -> Record | None:

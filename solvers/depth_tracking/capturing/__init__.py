@@ -9,7 +9,7 @@ from .capture import (
     best_of_passes,
     capture,
 )
-from .capture_method import CaptureMethod
+from .capture_method import CaptureMethod, check_default_method
 from .find_body import find_body
 from .passes import (
     Pass,
@@ -46,6 +46,7 @@ __all__ = [
     "best_of_passes",
     "calibrate_body",
     "capture",
+    "check_default_method",
     "find_body",
     "prior_near",
     "refine_body",

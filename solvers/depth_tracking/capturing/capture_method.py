@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from ...errors import InvalidSettingError
 from ...settings import Choice
 from ..published import EDGE_TRACKER, REGISTRATION_TRACKER, EdgeLikelihood
 from .passes import TrackingContext
@@ -24,6 +25,18 @@ class CaptureMethod(Choice):
         "Lou 2012",
     )
     """[LOU12]: surface with color, edges and motion prior; the detector at the start only."""
+
+
+def check_default_method(method: CaptureMethod) -> None:
+    """Raise InvalidSettingError if a published method is to do more than it can.
+
+    Published methods track one person in the complete recording of one camera.
+    """
+    if method is not CaptureMethod.DEFAULT:
+        raise InvalidSettingError(
+            f"The method {method.value} tracks one person in the complete recording of one"
+            " camera. Use the default method."
+        )
 
 
 def published_system(

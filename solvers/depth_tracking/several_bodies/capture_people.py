@@ -7,18 +7,18 @@ import numpy as np
 
 from ...arrays import Array
 from ...depth_scene import LEVEL, SeparatedPeople
-from ...errors import InvalidMotionError, InvalidSettingError
+from ...errors import InvalidMotionError
 from ...progress import Progress, unwatched, within
 from ..body import BodyModel, MotionPrior, load_motion_prior
 from ..capturing import (
     DEFAULT_CAPTURE,
     Capture,
-    CaptureMethod,
     CaptureSettings,
     Pass,
     TrackingContext,
     assemble_capture,
     best_of_passes,
+    check_default_method,
     find_body,
     smooth_poses,
 )
@@ -73,10 +73,7 @@ def capture_people(
         Raised by `progress`.
     """
     n_people = len(people.actors)
-    if settings.method is not CaptureMethod.DEFAULT:
-        raise InvalidSettingError(
-            f"The method {settings.method.value} tracks one person. Use the default."
-        )
+    check_default_method(settings.method)
     if bodies is not None and len(bodies) != n_people:
         raise InvalidMotionError(f"{len(bodies)} bodies do not match {n_people} people.")
     forest = load_pixel_forest() if forest is None else forest

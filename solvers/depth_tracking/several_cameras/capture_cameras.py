@@ -13,9 +13,9 @@ from ..body import BodyModel, MotionPrior, load_motion_prior
 from ..capturing import (
     DEFAULT_CAPTURE,
     Capture,
-    CaptureMethod,
     CaptureSettings,
     capture,
+    check_default_method,
     find_body,
 )
 from ..forest import PixelForest, load_pixel_forest
@@ -45,11 +45,14 @@ class CapturedByCameras:
         One for each camera; the first is the identity.
     alone : tuple of Capture
         What each camera shows by itself, with the same body.
+    floor : FloorPlane or None
+        That of the first camera that shows one, in the frame of the first camera.
     """
 
     captured: Capture
     alignments: tuple[CameraAlignment, ...]
     alone: tuple[Capture, ...]
+    floor: FloorPlane | None
 
 
 def capture_cameras(
@@ -92,13 +95,16 @@ def capture_cameras(
     tracker : TrackerSettings
     alignment : AlignmentSettings
     on_pose : PoseCallback
-        Called with each pose of the result.
+        Called with each pose that the first camera shows alone, then with each pose of the
+        result.
     progress : Progress
 
     Raises
     ------
     InvalidMotionError
         No person is detected by a camera, or two recordings cannot be aligned.
+    InvalidSettingError
+        The method is one of the published ones.
     SolveCancelled
         Raised by `progress`.
 
@@ -115,14 +121,15 @@ def capture_cameras(
     if body is None:
         first = 0.3
         part = within(progress, 0.0, first)
-        body = _shared_body(recordings, forest, settings, tracker, part)
+        body = _shared_body(recordings, forest, settings, tracker, on_pose, part)
     alone = []
     for number, recording in enumerate(recordings):
         bounds = first + (0.65 - first) * np.array([number, number + 1]) / len(recordings)
         with camera_named(number):
             alone.append(
                 capture(recording, body, forest, motion_prior, settings=settings,
-                        tracker=tracker, progress=within(progress, *bounds.tolist()))
+                        tracker=tracker, on_pose=ignore_pose if number else on_pose,
+                        progress=within(progress, *bounds.tolist()))
             )  # fmt: skip
     alignments = [FIRST_CAMERA]
     for number, other in enumerate(alone[1:], start=1):
@@ -137,11 +144,11 @@ def capture_cameras(
         for floor, each in zip(floors, alignments, strict=False)
         if floor is not None
     ]
+    floor = visible[0] if visible else None
     captured = capture_views(
-        actor, alone, floor=visible[0] if visible else None, settings=settings,
-        progress=within(progress, 0.7, 1.0),
-    )  # fmt: skip
-    return CapturedByCameras(captured, tuple(alignments), tuple(alone))
+        actor, alone, floor=floor, settings=settings, progress=within(progress, 0.7, 1.0)
+    )
+    return CapturedByCameras(captured, tuple(alignments), tuple(alone), floor)
 
 
 def floor_of_first_camera(floor: FloorPlane, alignment: CameraAlignment) -> FloorPlane:
@@ -153,10 +160,7 @@ def floor_of_first_camera(floor: FloorPlane, alignment: CameraAlignment) -> Floo
 def _check(recordings: Sequence[DepthRecording], settings: CaptureSettings) -> None:
     if len(recordings) < 2:
         raise InvalidMotionError("Several cameras are at least two recordings. Add one.")
-    if settings.method is not CaptureMethod.DEFAULT:
-        raise InvalidMotionError(
-            "The published methods use one camera. Choose the default method, or one recording."
-        )
+    check_default_method(settings.method)
 
 
 @contextmanager
@@ -165,7 +169,12 @@ def camera_named(number: int) -> Iterator[None]:
     try:
         yield
     except InvalidMotionError as error:
-        raise InvalidMotionError(f"Camera {number + 1}: {error}") from error
+        raise InvalidMotionError(about_camera(number, str(error))) from error
+
+
+def about_camera(number: int, sentence: str) -> str:
+    """Return a sentence that names the camera, counted from 0, that it is about."""
+    return f"Camera {number + 1}: {sentence}"
 
 
 def _shared_body(
@@ -173,6 +182,7 @@ def _shared_body(
     forest: PixelForest,
     settings: CaptureSettings,
     tracker: TrackerSettings,
+    on_pose: PoseCallback,
     progress: Progress,
 ) -> BodyModel:
     """Return the geometric mean of the bodies that each recording shows."""
@@ -182,7 +192,7 @@ def _shared_body(
         with camera_named(number):
             bodies.append(
                 find_body(recording, forest, refine=settings.refine, tracker=tracker,
-                          progress=part)
+                          on_pose=ignore_pose if number else on_pose, progress=part)
             )  # fmt: skip
     return BodyModel(
         np.exp(np.mean([np.log(each.lengths) for each in bodies], axis=0)),

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, Remark, unwatched, within
 from ..containers import read_bytes, read_rows
 from ..conventions import (
     DEFAULT_FRAME_RATE,
@@ -47,9 +47,10 @@ def open_ntu_skeleton(
     """Open an NTU RGB+D `.skeleton` file [1]_, in meters, Z up; joints not tracked are NaN.
 
     Bodies are identified by their id, in any order, and numbered as they appear. Frames
-    without the body are gaps. Identity switches are undone (`follow_bodies`). Image
-    coordinates, orientations, hand states and lean are not read. The files have no times; the
-    Kinect v2 records 30 frames per second.
+    without the body are gaps. Identity switches are undone (`follow_bodies`). Of several
+    bodies, those with damaged numbers are left out and reported. Image coordinates,
+    orientations, hand states and lean are not read. The files have no times; the Kinect v2
+    records 30 frames per second.
 
     Parameters
     ----------
@@ -109,13 +110,31 @@ def open_ntu_skeleton(
 def _with_people_followed(
     lines: list[bytes], frames: Frames, path: Path | str, progress: Progress
 ) -> Frames:
-    """Return frames in which identity switches of the sensor are undone."""
-    if len(set().union(*frames)) < 2:
+    """Return frames in which identity switches of the sensor are undone.
+
+    Damaged bodies are left out and reported if there are others.
+    """
+    keys = list(dict.fromkeys(key for frame in frames for key in frame))
+    if len(keys) < 2:
         return frames
-    found = [joints for frame in frames for joints in frame.values()]
-    rows = _read_joints(lines, found, path, within(progress, 0.0, 0.7))
-    points = {joints.start: row[:, :3] for joints, row in zip(found, rows, strict=True)}
-    return follow_bodies(frames, lambda joints: points[joints.start], None, progress)
+    points: dict[int, NDArray[np.float64]] = {}
+    damaged: dict[bytes, InvalidFileError] = {}
+    for number, key in enumerate(keys, start=1):
+        found = [frame[key] for frame in frames if key in frame]
+        part = within(progress, 0.7 * (number - 1) / len(keys), 0.7 * number / len(keys))
+        try:
+            rows = _read_joints(lines, found, path, part)
+        except InvalidFileError as error:
+            damaged[key] = error
+            progress(0.7, Remark(f"Body {number} is damaged and is left out: {error}"))
+            continue
+        points |= {joints.start: row[:, :3] for joints, row in zip(found, rows, strict=True)}
+    if len(damaged) == len(keys):
+        raise damaged[keys[0]]
+    intact = [
+        {key: joints for key, joints in frame.items() if key not in damaged} for frame in frames
+    ]
+    return follow_bodies(intact, lambda joints: points[joints.start], None, progress)
 
 
 def _read_joints(

@@ -12,8 +12,10 @@ from ...depth_tracking.capturing import CaptureSettings
 from ...depth_tracking.several_cameras import (
     AlignmentSettings,
     CapturedByCameras,
+    about_camera,
     camera_named,
     capture_cameras,
+    check_different,
 )
 from ...depth_tracking.tracking import PoseCallback, ignore_pose
 from ...progress import Progress, unwatched, within
@@ -62,30 +64,77 @@ def capture_from_cameras(
     planting : PlantSettings or None
         None skips planting; so do depth images that all end above the feet.
     on_pose : PoseCallback
-        Called with each pose of the result.
+        As in `capture_cameras`.
     progress : Progress
 
     Raises
     ------
     InvalidMotionError
-        No person is detected by a camera, or two recordings cannot be aligned.
+        Two recordings are the same or cannot be aligned, or a camera shows no person.
+    InvalidSettingError
+        The method is one of the published ones.
     SolveCancelled
         Raised by `progress`.
     """
-    step, actors = FOREGROUND_FRACTION / len(recordings), []
+    actors = find_actor_of_cameras(
+        recordings, foreground, empty=empty,
+        progress=within(progress, 0.0, FOREGROUND_FRACTION),
+    )  # fmt: skip
+    return capture_seen_actor(
+        actors, body, motion_prior=motion_prior, settings=settings, alignment=alignment,
+        planting=planting, on_pose=on_pose,
+        progress=within(progress, FOREGROUND_FRACTION, 1.0),
+    )  # fmt: skip
+
+
+def find_actor_of_cameras(
+    recordings: Sequence[DepthRecording],
+    foreground: ForegroundSettings = FOREGROUND_SETTINGS,
+    *,
+    empty: Sequence[int] = (),
+    progress: Progress = unwatched,
+) -> tuple[Actor, ...]:
+    """Separate the actor from the room before each camera.
+
+    The parameters are those of `capture_from_cameras`.
+
+    Raises
+    ------
+    InvalidMotionError
+        Two recordings are the same, or a camera shows no person.
+    """
+    check_different(recordings)
+    actors = []
     for number, recording in enumerate(recordings):
-        part = within(progress, step * number, step * (number + 1))
+        part = within(progress, number / len(recordings), (number + 1) / len(recordings))
         with camera_named(number):
             actors.append(find_actor(recording, foreground, empty=empty, progress=part))
+    return tuple(actors)
+
+
+def capture_seen_actor(
+    actors: Sequence[Actor],
+    body: BodyModel | None = None,
+    *,
+    motion_prior: MotionPrior | None = None,
+    settings: CaptureSettings = CAPTURE_SETTINGS,
+    alignment: AlignmentSettings = ALIGNMENT_SETTINGS,
+    planting: PlantSettings | None = PLANT_SETTINGS,
+    on_pose: PoseCallback = ignore_pose,
+    progress: Progress = unwatched,
+) -> CapturedMotion:
+    """Capture one motion of an actor whom several cameras show, and plant the feet.
+
+    The parameters are those of `capture_from_cameras`; `actors` is what each camera shows.
+    """
     found = capture_cameras(
         [actor.recording for actor in actors], body, motion_prior=motion_prior,
         floors=[actor.floor for actor in actors], settings=settings, alignment=alignment,
-        on_pose=on_pose, progress=within(progress, FOREGROUND_FRACTION, 0.95),
+        on_pose=on_pose, progress=within(progress, 0.0, 0.95),
     )  # fmt: skip
-    floors = (actor.floor for actor in actors if actor.floor is not None)
     seen_by_all = replace(
         actors[0],
-        floor=next(floors, None),
+        floor=found.floor,
         feet_visible=any(actor.feet_visible for actor in actors),
     )
     done = finish_capture(
@@ -102,14 +151,19 @@ def _camera_remarks(actors: Sequence[Actor], found: CapturedByCameras) -> list[s
     for number, (actor, alignment) in enumerate(
         zip(actors[1:], found.alignments[1:], strict=True), start=2
     ):
-        position = np.linalg.inv(alignment.camera_from_first)[:3, 3]
-        when = "later" if alignment.offset >= 0.0 else "earlier"
+        distance = float(np.linalg.norm(np.linalg.inv(alignment.camera_from_first)[:3, 3]))
+        angle = alignment.angle_to(np.eye(4))
+        time, mismatch = abs(alignment.offset), 100.0 * alignment.mismatch
         remarks.append(
-            f"Camera {number} is {np.linalg.norm(position):.2f} m from the first and began"
-            f" {abs(alignment.offset):.2f} s {when}; their skeletons differ by"
-            f" {100 * alignment.mismatch:.1f} cm."
+            f"Camera {number} is {distance:.2f} m from the first, rotated by {angle:.0f}"
+            f" degrees, and began {time:.2f} s later; their skeletons differ by"
+            f" {mismatch:.1f} cm."
+            if alignment.offset >= 0.0
+            else f"Camera {number} is {distance:.2f} m from the first, rotated by {angle:.0f}"
+            f" degrees, and began {time:.2f} s earlier; their skeletons differ by"
+            f" {mismatch:.1f} cm."
         )
         if alignment.mismatch > MAX_MISMATCH_M:
             remarks.append(f"Check the focal length, scale and frame rate of camera {number}.")
-        remarks += [f"Camera {number}: {remark}" for remark in actor.remarks]
+        remarks += [about_camera(number - 1, remark) for remark in actor.remarks]
     return remarks

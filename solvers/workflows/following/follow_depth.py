@@ -8,10 +8,10 @@ import numpy as np
 from ...denoising import PlantSettings
 from ...depth_scene import DepthImage, ForegroundSettings
 from ...depth_tracking.body import BodyModel, MotionPrior, load_motion_prior
-from ...depth_tracking.capturing import CaptureMethod, CaptureSettings
+from ...depth_tracking.capturing import CaptureSettings, check_default_method
 from ...depth_tracking.following import PoseDetector
 from ...depth_tracking.tracking import PoseCallback, ignore_pose
-from ...errors import InvalidMotionError, InvalidSettingError
+from ...errors import InvalidMotionError
 from ...progress import Progress, unwatched
 from ...recordings.growing import GrowingDepth
 from ..depth_capture import capture_remarks
@@ -98,10 +98,7 @@ def follow_depth(
     SolveCancelled
         Raised by `progress`.
     """
-    if capture.method is not CaptureMethod.DEFAULT:
-        raise InvalidSettingError(
-            "Published methods track complete recordings. Leave out the method to follow one."
-        )
+    check_default_method(capture.method)
     if motion_prior is None and capture.recorded:
         motion_prior = load_motion_prior()
     wanted = TakeSettings(settings.calibration, capture, foreground, body, motion_prior, empty)

@@ -46,6 +46,9 @@ def test_each_person_is_written_to_a_file_and_a_second_run_keeps_both(
     assert np.linalg.norm(hips[0] - hips[1]) == pytest.approx(1.4, abs=0.05)
 
     assert "already_made" in call(*words, *FAST_OPTIONS)[1]
+    written[1].unlink()
+    assert "already_made" not in call(*words, *FAST_OPTIONS)[1]
+    assert written[1].exists()
 
 
 def test_numbers_of_people_are_checked(call, two_people, tmp_path):
@@ -54,7 +57,7 @@ def test_numbers_of_people_are_checked(call, two_people, tmp_path):
         (("--people", "none"), "'none' is no number of people"),
         (("--people", "3"), "Only 2 of 3 people are found."),
         (("--people", "2", "--keep-body", tmp_path / "body.npz"), "Leave out --body and"),
-        (("--people", "2", "--method", "wei"), "The method wei tracks one person."),
+        (("--people", "2", "--method", "wei"), "The method wei tracks one person in the"),
     ):
         status, out, err = call("capture", two_people, target, *words, *FAST_OPTIONS)
         assert (status, out) == (2, "") and sentence in err and err.count("\n") == 1

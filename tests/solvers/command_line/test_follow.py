@@ -104,7 +104,7 @@ def test_ctrl_c_writes_the_motion_so_far(call, folder, options, tmp_path, monkey
     ("words", "sentence"),
     [
         (["take.bvh"], "No depth image came. Check the folder "),
-        (["take.bvh", "--method", "wei"], "Published methods track complete recordings"),
+        (["take.bvh", "--method", "wei"], "The method wei tracks one person in the complete"),
     ],
 )
 def test_what_cannot_be_followed_is_one_sentence(call, tmp_path, options, words, sentence):

@@ -152,7 +152,7 @@ def test_images_without_a_person_are_one_sentence(images):
 
 def test_published_methods_are_refused(images):
     settings = CaptureSettings(method=CaptureMethod.EDGES)
-    with pytest.raises(InvalidSettingError, match="Published methods track complete"):
+    with pytest.raises(InvalidSettingError, match="The method lou tracks one person"):
         follow(Written(images), capture=settings)
 
 

@@ -25,7 +25,7 @@ from solvers.depth_tracking.several_cameras.transfer_poses import poses_at, tran
 from solvers.depth_tracking.several_cameras.views import CameraTake, View, render_view
 from solvers.depth_tracking.terms import DEFAULT_TRACKER
 from solvers.depth_tracking.tracking import register_pose
-from solvers.errors import InvalidMotionError, SolveCancelled
+from solvers.errors import InvalidMotionError, InvalidSettingError, SolveCancelled
 from solvers.progress import unwatched
 
 BODY = default_body()
@@ -241,7 +241,7 @@ def test_wrong_requests_are_refused_in_one_sentence():
     with pytest.raises(InvalidMotionError, match="at least two recordings"):
         capture_cameras([one], BODY)
     published = CaptureSettings(method=CaptureMethod.REGISTRATION)
-    with pytest.raises(InvalidMotionError, match="published methods use one camera"):
+    with pytest.raises(InvalidSettingError, match="tracks one person in the complete"):
         capture_cameras([one, one], BODY, settings=published)
     still = recorded(np.tile(NATURAL, (16, 1)))
     with pytest.raises(InvalidMotionError, match="Camera 2: The actor stands still"):

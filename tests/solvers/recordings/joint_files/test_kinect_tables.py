@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidFileError
 from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
+from solvers.progress import collect_remarks, unwatched
 from solvers.recordings import (
     read_kinect_csv,
     read_msr_action3d,
@@ -101,6 +102,25 @@ def test_ntu_damage_is_named(write, spoil, sentence):
         return
     with pytest.raises(InvalidFileError, match=sentence):
         read_with(open_ntu_skeleton)(path)
+
+
+def test_ntu_opens_the_other_bodies_where_one_is_damaged(write):
+    mine, other = moving(3, 25), moving(3, 25, seed=50)
+    text = ntu([{ONE: frame, TWO: each} for frame, each in zip(mine, other, strict=True)])
+    damaged = text.replace("278.3", "x", 1)
+    remarks = []
+    path = write(damaged)
+
+    bodies = open_ntu_skeleton(path, scale=1.0, progress=collect_remarks(unwatched, remarks))
+
+    (left,) = bodies.listed
+    assert left.n_frames == 3
+    assert_allclose(bodies.read(0, unwatched).tracks.positions, upright(other))
+    (remark,) = remarks
+    assert remark.startswith("Body 1 is damaged and is left out: ")
+    assert "line 5: 'x' is not a number" in remark
+    with pytest.raises(InvalidFileError, match="line 5: 'x' is not a number"):
+        open_ntu_skeleton(write(text.replace("278.3", "x")))
 
 
 def test_kinect_csv_with_blank_lines_and_without_times(write):
