@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Flags
+from ..arrays import Array, Flags
 from ..motion import Motion, WorldPoses
 from ..motion.humanoid import HUMAN_LEG_LENGTH_M, HumanoidMap, leg_length
 from ..motion_fitting import FittedMotion, Goal
@@ -13,14 +13,13 @@ from ..motion_fitting.goals import (
     BonePoint,
     FollowPosition,
     FollowRotation,
-    StayInPlace,
     hinge_axis,
     hinge_limit,
 )
 from .body_supports import SUPPORTS, SupportJoints, find_supports
 from .plant_settings import PlantSettings
 from .sole import load_shares, measure_standing_heights, smoothed_paths
-from .support import Support, resting_steps
+from .support import IN_CONTACT, Support, held_steps, resting_steps
 
 SHOULDER_RAD, ELBOW_RAD = np.radians(4.0), np.radians(2.0)
 """Radians by which a shoulder and an elbow may turn. `make sensitivity` varies them. Chosen by
@@ -53,7 +52,7 @@ class LimbContact(Support):
 
 
 def find_limb_contacts(
-    motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, supports: Flags
+    motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, supports: Array | Flags
 ) -> list[LimbContact]:
     """Return how hands, knees and hips bear on the floor, of those that do at all.
 
@@ -67,13 +66,14 @@ def find_limb_contacts(
     poses : WorldPoses
         Of the motion.
     humanoid : HumanoidMap
-    supports : bool, shape (n_frames, 5)
-        When each of `SUPPORTS` is in contact.
+    supports : shape (n_frames, 5)
+        Probabilities that each of `SUPPORTS` is in contact, or whether it is.
     """
     size = leg_length(motion.skeleton, humanoid) / HUMAN_LEG_LENGTH_M
     found = []
     for limb in find_supports(motion.skeleton, humanoid):
-        contact = supports[:, SUPPORTS.index(limb.name)]
+        probability = supports[:, SUPPORTS.index(limb.name)]
+        contact, held = probability > IN_CONTACT, held_steps(probability)
         if not contact.any():
             continue
         positions = np.stack([point.position(poses) for point in limb.points], axis=1)
@@ -83,10 +83,10 @@ def find_limb_contacts(
         heights, speeds = smoothed_paths(positions, motion.frame_rate)
         load = load_shares(heights - level, speeds, size)
         height = np.sum(load * (positions[..., 2] - level), axis=1)
-        steps = resting_steps(height, contact, size)
+        steps = resting_steps(height, contact, held, size)
         if not limb.chain:
             steps[:, 2] = 0.0
-        found.append(LimbContact(size, contact, limb.points, load, steps, limb))
+        found.append(LimbContact(size, contact, limb.points, load, held, steps, limb))
     return found
 
 
@@ -117,7 +117,7 @@ def limb_goals(
     goals: list[Goal] = []
     for contact in contacts:
         speed = creep * contact.size / settings.hold
-        goals.append(StayInPlace(contact.points, contact.step_load, contact.steps, speed))
+        goals.append(contact.stay_in_place(fitted.poses, speed))
         if contact.limb.is_arm:
             goals += _arm_goals(fitted, contact)
     return goals
