@@ -30,7 +30,7 @@ Planter = Callable[[Motion, Flags], Motion]
 JITTER_M, JITTER_S = 0.01, 0.1
 """Meters of slow jitter of the root, and seconds over which it changes."""
 EDGE_S = 0.067
-"""Seconds around a beginning or end of a contact in which a jolt counts: two frames at 30 Hz."""
+"""Seconds around the ends of a contact in which a jolt counts: two frames at 30 Hz."""
 COLUMNS = (
     "slide, cm/s", "certain slide, cm/s", "worst certain drift, mm", "jolt at edges, m/s2",
     "worst jolt", "knee, times given", "95 %", "worst",
