@@ -22,7 +22,6 @@ from ..signals import two_state_probabilities
 from .legs import LegJoints
 from .pelvis import pelvis_points
 from .standing_feet import MIN_CONTACT_S, rests_on_hips, without_short_contacts
-from .support import IN_CONTACT
 
 LIMBS = ("leftHand", "rightHand", "leftKnee", "rightKnee")
 SUPPORTS = (*LIMBS, "hips")
@@ -143,21 +142,12 @@ def _ground(motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, size: floa
 
 
 def detect_supports(motion: Motion, humanoid: HumanoidMap, legs: Sequence[LegJoints]) -> Flags:
-    """Return when each of `SUPPORTS` bears on the floor, shape (n_frames, 5)."""
-    return bearing_probabilities(motion, humanoid, legs) > IN_CONTACT
-
-
-def bearing_probabilities(
-    motion: Motion, humanoid: HumanoidMap, legs: Sequence[LegJoints]
-) -> Array:
-    """Return the probability that each of `SUPPORTS` bears weight, shape (n_frames, 5).
+    """Return when each of `SUPPORTS` bears on the floor, shape (n_frames, 5).
 
     Hands and knees of a body that sits or lies touch the floor, but bear little of its weight
     and may move, as its feet.
     """
-    probability = support_probabilities(motion, humanoid)
+    contacts = support_probabilities(motion, humanoid) > 0.5
     sits = rests_on_hips(motion, humanoid, legs, MIN_SEAT_HEIGHT)
-    probability[sits, : len(LIMBS)] = 0.0
-    bears = probability > IN_CONTACT
-    kept = without_short_contacts(bears, MIN_CONTACT_S * motion.frame_rate)
-    return np.where(bears & ~kept, 0.0, probability)
+    contacts[:, : len(LIMBS)] &= ~sits[:, None]
+    return without_short_contacts(contacts, MIN_CONTACT_S * motion.frame_rate)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Flags
+from ..arrays import Flags
 from ..motion import Motion, WorldPoses
 from ..motion.humanoid import HUMAN_LEG_LENGTH_M, HumanoidMap, leg_length
 from ..motion_fitting import FittedMotion, Goal
@@ -19,7 +19,7 @@ from ..motion_fitting.goals import (
 from .body_supports import SUPPORTS, SupportJoints, find_supports
 from .plant_settings import PlantSettings
 from .sole import load_shares, measure_standing_heights, smoothed_paths
-from .support import IN_CONTACT, Support, held_steps, resting_steps
+from .support import Support, held_steps, resting_steps
 
 SHOULDER_RAD, ELBOW_RAD = np.radians(4.0), np.radians(2.0)
 """Radians by which a shoulder and an elbow may turn. `make sensitivity` varies them. Chosen by
@@ -52,7 +52,7 @@ class LimbContact(Support):
 
 
 def find_limb_contacts(
-    motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, supports: Array | Flags
+    motion: Motion, poses: WorldPoses, humanoid: HumanoidMap, supports: Flags
 ) -> list[LimbContact]:
     """Return how hands, knees and hips bear on the floor, of those that do at all.
 
@@ -66,14 +66,13 @@ def find_limb_contacts(
     poses : WorldPoses
         Of the motion.
     humanoid : HumanoidMap
-    supports : shape (n_frames, 5)
-        Probabilities that each of `SUPPORTS` is in contact, or whether it is.
+    supports : bool, shape (n_frames, 5)
+        When each of `SUPPORTS` is in contact.
     """
     size = leg_length(motion.skeleton, humanoid) / HUMAN_LEG_LENGTH_M
     found = []
     for limb in find_supports(motion.skeleton, humanoid):
-        probability = supports[:, SUPPORTS.index(limb.name)]
-        contact, held = probability > IN_CONTACT, held_steps(probability)
+        contact = supports[:, SUPPORTS.index(limb.name)]
         if not contact.any():
             continue
         positions = np.stack([point.position(poses) for point in limb.points], axis=1)
@@ -83,6 +82,7 @@ def find_limb_contacts(
         heights, speeds = smoothed_paths(positions, motion.frame_rate)
         load = load_shares(heights - level, speeds, size)
         height = np.sum(load * (positions[..., 2] - level), axis=1)
+        held = held_steps(contact)
         steps = resting_steps(height, contact, held, size)
         if not limb.chain:
             steps[:, 2] = 0.0

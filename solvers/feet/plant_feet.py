@@ -20,7 +20,7 @@ from ..motion.skeletons import (
 from ..motion_fitting import fit_in_windows
 from ..progress import Progress, Remark, collect_remarks, unwatched, within
 from ..signals import find_runs
-from .body_supports import SUPPORTS, bearing_probabilities
+from .body_supports import SUPPORTS, detect_supports
 from .legs import LegJoints, find_legs
 from .limb_goals import find_limb_contacts
 from .plant_in_window import plant_in_window
@@ -160,6 +160,9 @@ def _find_contacts(
 ) -> Array:
     """Return probabilities of contact of all parts, (n_frames, 7), detected where not given.
 
+    Hands and knees are in contact or not: the doubts of their model, which is learned from made
+    takes, let those of jittering bodies slide at 3.5 cm/s.
+
     Hips are held only where contacts are given, such as those that an animator keyed: hips of
     real actors who lie shift by some centimeters, and to hold all that is detected moves clean
     takes by 1.8 cm (docs/benchmarks/contacts.md). They must be free to move, as nothing else
@@ -173,7 +176,7 @@ def _find_contacts(
     if not settings.hands_and_knees:
         probability[:, N_FEET:] = 0.0
     elif is_missing[:, N_FEET:hips].any():
-        found = bearing_probabilities(motion, humanoid_map, legs)[:, : hips - N_FEET]
+        found = detect_supports(motion, humanoid_map, legs)[:, : hips - N_FEET]
         probability[:, N_FEET:hips] += is_missing[:, N_FEET:hips] * found
     probability[:, hips] *= settings.move_root
     return probability
@@ -208,7 +211,7 @@ def _plant_segment(
         progress(1.0, "No foot is in contact")
         return _planted(motion, contacts, settings)
     poses = forward_kinematics(motion)
-    limbs = find_limb_contacts(motion, poses, humanoid_map, probability[:, N_FEET:])
+    limbs = find_limb_contacts(motion, poses, humanoid_map, contacts[:, N_FEET:])
     knees = {each.limb.chain[1] for each in limbs if each.limb.is_leg}
     feet = [
         find_foot_contact(motion, poses, leg, probability[:, SIDES.index(leg.side)])
