@@ -14,11 +14,12 @@ from ..signals import find_runs
 MIN_LIFT_M = 0.01
 """Meters, for a leg of 0.9 m: a planted sole this far above its contact height may rise. Chosen
 by hand; `make sensitivity` varies it."""
-IN_CONTACT, CERTAIN = 0.5, 0.9
-"""Probabilities of contact above which a part is held at all, and completely. The first by
-definition of contact. The second chosen by hand on development takes: 0.7 doubles how much
-feet jerk where a contact begins or ends, 1 lets them drift by 9 mm in place of 0.9 between;
-`make sensitivity` varies it."""
+IN_CONTACT = 0.5
+"""Probability of contact above which a part is in contact. By definition."""
+CERTAIN = 0.9
+"""Probability of contact from which a part is held completely. Chosen by hand on development
+takes: 0.7 doubles how much feet jerk where a contact begins or ends, 1 lets them drift by 9 mm
+in place of 0.9 between. `test_foot_does_not_jerk_where_it_lands_and_lifts` fails without it."""
 
 
 @dataclass(frozen=True, eq=False)
