@@ -45,7 +45,7 @@ class Planted:
     supports : bool, shape (n_frames, 5), or None
         When each of `SUPPORTS` is in contact; None where only feet are planted.
     slide_before, slide_after : float, meters
-        Distance that soles, hands, knees and hips cover over the floor while in contact.
+        Distance that soles, hands, knees and hips cover over the floor where they are held.
     remarks : tuple of str
         What went wrong, such as feet that no leg can keep where they are.
     """
@@ -229,7 +229,9 @@ def _plant_segment(
 
     result = fit_in_windows(motion, plant_window, progress)
     before_and_after = poses, forward_kinematics(result)
-    slides = [sum(each.slide(one) for each in (*feet, *limbs)) for one in before_and_after]
+    slides = [
+        sum(each.slide(one, poses) for each in (*feet, *limbs)) for one in before_and_after
+    ]
     return _planted(result, contacts, settings, slides)
 
 

@@ -57,12 +57,13 @@ class Support:
             steps=self.steps[start : stop - 1],
         )
 
-    def slide(self, poses: WorldPoses) -> float:
+    def slide(self, poses: WorldPoses, recorded: WorldPoses) -> float:
         """Return the distance in meters that the loaded point covers where it is held.
 
-        A step counts as far as it is held.
+        What it is to move, as far as it is not held, does not count.
         """
-        return float(np.linalg.norm(self._moved(poses)[:, :2], axis=1) @ self.held)
+        slid = self._moved(poses) - self._wanted(recorded)
+        return float(np.linalg.norm(slid[self.held > 0.0, :2], axis=1).sum())
 
     def stay_in_place(self, poses: WorldPoses, tolerance: float) -> StayInPlace:
         """Return the goal that the loaded point moves only as far as it is not held.
@@ -73,8 +74,11 @@ class Support:
             As recorded.
         tolerance : float, meters per second
         """
-        wanted = (1.0 - self.held)[:, None] * self._moved(poses)
+        wanted = self._wanted(poses)
         return StayInPlace(self.points, self.step_load, self.steps, tolerance, wanted)
+
+    def _wanted(self, recorded: WorldPoses) -> Array:
+        return np.asarray((1.0 - self.held)[:, None] * self._moved(recorded))
 
     def _moved(self, poses: WorldPoses) -> Array:
         """Return the displacement of the loaded point in each step, (n_frames - 1, 3)."""
