@@ -13,7 +13,6 @@ from ..motion_fitting.goals import (
     FollowRotation,
     FollowSource,
     StayAtHeight,
-    StayInPlace,
     StayStill,
     flexion_in_reserve,
     knee_limit,
@@ -74,7 +73,7 @@ def planting_goals(
         goal
         for contact, weights in zip(contacts, ankle_weights, strict=True)
         for goal in (
-            *_contact_goals(contact, settings),
+            *_contact_goals(contact, poses, settings),
             *_source_goals(fitted, poses, contact, settings, weights),
         )
     ]
@@ -82,10 +81,12 @@ def planting_goals(
     return [*goals, _smoothness(fitted, contacts, limbs, settings)]
 
 
-def _contact_goals(contact: FootContact, settings: PlantSettings) -> list[Goal]:
+def _contact_goals(
+    contact: FootContact, poses: WorldPoses, settings: PlantSettings
+) -> list[Goal]:
     """Return what the loaded sole has to meet."""
     creep = CREEP_M * contact.size / settings.hold
-    goals: list[Goal] = [StayInPlace(contact.points, contact.step_load, contact.steps, creep)]
+    goals: list[Goal] = [contact.stay_in_place(poses, creep)]
     if settings.floor and contact.on_floor.any():
         goals.append(
             StayAtHeight(

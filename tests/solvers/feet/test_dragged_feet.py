@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers.feet import plant_feet
-from solvers.feet.dragged_feet import find_dragged_feet
+from solvers.feet.dragged_feet import drag_probabilities
 from solvers.feet.legs import find_legs
 from solvers.motion import Motion, detect_contacts, forward_kinematics
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
@@ -17,7 +17,8 @@ SPOILED = [name for name in INPUTS if name != "as they are"]
 
 
 def dragged(motion: Motion) -> np.ndarray:
-    return find_dragged_feet(motion, find_legs(motion.skeleton), detect_contacts(motion))
+    legs = find_legs(motion.skeleton)
+    return drag_probabilities(motion, legs, detect_contacts(motion)) > 0.5
 
 
 def ankle_paths(motion: Motion) -> np.ndarray:
@@ -79,4 +80,4 @@ def test_dragged_foot_is_held_if_its_contact_is_keyed():
 def test_one_leg_alone_drags_nothing():
     legs = find_legs(SHUFFLE.motion.skeleton)[:1]
 
-    assert not find_dragged_feet(SHUFFLE.motion, legs, detect_contacts(SHUFFLE.motion)).any()
+    assert not drag_probabilities(SHUFFLE.motion, legs, detect_contacts(SHUFFLE.motion)).any()
