@@ -17,6 +17,7 @@ from ...solvers.json_text import parse_json
 from ...solvers.motion.skeletons import MAX_FRAME_RATE_HZ
 from ...solvers.recordings import SCENE_SUFFIXES, refuse_stand_ins, suffix_by_content
 from .fbx_curves import loses_curves
+from .fbx_sizes import refuse_inflated_fbx
 from .gltf_sizes import refuse_inflated
 from .gltf_skins import (
     GLB_JSON,
@@ -103,6 +104,7 @@ def _reason_of(error: RuntimeError) -> str:
 
 def _open_fbx(path: str) -> None:
     """Import FBX; by the older importer, which is slower, where the other one loses keys."""
+    refuse_inflated_fbx(path)
     importer = bpy.ops.wm.fbx_import
     if loses_curves(path):
         addon_utils.enable("io_scene_fbx")

@@ -1,7 +1,9 @@
 """Files of strangers wait for no pipe, ask no server and fill no memory, on the way in."""
 
 import os
+import struct
 import threading
+import zlib
 from pathlib import Path
 
 import pytest
@@ -191,3 +193,50 @@ def test_odd_numbers_of_a_gltf_file_are_left_to_the_importer(load):
     }
 
     load("mocap_assist.blender.gltf_sizes").refuse_inflated("take.glb", content, 0)
+
+
+def fbx(nodes, version):
+    """Return a binary FBX file of nodes: name, arrays of zeros by their count, and children."""
+    header = struct.Struct("<QQQB" if version >= 7500 else "<IIIB")
+
+    def write(nodes, offset):
+        content = b""
+        for name, counts, children in nodes:
+            packed = zlib.compress(b"")
+            arrays = b"".join(
+                b"S\x01\0\0\0xd" + struct.pack("<III", count, 1, len(packed)) + packed
+                for count in counts
+            )
+            start = offset + len(content) + header.size + len(name)
+            below = write(children, start + len(arrays)) if children else b""
+            end = start + len(arrays) + len(below)
+            fields = header.pack(end, 2 * len(counts), len(arrays), len(name))
+            content += fields + name + arrays + below
+        return content + bytes(header.size)
+
+    head = b"Kaydara FBX Binary  \0\x1a\0" + struct.pack("<I", version)
+    return head + write(nodes, len(head)) + bytes(99)
+
+
+@pytest.mark.parametrize("version", [7400, 7700])
+@pytest.mark.parametrize("n_curves", [3, 4])
+def test_packed_arrays_of_fbx_are_bounded(load, tmp_path, version, n_curves):
+    curves = [(b"AnimationCurve", [4 * 10**7], [(b"Key", [], [])])] * n_curves
+    nodes = [(b"Header", [1], []), (b"Objects", [], curves), (b"Takes", [], [])]
+    path = tmp_path / "take.fbx"
+    path.write_bytes(fbx(nodes, version))
+    refuse = load("mocap_assist.blender.fbx_sizes").refuse_inflated_fbx
+
+    if n_curves == 3:
+        refuse(str(path))
+        return
+    with pytest.raises(load("solvers.errors").InvalidFileError, match=r"states 1\.28 GB of"):
+        refuse(str(path))
+
+
+def test_a_real_fbx_is_measured(load, recordings):
+    content = (recordings / "corpus/fbx/mixamo_web/Idle.fbx").read_bytes()
+
+    total = load("mocap_assist.blender.fbx_sizes")._unfolded_bytes(content)
+
+    assert len(content) / 4 < total < 8 * len(content)
