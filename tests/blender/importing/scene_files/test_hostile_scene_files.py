@@ -240,3 +240,21 @@ def test_a_real_fbx_is_measured(load, recordings):
     total = load("mocap_assist.blender.fbx_sizes")._unfolded_bytes(content)
 
     assert len(content) / 4 < total < 8 * len(content)
+
+
+def test_a_crash_of_an_importer_names_the_file(load, tmp_path, monkeypatch):
+    scenes = load("mocap_assist.importing.solve_scenes")
+    died = load("mocap_assist.jobs.job").ProcessDied
+    paths = [tmp_path / name for name in ("good.fbx", "bad.dae", "fine.fbx")]
+
+    def read_blends(blender, names, **_):
+        if str(paths[1]) in names:
+            raise died("signal SIGSEGV", "Collada import")
+        return list(names)
+
+    monkeypatch.setattr(scenes, "read_blends", read_blends)
+
+    first, error, last = scenes.read_scenes(paths, None)
+
+    assert [first, last] == [str(paths[0]), str(paths[2])]
+    assert str(error).startswith(f"Reading {paths[1]} crashed Blender: signal SIGSEGV. Export")
