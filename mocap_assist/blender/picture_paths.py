@@ -58,5 +58,7 @@ def _changed(path: str, content: bytes) -> bytes:
         text = content.decode("utf-16", "replace")
         content = re.sub(r"\A<\?xml.*?\?>", "", text, flags=re.DOTALL).encode()
     if b"<!DOCTYPE" in content:
-        raise InvalidFileError(f"{path} has a document type, which no Collada file needs.")
+        raise InvalidFileError(
+            f"{path} has a document type, which no Collada file needs. Export it as FBX or GLB."
+        )
     return IMAGES.sub(lambda images: SOURCE.sub(rb"\1none.png\2", images[0]), content)
