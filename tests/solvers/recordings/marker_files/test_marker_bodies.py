@@ -106,7 +106,7 @@ def test_size_of_markers_that_is_no_person_s_is_a_question(scale, size):
 @pytest.mark.parametrize(("shift", "asks"), [(-1.0, True), (0.0, False), (0.9, False)])
 def test_most_markers_below_the_floor_are_a_question(shift, asks):
     """Markers of objects, a few below the floor and actors on a platform are none."""
-    points = WALK + (0.0, 0.0, shift)
+    points = WALK + np.array([0.0, 0.0, shift])
     markers = Tracks((*MARKERS, "plate"), np.pad(points, ((0, 0), (0, 1), (0, 0))), 100.0)
     markers.positions[:, -1, 2] = -0.4
 
