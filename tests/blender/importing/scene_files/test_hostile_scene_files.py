@@ -14,7 +14,7 @@ NAMED = "pipe123.png"  # of the same length, for binary files
 
 @pytest.fixture
 def pipe(tmp_path):
-    """A pipe, and a list that is not empty once someone opened it; who opens it gets nothing."""
+    """A pipe, and a list that is not empty once someone opened it, who gets nothing."""
     os.mkfifo(tmp_path / NAMED)
     ended, opened = threading.Event(), []
 
