@@ -46,7 +46,7 @@ RATE_TOLERANCE = 0.01
 """Relative deviation of a measured rate from a common one that is only rounding of key times.
 It guards 23.976 and 24 Hz, 1e-3 apart, which are one."""
 MAX_JSON_BYTES = 1 << 28
-USD_OPTIONS = {
+USD_OPTIONS: dict[str, Any] = {
     "import_cameras": False, "import_materials": False,
     "import_textures_mode": "IMPORT_NONE",
 }  # fmt: skip
@@ -125,7 +125,7 @@ def _damaged_file_error(path: str) -> InvalidFileError:
 def _open_usd(path: str, meshes: bool) -> None:
     """Import USD; its times are frames, at a rate that the importer ignores."""
     refuse_other_sources(path)
-    _run(path, bpy.ops.wm.usd_import, **USD_OPTIONS, import_meshes=meshes)
+    _run(path, bpy.ops.wm.usd_import, path, **USD_OPTIONS, import_meshes=meshes)
     if 0.0 < (rate := read_stage(path).frame_rate) < MAX_FRAME_RATE_HZ:
         render = bpy.context.scene.render
         render.fps = max(1, round(rate))
