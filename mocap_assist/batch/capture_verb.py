@@ -19,7 +19,7 @@ from ...solvers.settings import Settings
 from ..importing.button_settings import ImportChoices
 from ..importing.depth_folders import depth_recordings_in, is_take
 from ..importing.importing import import_files
-from ..scene.scene_objects import choose
+from ..scene.scene_objects import select_only
 from ..track.tracking import (
     TrackBundle,
     WatchChoices,
@@ -100,7 +100,7 @@ def _import_and_track(
 ) -> str:
     """Import the recordings of one take and track it; the new armature becomes active."""
     previews = [_imported(path, arguments, screen) for path in cameras]
-    choose(bpy.context, previews, previews[0])
+    select_only(bpy.context, previews, previews[0])
     scene, preview = bpy.context.scene, previews[0]
     result = solve_in_subprocess(
         read_tracking(scene, preview, settings), arguments, screen.progress

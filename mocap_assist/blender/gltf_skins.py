@@ -23,6 +23,9 @@ joints. It guards against rounding of scales that exporters bake."""
 MAX_DEPTH = 200
 """Nodes above one another, as in VRM animations. It guards against circles and against chains
 without end, whose time grows with the cube of their length."""
+MAX_NAME_BYTES = 63
+"""Bytes of a name in Blender, by definition. The importer fails where a letter of several bytes
+is cut."""
 NO_PICTURE = (
     "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAC"
     "hwGA60e6kgAAAABJRU5ErkJggg=="
@@ -40,6 +43,23 @@ def without_picture_files(content: Mapping[str, Any]) -> dict[str, Any]:
         return dict(content)
     kept = [{**image, "uri": NO_PICTURE} if "uri" in image else image for image in images]
     return {**content, "images": kept}
+
+
+def with_short_names(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the JSON of a glTF file without names that Blender would cut within a letter."""
+    nodes = list_of(content.get("nodes"))
+    names = [dict_of(node).get("name") for node in nodes]
+    if all(not isinstance(name, str) or name == _short(name) for name in names):
+        return dict(content)
+    shortened = [
+        {**node, "name": _short(name)} if isinstance(name, str) else node
+        for node, name in zip(nodes, names, strict=True)
+    ]
+    return {**content, "nodes": shortened}
+
+
+def _short(name: str) -> str:
+    return name.encode("utf-8", "replace")[:MAX_NAME_BYTES].decode("utf-8", "ignore")
 
 
 def find_joint_trees(content: Mapping[str, Any]) -> list[list[int]]:

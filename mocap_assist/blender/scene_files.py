@@ -17,16 +17,21 @@ from ...solvers.json_text import parse_json
 from ...solvers.motion.skeletons import MAX_FRAME_RATE_HZ
 from ...solvers.recordings import SCENE_SUFFIXES, refuse_stand_ins, suffix_by_content
 from .fbx_curves import loses_curves
+from .fbx_sizes import refuse_inflated_fbx
+from .gltf_sizes import refuse_inflated
 from .gltf_skins import (
     GLB_JSON,
     GLB_MAGIC,
     dict_of,
     find_joint_trees,
     list_of,
+    with_short_names,
     without_picture_files,
     write_with_skins,
 )
+from .picture_paths import without_pictures
 from .stated_conventions import read_stage
+from .usd_layers import refuse_other_sources
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
 """Rates of captured and of animated takes, hertz, by definition of film, video and capture
@@ -41,10 +46,11 @@ RATE_TOLERANCE = 0.01
 """Relative deviation of a measured rate from a common one that is only rounding of key times.
 It guards 23.976 and 24 Hz, 1e-3 apart, which are one."""
 MAX_JSON_BYTES = 1 << 28
-USD_OPTIONS = {
+USD_OPTIONS: dict[str, Any] = {
     "import_cameras": False, "import_materials": False,
     "import_textures_mode": "IMPORT_NONE",
 }  # fmt: skip
+TRACEBACK = "Traceback (most recent call last)"
 DAMAGED_FBX = ("Failed to load", "Empty file", "Truncated file")
 """Reasons that Blender's importer of FBX gives for files that were cut off."""
 
@@ -74,25 +80,38 @@ def open_scene_file(path: str, *, meshes: bool = False) -> None:
     return _open_gltf(path)
 
 
-def _run(path: str, operator: Any, **options: Any) -> None:
+def _run(path: str, operator: Any, opened: str = "", **options: Any) -> None:
+    """Import a file, or a copy of it under another path."""
     try:
-        operator(filepath=path, **options)
+        operator(filepath=opened or path, **options)
     except RuntimeError as error:
-        lines = str(error).strip().removeprefix("Error:").strip().splitlines()
-        reason = lines[0].rstrip(".") if lines else "no reason is given"
         raise InvalidFileError(
-            f"{path} cannot be read: {reason}. Save it again where it was made."
+            f"{path} cannot be read: {_reason_of(error)}. Save it again where it was made."
         ) from None
+
+
+def _reason_of(error: RuntimeError) -> str:
+    """Return the reason that an importer gives, in one line; of a traceback, its last word."""
+    lines = str(error).strip().removeprefix("Error:").strip().splitlines() or [""]
+    if TRACEBACK in lines[0]:
+        kinds = [
+            line for line in lines if re.match(r"[A-Za-z_][\w.]*(Error|Exception)\b", line)
+        ]
+        kind = kinds[-1].partition(":")[0] if kinds else "an error"
+        return f"Blender's importer failed with {kind.rpartition('.')[2].lstrip('_')}"
+    return lines[0].rstrip(".") or "no reason is given"
 
 
 def _open_fbx(path: str) -> None:
     """Import FBX; by the older importer, which is slower, where the other one loses keys."""
+    refuse_inflated_fbx(path)
     importer = bpy.ops.wm.fbx_import
     if loses_curves(path):
         addon_utils.enable("io_scene_fbx")
         importer = bpy.ops.import_scene.fbx
     try:
-        _run(path, importer)
+        with without_pictures(path) as opened:
+            _run(path, importer, opened)
     except InvalidFileError as error:
         if any(reason in str(error) for reason in DAMAGED_FBX):
             raise _damaged_file_error(path) from None
@@ -105,7 +124,8 @@ def _damaged_file_error(path: str) -> InvalidFileError:
 
 def _open_usd(path: str, meshes: bool) -> None:
     """Import USD; its times are frames, at a rate that the importer ignores."""
-    _run(path, bpy.ops.wm.usd_import, **USD_OPTIONS, import_meshes=meshes)
+    refuse_other_sources(path)
+    _run(path, bpy.ops.wm.usd_import, path, **USD_OPTIONS, import_meshes=meshes)
     if 0.0 < (rate := read_stage(path).frame_rate) < MAX_FRAME_RATE_HZ:
         render = bpy.context.scene.render
         render.fps = max(1, round(rate))
@@ -118,15 +138,16 @@ def _open_collada(path: str) -> None:
             f"{path} is a Collada file, which Blender {bpy.app.version_string} no longer reads."
             " Convert it to FBX or glTF, or import it in Blender 4.5."
         )
-    _run(path, bpy.ops.wm.collada_import)
+    with without_pictures(path) as opened:
+        _run(path, bpy.ops.wm.collada_import, opened)
 
 
 def _open_gltf(path: str) -> None:
     """Import glTF, GLB, VRM or VRMA; times become frames at the rate of the file's keys."""
     addon_utils.enable("io_scene_gltf2")
     stored = _gltf_content(path)
-    _refuse_other_files(path, stored)
-    content = without_picture_files(stored)
+    refuse_inflated(path, stored, Path(path).stat().st_size + _refuse_other_files(path, stored))
+    content = with_short_names(without_picture_files(stored))
     render = bpy.context.scene.render
     rate = _gltf_rate(content)
     render.fps = max(1, round(rate))
@@ -137,13 +158,13 @@ def _open_gltf(path: str) -> None:
         copy = Path(folder) / Path(path).name
         if is_changed:
             write_with_skins(path, content, trees, copy)
-        _run(path, _import_gltf, opened=str(copy) if is_changed else path)
+        _run(path, _import_gltf, str(copy) if is_changed else path)
     render.fps_base = render.fps / rate
 
 
-def _import_gltf(*, filepath: str, opened: str) -> None:
+def _import_gltf(*, filepath: str) -> None:
     bpy.ops.import_scene.gltf(
-        filepath=opened, disable_bone_shape=True, import_shading="NORMALS"
+        filepath=filepath, disable_bone_shape=True, import_shading="NORMALS"
     )
 
 
@@ -171,12 +192,14 @@ def _gltf_content(path: str) -> dict[str, Any]:
     return content
 
 
-def _refuse_other_files(path: str, content: dict[str, Any]) -> None:
-    """Raise InvalidFileError if the numbers of a file are in another one outside its folder.
+def _refuse_other_files(path: str, content: dict[str, Any]) -> int:
+    """Return how many bytes are in other files of the folder.
+
+    Raise InvalidFileError if the numbers of a file are in another one outside its folder.
 
     It is a stranger's: it may name devices, pipes, private files or those of a server.
     """
-    folder = Path(path).resolve().parent
+    folder, n_bytes = Path(path).resolve().parent, 0
     for buffer in list_of(content.get("buffers")):
         uri = dict_of(buffer).get("uri")
         if uri is None or (isinstance(uri, str) and uri.startswith("data:")):
@@ -187,6 +210,8 @@ def _refuse_other_files(path: str, content: dict[str, Any]) -> None:
                 f"{path} needs {str(uri)[:80]}, which is not a file in its folder. Export it as"
                 " one .glb file."
             )
+        n_bytes += named.stat().st_size
+    return n_bytes
 
 
 def _unquote_uri(uri: str) -> str:

@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from ...solvers.errors import MocapAssistError
+from ...solvers.errors import InvalidFileError, MocapAssistError
 from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched
 from ..jobs.in_blender import BackgroundBlender, BlendRead, read_blends
+from ..jobs.job import ProcessDied
 
 
 def read_scenes(
@@ -24,7 +25,7 @@ def read_scenes(
     if not paths:
         return []
     names = [str(path) for path in paths]
-    found = attempt(paths[0], read_blends, blender, names, meshes=meshes, progress=progress)
+    found = attempt(paths[0], _read, names, blender, meshes, progress)
     if not isinstance(found, Failure):
         return list(found)
     if len(paths) == 1:
@@ -35,3 +36,15 @@ def read_scenes(
         for half in (paths[:middle], paths[middle:])
         for each in read_scenes(half, blender, meshes=meshes, progress=progress)
     ]
+
+
+def _read(
+    names: Sequence[str], blender: BackgroundBlender, meshes: bool, progress: Progress
+) -> list[BlendRead]:
+    try:
+        return read_blends(blender, names, meshes=meshes, progress=progress)
+    except ProcessDied as error:
+        raise InvalidFileError(
+            f"Reading {names[0]} crashed Blender: {error.cause}. Export it again where it was"
+            " made, or in another format."
+        ) from None

@@ -91,12 +91,21 @@ class Placement:
 
 
 def read_rig(armature: bpy.types.Object) -> Rig:
-    """Read the rest pose. Raises InvalidMotionError for an armature without bones."""
+    """Read the rest pose.
+
+    Raises InvalidMotionError for an armature without bones, or with some that are too long.
+    """
     bones = list(armature.data.bones)  # Blender lists parents before their children
     if not bones:
         raise InvalidMotionError(f"The armature {armature.name} has no bones.")
     order = {bone.name: index for index, bone in enumerate(bones)}
     rest = np.array([bone.matrix_local for bone in bones], dtype=np.float64)
+    odd = ~(np.abs(rest) <= MAX_COORDINATE).all(axis=(1, 2))
+    if odd.any():
+        raise InvalidMotionError(
+            f"The rest position of {bones[odd.argmax()].name} in {armature.name} is not a"
+            " number or far too large. Move the bone in Edit Mode."
+        )
     return Rig(
         bones=tuple(order),
         parents=tuple(order[bone.parent.name] if bone.parent else -1 for bone in bones),

@@ -19,6 +19,9 @@ THREE_TRACK = re.compile(
     rb"\"(?:times|values|type)\"\s*:"
 )
 """The first track of an AnimationClip, whose name is that of a bone and its property."""
+SOURCE_ENGINE = re.compile(rb"(?:\s*//[^\n]*\n)*\s*version\s+1\s+nodes\s+\d+\s+\"")
+LIVE_2D = re.compile(rb"\"Target\"\s*:\s*\"(Model|Parameter|PartOpacity)\"\s*,\s*\"Id\"")
+SIMULATED = re.compile(rb"\s*\{\s*\"Loop\"\s*:\s*\"?\w+\"?\s*,[^\[{]*\"Frames\"\s*:\s*\[\s*\[")
 
 Detector = Callable[[bytes], bool]
 
@@ -43,6 +46,46 @@ PROGRAMS: tuple[tuple[str, Detector, str], ...] = (
         _starts(b"Vocaloid Motion Data"),
         "{path} is a motion of MikuMikuDance. Import it with MMD Tools, select its armature,"
         " and use Clean there.",
+    ),
+    (
+        "SMD",
+        lambda head: SOURCE_ENGINE.match(head) is not None,
+        "{path} is a model or motion of the Source engine. Import it with Blender Source Tools,"
+        " select its armature, and use Clean there.",
+    ),
+    (
+        "MD5",
+        _starts(b"MD5Version"),
+        "{path} is a model or motion of Doom 3. Import it with an add-on for MD5, select its"
+        " armature, and use Clean there.",
+    ),
+    (
+        "model of a game engine",
+        _starts(b"xof 03", b"INTERQUAKEMODEL\0", b"3DMO"),
+        "{path} is a model for games. Convert it to FBX or GLB, with its animation.",
+    ),
+    (
+        "motion of Live2D",
+        lambda head: LIVE_2D.search(head) is not None,
+        "{path} is a motion of Live2D, which moves a drawing and has no joints. Export the body"
+        " of the take as BVH, FBX or GLB where it was recorded.",
+    ),
+    (
+        "motion of DeepMimic",
+        lambda head: SIMULATED.match(head) is not None,
+        "{path} is a motion for simulations, without its skeleton. Import the recording that it"
+        " was made of.",
+    ),
+    (
+        "analog signals",
+        lambda head: re.match(rb"(?i)\s*File_Type:\s+Analog", head) is not None,
+        "{path} holds signals of force plates or muscles, and no markers. Import the TRC or C3D"
+        " of the take.",
+    ),
+    (
+        "TRB",
+        lambda head: head.startswith(b"\0" * 4 + b"\xff" * 4) and head[12:16] == b"\1\1\1\0",
+        "{path} is a TRB file of Cortex or EVaRT. Export TRC or C3D there.",
     ),
     (
         "Blender file",

@@ -29,6 +29,13 @@ ROTATION = re.compile(r"(?i)rot(?!o)|quat|euler|orient|angle|pitch|yaw|roll")
 FACE = re.compile(
     r"(?i)(eye|jaw|mouth|brow|cheek|nose)[_ ]?\w*(left|right|open|up|smile|blink)"
 )
+SENSOR = re.compile(
+    rb"(?i)(?<![a-z])(?:acc(?:el(?:eration|erometer)?)?|gyro?(?:scope)?|angular[ _]?velocity"
+    rb"|mag(?:net(?:ic(?:[ _]?field)?|ometer))?)[ _./]*[xyz]\b"
+)
+MIN_SENSOR = 3
+"""Number of titles of a sensor's readings, from which a table is one of them: those of one
+sensor. It decides what the sentence says only."""
 MIN_FACE = 4
 """Number of titles of a face, from which a table is one of a face. It decides what the sentence
 says only."""
@@ -47,6 +54,14 @@ def describe_unknown(path: Path | str) -> str | None:
         if head.startswith(ZIP_MEMBER):
             file.seek(max(0, file.seek(0, 2) - MAX_BYTES))
             return _describe_archive(path, head[:300] + file.read())
+    if (
+        len({title.lower() for title in SENSOR.findall(head)}) >= MIN_SENSOR
+        and b"\0" not in head
+    ):
+        return (
+            f"{path} holds readings of sensors, such as of acceleration, without positions."
+            " Export BVH, FBX, C3D or MVNX from the program that recorded them."
+        )
     lines = [line for line in head.splitlines() if line.strip()]
     if len(lines) < 2 or b"\0" in head or head.lstrip()[:1] in {b"{", b"[", b"<"}:
         return None

@@ -60,6 +60,16 @@ def test_armature_with_nan_location_is_refused(actor, refused, blank, button, va
     )
 
 
+def test_a_bone_far_away_is_refused(actor, refused, blank):
+    blank.ops.object.mode_set(mode="EDIT")
+    for bone in actor.data.edit_bones:
+        if not bone.children:
+            bone.head, bone.tail = (1e30, 0, 0), (1e30, 1, 0)
+    blank.ops.object.mode_set(mode="OBJECT")
+
+    assert "in Actor is not a number or far too large. Move the bone" in refused("denoise")
+
+
 @pytest.mark.parametrize("button", BUTTONS)
 def test_key_at_frame_nan_is_refused(actor, refused, button):
     curves(actor)[0].keyframe_points[-1].co.x = np.nan

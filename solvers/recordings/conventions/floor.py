@@ -173,10 +173,13 @@ def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
 def question_of_floor(recording: Motion | Tracks | JointRecording) -> str:
     """Return a question if an actor never comes near height 0; otherwise nothing.
 
-    Heights of a measured floor are kept, as of an actor on a platform.
+    Heights of a measured floor are kept, as of an actor on a platform. Markers lie on objects
+    too, also below the floor; only where most are below height 0, there is a question.
     """
     tall, lowest = stature(recording), _lowest(recording)
-    if tall is None or isinstance(recording, Tracks) or not len(lowest):
+    if tall is None or not len(lowest):
+        return ""
+    if isinstance(recording, Tracks) and np.nanmedian(recording.positions[..., 2]) >= 0.0:
         return ""
     nearest = float(np.percentile(np.abs(lowest), FLOOR_PERCENTILE))
     if nearest < MIN_OFF_FLOOR_FRACTION * tall:

@@ -70,6 +70,30 @@ def object_array() -> bytes:
         (pickle.dumps({"smpl_poses": 1}, protocol=0), PICKLE),
         (pickle.dumps({"smpl_poses": 1}, protocol=1), PICKLE),
         (b"Vocaloid Motion Data 0002" + bytes(60), "with MMD Tools"),
+        ('// made by hand\nversion 1\nnodes\n0 "root" -1\nend\n', "Blender Source Tools"),
+        ('MD5Version 10\ncommandline ""\n', "add-on for MD5"),
+        ("xof 0303txt 0032\n", "FBX or GLB, with its animation"),
+        (b"INTERQUAKEMODEL\0" + bytes(60), "FBX or GLB, with its animation"),
+        (
+            json.dumps({
+                "Version": 3,
+                "Curves": [{"Target": "Parameter", "Id": "ParamAngleX"}],
+            }),
+            "motion of Live2D",
+        ),
+        ('{\n"Loop": "wrap",\n"Frames":\n[\n[ 0.033, 0, 0.84, 0]]}', "without its skeleton"),
+        ("File_Type:\tAnalog R/C ASCII\tGeneration#:\t2\n", "force plates"),
+        (bytes(4) + b"\xff" * 4 + b"\0\0\x40\2\1\1\1\0" + bytes(60), "Export TRC or C3D there"),
+        (
+            "Test Name:,One,,\nSample Rate:,128,Hz,\nTime,Arm/Acceleration/X,"
+            "Arm/Acceleration/Y,Arm/Acceleration/Z\n0,1,2,3\n",
+            "readings of sensors",
+        ),
+        (
+            "// Update Rate: 100.0Hz\nPacketCounter\tAcc_X\tAcc_Y\tAcc_Z\n1\t2\t3\t4\n",
+            "readings of",
+        ),
+        ("t,acc_x,acc_x,acc_x,b,c,d\n1,2,3,4,5,6,7\n", "unknown format"),
         (b"BLENDER17-01v0500" + bytes(60), "append the action"),
         ('//Maya ASCII 2026 scene\nrequires maya "2026";\n', "as FBX"),
         ("%YAML 1.1\n%TAG !u! tag:unity3d.com,2011:\n", "FBX Exporter"),

@@ -124,6 +124,18 @@ def test_pictures_in_other_files_are_not_needed_for_a_motion(bring, write, pictu
     assert armature.animation_data.action.frame_range[1] == N_FRAMES
 
 
+def test_a_long_name_is_not_cut_within_a_letter(bring, write):
+    """Blender's importer failed at it; 63 bytes of a name are kept."""
+    path = write([*JOINTS])
+    content = json.loads(path.read_text())
+    content["nodes"][9]["name"] = "é" * 40
+    path.write_text(json.dumps(content))
+
+    (armature,), _ = bring(path)
+
+    assert "é" * 31 in armature.data.bones
+
+
 @pytest.mark.parametrize("end", [{}, {"children": [0]}], ids=["chain", "circle"])
 def test_chains_without_end_are_no_bodies(load, end):
     """A chain of 2,000 nodes took 13 s, one of 20,000 hours."""

@@ -97,6 +97,17 @@ def test_odd_samplers_do_not_stop_a_file(bring, tmp_path):
     assert "take.gltf" in message
 
 
+def test_a_failure_of_an_importer_is_one_line(bring, tmp_path):
+    nodes = [{"children": [1]}, {"children": [0]}]
+    content = {"asset": {"version": "2.0"}, "nodes": nodes, "scenes": [{"nodes": [0]}]}
+    (tmp_path / "take.gltf").write_text(json.dumps(content))
+
+    armatures, message = bring(tmp_path / "take.gltf")
+
+    assert not armatures
+    assert "take.gltf cannot be read: Blender's importer failed with RecursionError." in message
+
+
 @pytest.mark.parametrize(
     "uri", ["../secret.bin", "/dev/zero", "..%2Fsecret.bin", "//server/share/x", "gone.bin"]
 )

@@ -6,7 +6,11 @@ import pytest
 from solvers.motion import Tracks
 from solvers.progress import unwatched
 from solvers.recordings import read_recording
-from solvers.recordings.conventions import guess_unit_of_points, question_of_size
+from solvers.recordings.conventions import (
+    guess_unit_of_points,
+    question_of_floor,
+    question_of_size,
+)
 from solvers.recordings.conventions.marker_bodies import stature_of_markers
 from solvers.recordings.conventions.points import other_standing_axis
 
@@ -97,6 +101,20 @@ def test_size_of_markers_that_is_no_person_s_is_a_question(scale, size):
     question = f"The actor is {size} m tall; set Unit or Scale if this is not right"
     assert question_of_size(tracks) == question
     assert not question_of_size(Tracks(tuple(UNNAMED), scale * WALK, 100.0))
+
+
+@pytest.mark.parametrize(("shift", "asks"), [(-1.0, True), (0.0, False), (0.9, False)])
+def test_most_markers_below_the_floor_are_a_question(shift, asks):
+    """Markers of objects, a few below the floor and actors on a platform are none."""
+    points = WALK + np.array([0.0, 0.0, shift])
+    markers = Tracks((*MARKERS, "plate"), np.pad(points, ((0, 0), (0, 1), (0, 0))), 100.0)
+    markers.positions[:, -1, 2] = -0.4
+
+    question = question_of_floor(markers)
+
+    assert asks == ("stays 0.96 m below the floor; set Place on Floor to On" in question)
+    assert asks or not question
+    assert not question_of_floor(Tracks((*UNNAMED, "plate"), markers.positions, 100.0))
 
 
 def test_size_of_a_person_in_any_pose_is_no_question():
