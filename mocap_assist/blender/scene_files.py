@@ -50,7 +50,7 @@ USD_OPTIONS: dict[str, Any] = {
     "import_cameras": False, "import_materials": False,
     "import_textures_mode": "IMPORT_NONE",
 }  # fmt: skip
-TRACEBACK = "Traceback (most recent call last)"
+TRACEBACK = "Traceback (most recent"
 DAMAGED_FBX = ("Failed to load", "Empty file", "Truncated file")
 """Reasons that Blender's importer of FBX gives for files that were cut off."""
 
