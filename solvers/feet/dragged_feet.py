@@ -28,8 +28,8 @@ QUARTILE_OF_MEAN = np.log(4.0 / 3.0)
 """Ratio of the lower quartile of an exponential distribution to its mean. By definition."""
 
 
-def drag_probabilities(motion: Motion, legs: Sequence[LegJoints], contacts: Flags) -> Array:
-    """Return how probably a foot in contact is dragged, shape (n_frames, 2), left and right.
+def find_dragged_feet(motion: Motion, legs: Sequence[LegJoints], contacts: Flags) -> Flags:
+    """Return when a foot in contact is dragged, shape (n_frames, 2), left and right.
 
     An error of the body's path moves both feet: only the velocity of one relative to the other
     shows that a foot moves. A foot stands if any point of it does: heel, ball, tip or ankle.
@@ -46,7 +46,7 @@ def drag_probabilities(motion: Motion, legs: Sequence[LegJoints], contacts: Flag
         Without both, nothing is found.
     contacts : bool, shape (n_frames, 2)
     """
-    dragged = np.zeros(contacts.shape)
+    dragged = np.zeros_like(contacts)
     both = both_in_contact(contacts.all(axis=1))
     if len(legs) < len(SIDES) or not both.any():
         return dragged
@@ -66,10 +66,9 @@ def drag_probabilities(motion: Motion, legs: Sequence[LegJoints], contacts: Flag
         log_odds = relative * (1.0 / standing - 1.0 / moving) - np.log(moving / standing)
         of_steps = log_odds * both / (MEMORY_S * motion.frame_rate)
         of_frames = 0.5 * (np.append(of_steps, 0.0) + np.append(0.0, of_steps))
-        dragged[:, SIDES.index(leg.side)] = two_state_probabilities(
-            of_frames, motion.frame_rate, START_RATE, STOP_RATE
-        )
-    return dragged * contacts
+        found = two_state_probabilities(of_frames, motion.frame_rate, START_RATE, STOP_RATE)
+        dragged[:, SIDES.index(leg.side)] = found > 0.5
+    return dragged & contacts
 
 
 def _slowest(velocities: Array, reference: Array | float) -> Array:

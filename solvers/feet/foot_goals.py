@@ -13,6 +13,7 @@ from ..motion_fitting.goals import (
     FollowRotation,
     FollowSource,
     StayAtHeight,
+    StayInPlace,
     StayStill,
     flexion_in_reserve,
     knee_limit,
@@ -73,7 +74,7 @@ def planting_goals(
         goal
         for contact, weights in zip(contacts, ankle_weights, strict=True)
         for goal in (
-            *_contact_goals(contact, poses, settings),
+            *_contact_goals(contact, settings),
             *_source_goals(fitted, poses, contact, settings, weights),
         )
     ]
@@ -81,12 +82,10 @@ def planting_goals(
     return [*goals, _smoothness(fitted, contacts, limbs, settings)]
 
 
-def _contact_goals(
-    contact: FootContact, poses: WorldPoses, settings: PlantSettings
-) -> list[Goal]:
+def _contact_goals(contact: FootContact, settings: PlantSettings) -> list[Goal]:
     """Return what the loaded sole has to meet."""
     creep = CREEP_M * contact.size / settings.hold
-    goals: list[Goal] = [contact.stay_in_place(poses, creep)]
+    goals: list[Goal] = [StayInPlace(contact.points, contact.step_load, contact.steps, creep)]
     if settings.floor and contact.on_floor.any():
         goals.append(
             StayAtHeight(

@@ -13,13 +13,14 @@ from ..motion_fitting.goals import (
     BonePoint,
     FollowPosition,
     FollowRotation,
+    StayInPlace,
     hinge_axis,
     hinge_limit,
 )
 from .body_supports import SUPPORTS, SupportJoints, find_supports
 from .plant_settings import PlantSettings
 from .sole import load_shares, measure_standing_heights, smoothed_paths
-from .support import Support, held_steps, resting_steps
+from .support import Support, resting_steps
 
 SHOULDER_RAD, ELBOW_RAD = np.radians(4.0), np.radians(2.0)
 """Radians by which a shoulder and an elbow may turn. `make sensitivity` varies them. Sweep of
@@ -82,11 +83,10 @@ def find_limb_contacts(
         heights, speeds = smoothed_paths(positions, motion.frame_rate)
         load = load_shares(heights - level, speeds, size)
         height = np.sum(load * (positions[..., 2] - level), axis=1)
-        held = held_steps(contact)
-        steps = resting_steps(height, contact, held, size)
+        steps = resting_steps(height, contact, size)
         if not limb.chain:
             steps[:, 2] = 0.0
-        found.append(LimbContact(size, contact, limb.points, load, held, steps, limb))
+        found.append(LimbContact(size, contact, limb.points, load, steps, limb))
     return found
 
 
@@ -117,7 +117,7 @@ def limb_goals(
     goals: list[Goal] = []
     for contact in contacts:
         speed = creep * contact.size / settings.hold
-        goals.append(contact.stay_in_place(fitted.poses, speed))
+        goals.append(StayInPlace(contact.points, contact.step_load, contact.steps, speed))
         if contact.limb.is_arm:
             goals += _arm_goals(fitted, contact)
     return goals

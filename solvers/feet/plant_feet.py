@@ -26,8 +26,7 @@ from .limb_goals import find_limb_contacts
 from .plant_in_window import plant_in_window
 from .plant_settings import PlantSettings
 from .sole_contact import find_foot_contact
-from .standing_feet import standing_probabilities
-from .support import IN_CONTACT
+from .standing_feet import detect_standing_feet
 
 DEFAULT_SETTINGS = PlantSettings()
 N_FEET = len(SIDES)
@@ -45,7 +44,7 @@ class Planted:
     supports : bool, shape (n_frames, 5), or None
         When each of `SUPPORTS` is in contact; None where only feet are planted.
     slide_before, slide_after : float, meters
-        Distance that soles, hands, knees and hips cover over the floor where they are held.
+        Distance that soles, hands, knees and hips cover over the floor while in contact.
     remarks : tuple of str
         What went wrong, such as feet that no leg can keep where they are.
     """
@@ -83,11 +82,11 @@ def plant_feet(
     rotations of the legs, of such arms, and the position of the root in all frames are found
     at once: they hold what is loaded with the least smooth change of knees, feet, arms and
     root (`planting_goals`, `fit_motion`). A foot that is detected in contact, but could only be
-    held by moving leg or root far, is held less (`plant_in_window`), and one that lands or
-    lifts as far as its contact is believed (`held_steps`). Bones never stretch, and no joint of
-    the trunk rotates. Segments of a joined take are planted separately; a segment of less than
-    a quarter of a second has no contact. Where the body is put elsewhere in one frame, and
-    stays, its feet are put there with it (`find_path_jumps`).
+    held by moving leg or root far, is held less (`plant_in_window`). Bones never stretch, and
+    no joint of the trunk rotates.
+    Segments of a joined take are planted separately; a segment of less than a quarter of a
+    second has no contact. Where the body is put elsewhere in one frame, and stays, its feet are
+    put there with it (`find_path_jumps`).
 
     Parameters
     ----------
@@ -137,13 +136,13 @@ def plant_feet(
         if bool(cuts) and is_short_shot(stop - start, motion.frame_rate):
             results.append(_planted(segment, given[start:stop] == 1.0, settings))
             continue
-        probability = _find_contacts(segment, given[start:stop], humanoid_map, legs, settings)
-        may_yield = _find_yielding(probability[:, :N_FEET], given[start:stop, :N_FEET])
+        found = _find_contacts(segment, given[start:stop], humanoid_map, legs, settings)
+        may_yield = _find_yielding(found[:, :N_FEET], given[start:stop, :N_FEET])
         step = within(progress, start / motion.n_frames, stop / motion.n_frames)
         weights = ankle_weights[start:stop]
         results.append(
             _plant_segment(
-                segment, humanoid_map, legs, probability, weights, settings, may_yield, step
+                segment, humanoid_map, legs, found, weights, settings, may_yield, step
             )
         )
     progress(1.0, "Planted the feet")
@@ -157,11 +156,8 @@ def _find_contacts(
     humanoid_map: HumanoidMap,
     legs: Sequence[LegJoints],
     settings: PlantSettings,
-) -> Array:
-    """Return probabilities of contact of all parts, (n_frames, 7), detected where not given.
-
-    Hands and knees are in contact or not: the doubts of their model, which is learned from made
-    takes, let those of jittering bodies slide at 3.5 cm/s.
+) -> Flags:
+    """Return the contacts of all parts, (n_frames, 7), as given, or detected where NaN.
 
     Hips are held only where contacts are given, such as those that an animator keyed: hips of
     real actors who lie shift by some centimeters, and to hold all that is detected moves clean
@@ -169,27 +165,27 @@ def _find_contacts(
     could hold them.
     """
     is_missing, hips = np.isnan(given), N_FEET + SUPPORTS.index("hips")
-    probability = np.where(is_missing, 0.0, given)
+    contacts = np.asarray(given == 1.0)
     if is_missing[:, :N_FEET].any():
-        feet = standing_probabilities(motion, humanoid_map, legs)
-        probability[:, :N_FEET] += is_missing[:, :N_FEET] * feet
+        feet = detect_standing_feet(motion, humanoid_map, legs)
+        contacts[:, :N_FEET] |= is_missing[:, :N_FEET] & feet
     if not settings.hands_and_knees:
-        probability[:, N_FEET:] = 0.0
+        contacts[:, N_FEET:] = False
     elif is_missing[:, N_FEET:hips].any():
         found = detect_supports(motion, humanoid_map, legs)[:, : hips - N_FEET]
-        probability[:, N_FEET:hips] += is_missing[:, N_FEET:hips] * found
-    probability[:, hips] *= settings.move_root
-    return probability
+        contacts[:, N_FEET:hips] |= is_missing[:, N_FEET:hips] & found
+    contacts[:, hips] &= settings.move_root
+    return contacts
 
 
-def _find_yielding(probability: Array, given: Array) -> Flags:
+def _find_yielding(contacts: Flags, given: Array) -> Flags:
     """Return the frames in which a foot may be held less, shape (n_frames, 2).
 
     These are the frames without a given contact, except in a contact that has one.
     """
     may_yield = np.isnan(given)
     for foot in range(N_FEET):
-        for start, stop in find_runs(probability[:, foot] > IN_CONTACT):
+        for start, stop in find_runs(contacts[:, foot]):
             if not may_yield[start:stop, foot].all():
                 may_yield[start:stop, foot] = False
     return may_yield
@@ -199,14 +195,13 @@ def _plant_segment(
     motion: Motion,
     humanoid_map: HumanoidMap,
     legs: Sequence[LegJoints],
-    probability: Array,
+    contacts: Flags,
     ankle_weights: Array,
     settings: PlantSettings,
     may_yield: Flags,
     progress: Progress,
 ) -> Planted:
-    """Plant a motion without cuts; the probability of contact is (n_frames, 7)."""
-    contacts = probability > IN_CONTACT
+    """Plant what bears on the floor of a motion without cuts; contacts are (n_frames, 7)."""
     if not contacts.any():
         progress(1.0, "No foot is in contact")
         return _planted(motion, contacts, settings)
@@ -214,7 +209,7 @@ def _plant_segment(
     limbs = find_limb_contacts(motion, poses, humanoid_map, contacts[:, N_FEET:])
     knees = {each.limb.chain[1] for each in limbs if each.limb.is_leg}
     feet = [
-        find_foot_contact(motion, poses, leg, probability[:, SIDES.index(leg.side)])
+        find_foot_contact(motion, poses, leg, contacts[:, SIDES.index(leg.side)])
         for leg in legs
         if leg.knee in knees or contacts[:, SIDES.index(leg.side)].any()
     ]
@@ -229,9 +224,7 @@ def _plant_segment(
 
     result = fit_in_windows(motion, plant_window, progress)
     before_and_after = poses, forward_kinematics(result)
-    slides = [
-        sum(each.slide(one, poses) for each in (*feet, *limbs)) for one in before_and_after
-    ]
+    slides = [sum(each.slide(one) for each in (*feet, *limbs)) for one in before_and_after]
     return _planted(result, contacts, settings, slides)
 
 

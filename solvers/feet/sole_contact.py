@@ -13,7 +13,7 @@ from ..motion_fitting.goals import BonePoint
 from ..rotations import inverse, multiply, rotation_vector_from_quaternion
 from .legs import LegJoints
 from .sole import SMOOTHING_S, estimate_loads, measure_standing_heights, sole_points
-from .support import IN_CONTACT, Support, held_steps, median_contact_heights, resting_steps
+from .support import Support, both_in_contact, median_contact_heights, resting_steps
 
 MAX_LEVEL_SPREAD_M = 0.007
 """Meters: the floor is not level if its contacts typically differ by more. Half and twice gain
@@ -72,7 +72,7 @@ class FootContact(Support):
 
 
 def find_foot_contact(
-    motion: Motion, poses: WorldPoses, leg: LegJoints, probability: Array | Flags
+    motion: Motion, poses: WorldPoses, leg: LegJoints, contact: Flags
 ) -> FootContact:
     """Find out how a foot bears on the floor in the frames of its contacts.
 
@@ -82,10 +82,8 @@ def find_foot_contact(
     poses : WorldPoses
         Of the motion.
     leg : LegJoints
-    probability : shape (n_frames,)
-        Of contact, or whether the foot is in contact.
+    contact : bool, shape (n_frames,)
     """
-    contact, held = probability > IN_CONTACT, held_steps(probability)
     rate, size = motion.frame_rate, leg.length(motion.skeleton) / HUMAN_LEG_LENGTH_M
     points = (*sole_points(motion.skeleton, leg), BonePoint(leg.ankle, np.zeros(3)))
     positions = np.stack([point.position(poses) for point in points], axis=1)
@@ -93,7 +91,7 @@ def find_foot_contact(
     load = estimate_loads(positions, standing, rate, size)
     height = np.sum(load * (positions[..., 2] - standing), axis=1)
     contact_height = median_contact_heights(height, contact)
-    steps = resting_steps(height, contact, held, size)
+    steps = resting_steps(height, contact, size)
     floor, on_floor = 0.0, np.zeros(motion.n_frames)
     if contact.any():
         floor = float(np.median(height[contact]))
@@ -101,16 +99,14 @@ def find_foot_contact(
         if np.median(distance[contact]) < MAX_LEVEL_SPREAD_M * size:
             near = contact & (distance < MAX_FLOOR_DISTANCE_M * size)
             on_floor[:-1] = near[:-1] * steps[:, 2]
-    flat = _flatness(poses.rotations[:, leg.ankle], load, rate)
-    return FootContact(
-        size, contact, points, load, held, steps, leg, standing, floor, on_floor, flat * held
-    )
+    flat = _flatness(poses.rotations[:, leg.ankle], contact, load, rate)
+    return FootContact(size, contact, points, load, steps, leg, standing, floor, on_floor, flat)
 
 
-def _flatness(rotations: Array, load: Array, rate: float) -> Array:
+def _flatness(rotations: Array, contact: Flags, load: Array, rate: float) -> Array:
     """Return 1 for steps in which a foot rests flat, toward 0 where it rolls.
 
-    It rests flat if heel and ball share the load and it rotates slowly.
+    It rests flat in contact if heel and ball share the load and it rotates slowly.
     """
     if len(rotations) == 1:
         return np.zeros(0)
@@ -124,4 +120,4 @@ def _flatness(rotations: Array, load: Array, rate: float) -> Array:
     slowness = np.clip(2.0 - 2.0 * np.linalg.norm(velocity, axis=1) / MAX_FLAT_RATE, 0.0, 1.0)
     heel = load[:, 0]
     shared = np.clip(4.0 * heel * (1.0 - heel), 0.0, 1.0)
-    return np.asarray(slowness * 0.5 * (shared[1:] + shared[:-1]))
+    return np.asarray(both_in_contact(contact) * slowness * 0.5 * (shared[1:] + shared[:-1]))

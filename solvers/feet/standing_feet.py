@@ -5,14 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, Flags
 from ..motion import Motion, forward_kinematics
-from ..motion.humanoid import SIDES, HumanoidMap, contact_probabilities, known_foot_points
+from ..motion.humanoid import SIDES, HumanoidMap, detect_contacts, known_foot_points
 from ..motion.skeletons import still_joints
 from ..signals import find_runs
-from .dragged_feet import drag_probabilities
+from .dragged_feet import find_dragged_feet
 from .legs import LegJoints
-from .support import IN_CONTACT
 
 MIN_HIP_HEIGHT = 0.2
 """Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
@@ -34,40 +32,27 @@ bodies whose hips leave the floor for some frames."""
 
 def detect_standing_feet(
     motion: Motion, humanoid_map: HumanoidMap, legs: Sequence[LegJoints]
-) -> Flags:
-    """Return when the left and the right foot stand, (n_frames, 2)."""
-    return standing_probabilities(motion, humanoid_map, legs) > IN_CONTACT
-
-
-def standing_probabilities(
-    motion: Motion, humanoid_map: HumanoidMap, legs: Sequence[LegJoints]
-) -> Array:
-    """Return the probability that each foot stands, (n_frames, 2).
-
-    It is that of contact without legs that were not captured.
+) -> NDArray[np.bool_]:
+    """Return the contacts of both feet, (n_frames, 2), without legs that were not captured.
 
     The leg of a suit that only captures the upper body hangs stiff from the hips. Its foot
     slides as the hips rotate; to plant it would flex the knee for nothing. Nor do the feet of
     a body that sits or lies on the floor bear its weight: they touch the floor and may move.
     A foot that is dragged over the floor moves, too.
     """
-    probability = contact_probabilities(motion, humanoid_map)
-    contacts = probability > IN_CONTACT
-    drags = drag_probabilities(motion, legs, contacts)
-    probability = np.minimum(probability, 1.0 - drags)
-    probability[rests_on_hips(motion, humanoid_map, legs, MIN_HIP_HEIGHT)] = 0.0
-    stands = probability > IN_CONTACT
-    if (contacts & ~stands).any():
-        kept = without_short_contacts(stands, MIN_CONTACT_S * motion.frame_rate)
-        probability[stands & ~kept] = 0.0
+    contacts = detect_contacts(motion, humanoid_map)
+    rests = rests_on_hips(motion, humanoid_map, legs, MIN_HIP_HEIGHT)
+    moves = rests[:, None] | find_dragged_feet(motion, legs, contacts)
+    if (contacts & moves).any():
+        contacts = without_short_contacts(contacts & ~moves, MIN_CONTACT_S * motion.frame_rate)
     hips = humanoid_map.indices(motion.skeleton).get("hips", 0)
     is_still = still_joints(motion)
     if is_still[hips]:
-        return probability
+        return contacts
     for leg in legs:
         if is_still[list(leg.chain)].all():
-            probability[:, SIDES.index(leg.side)] = 0.0
-    return probability
+            contacts[:, SIDES.index(leg.side)] = False
+    return contacts
 
 
 def rests_on_hips(

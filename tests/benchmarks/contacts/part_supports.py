@@ -156,9 +156,7 @@ def _figures(truth: Motion, given: Motion, motion: Motion, supports: Flags) -> l
     limbs = find_limb_contacts(given, poses, humanoid, supports)
     after = forward_kinematics(motion)
     n_frames = float(supports.sum())
-    slide = (
-        100.0 * sum(limb.slide(after, poses) for limb in limbs) / n_frames * given.frame_rate
-    )
+    slide = 100.0 * sum(limb.slide(after) for limb in limbs) / n_frames * given.frame_rate
     drift = 1000.0 * max(_drift(limb, after) for limb in limbs)
     roles = humanoid.indices(given.skeleton)
     elbows = acceleration_ratio(given, motion, [roles[f"{side}LowerArm"] for side in SIDES])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers.feet import plant_feet
-from solvers.feet.dragged_feet import drag_probabilities
+from solvers.feet.dragged_feet import find_dragged_feet
 from solvers.feet.legs import find_legs
 from solvers.motion import Motion, detect_contacts, forward_kinematics
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
@@ -17,8 +17,7 @@ SPOILED = [name for name in INPUTS if name != "as they are"]
 
 
 def dragged(motion: Motion) -> np.ndarray:
-    legs = find_legs(motion.skeleton)
-    return drag_probabilities(motion, legs, detect_contacts(motion)) > 0.5
+    return find_dragged_feet(motion, find_legs(motion.skeleton), detect_contacts(motion))
 
 
 def ankle_paths(motion: Motion) -> np.ndarray:
@@ -80,4 +79,4 @@ def test_dragged_foot_is_held_if_its_contact_is_keyed():
 def test_one_leg_alone_drags_nothing():
     legs = find_legs(SHUFFLE.motion.skeleton)[:1]
 
-    assert not drag_probabilities(SHUFFLE.motion, legs, detect_contacts(SHUFFLE.motion)).any()
+    assert not find_dragged_feet(SHUFFLE.motion, legs, detect_contacts(SHUFFLE.motion)).any()

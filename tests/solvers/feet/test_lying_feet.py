@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solvers.denoising import plant_feet
 from solvers.feet import standing_feet
-from solvers.feet.dragged_feet import drag_probabilities
+from solvers.feet.dragged_feet import find_dragged_feet
 from solvers.feet.legs import LegJoints, find_legs
 from solvers.feet.standing_feet import detect_standing_feet
 from solvers.motion import Motion, Skeleton, detect_contacts, forward_kinematics, reach
@@ -56,7 +56,7 @@ def test_feet_are_planted_until_the_actor_lies(recordings):
     standing, lying = slice(0, 240), slice(350, None)
     assert contacts[lying].any(axis=0).all()
     assert not planted.contacts[lying].any()
-    drags = drag_probabilities(motion, find_legs(motion.skeleton), contacts) > 0.5
+    drags = find_dragged_feet(motion, find_legs(motion.skeleton), contacts)
     assert (planted.contacts[standing] == (contacts & ~drags)[standing]).all()
     skeleton = motion.skeleton
     legs = [
