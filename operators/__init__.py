@@ -8,6 +8,7 @@ from .assign_variants import MOCAP_OT_assign_variants
 from .browse_matches import MOCAP_OT_browse_matches
 from .cancel_solve import MOCAP_OT_cancel_solve
 from .change_axes import MOCAP_OT_change_axes
+from .choose_live import MOCAP_OT_choose_live
 from .denoise import MOCAP_OT_denoise
 from .draw_variants import MOCAP_OT_draw_variants
 from .export_take import MOCAP_OT_export_take
@@ -64,6 +65,7 @@ OPERATORS = (
     MOCAP_OT_change_axes,
     MOCAP_OT_show_depth,
     MOCAP_OT_track_depth,
+    MOCAP_OT_choose_live,
     MOCAP_OT_track_live,
     MOCAP_OT_retrack,
     MOCAP_OT_denoise,

@@ -31,7 +31,7 @@ NOT_BUTTONS = {"import_job"}
 PAGES = {
     "importing": "import_recording load_sample add_workspace change_axes show_depth",
     "fixing": "fix_take fix_takes fix_folder submit_folder accept_fix",
-    "tracking": "track_depth track_live retrack",
+    "tracking": "track_depth choose_live track_live retrack",
     "reconstruction": "reconstruct",
     "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_issue mark_issues"
     " set_range revert_to_raw show_raw",

@@ -21,7 +21,7 @@ LABELED = {
     "mocap_assist/importing/dialog/job.py": {"_show"},
     "mocap_assist/importing/dialog/body_choice.py": {"BEST", "EVERY", "ONLY_THIS"},
     "mocap_assist/importing/depth_objects.py": {"make_preview"},
-    "mocap_assist/importing/menu.py": {"ENTRY"},
+    "mocap_assist/importing/menu.py": {"ENTRY", "LIVE_ENTRY"},
     "mocap_assist/importing/solve_bodies.py": {"describe_left_out"},
     "mocap_assist/importing/marker_objects.py": {"make_markers"},
     "mocap_assist/importing/recording_objects.py": {"make_objects", "_never_observed",

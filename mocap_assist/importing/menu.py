@@ -8,6 +8,8 @@ from .importing import EXTENSIONS
 
 IMPORT = "mocap_assist.import_recording"
 ENTRY = "Motion Capture (.bvh, .amc, .c3d, .trc, depth camera joints)"
+LIVE = "mocap_assist.choose_live"
+LIVE_ENTRY = "Depth Camera While It Records (folder, .mkv)"
 
 
 class MOCAP_FH_recording(bpy.types.FileHandler):
@@ -26,6 +28,8 @@ class MOCAP_FH_recording(bpy.types.FileHandler):
 def _draw_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     if operator_exists(IMPORT):
         self.layout.operator(IMPORT, text=ENTRY)
+    if operator_exists(LIVE):
+        self.layout.operator(LIVE, text=LIVE_ENTRY)
 
 
 def register() -> None:

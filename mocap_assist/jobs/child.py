@@ -100,11 +100,13 @@ def more_arguments(
 ) -> dict[str, Callable[..., Any]]:
     """Return the arguments `show=` and `is_ended=` of solves that are called with them."""
     arguments: dict[str, Callable[..., Any]] = {}
-    if isinstance(solve, protocol.PreviewSolve):
+    if isinstance(solve, protocol.EndableSolve):
+        goes_on = folder / protocol.GOES_ON
+        arguments["show"] = protocol.EndlessPreviews(folder)
+        arguments["is_ended"] = lambda: not goes_on.exists()
+    elif isinstance(solve, protocol.PreviewSolve):
         file = (folder / protocol.PREVIEWS).open("wb")
         arguments["show"] = partial(protocol.append_preview, file)
-    if isinstance(solve, protocol.EndableSolve):
-        arguments["is_ended"] = (folder / protocol.END).exists
     return arguments
 
 

@@ -14,12 +14,14 @@ from ...solvers.files import reason_of
 from ...solvers.progress import Progress, unwatched
 from .child_process import ChildProcess
 from .protocol import (
-    END,
+    GOES_ON,
     REQUEST,
     RESULT,
+    EndableSolve,
     Ending,
     last_output,
     last_progress,
+    previews_file,
     read_previews,
     read_value,
     write_value,
@@ -132,7 +134,7 @@ class Job(Generic[Result]):
         n_threads: int = 1,
     ) -> None:
         self.cancelled = False
-        self._preview_offset = 0
+        self._preview_offset, self._preview_number = 0, 0
         self._reading: Future[Any] | None = None
         is_default = not program and n_threads == 1
         self._child = (take_waiting() if is_default else None) or ChildProcess()
@@ -140,6 +142,8 @@ class Job(Generic[Result]):
         try:
             with _convert_memory_errors():
                 write_value(self._path / REQUEST, solve)
+            if isinstance(solve, EndableSolve):
+                (self._path / GOES_ON).touch()
             if not self._child.wake():
                 self._child.start(program, n_threads)
         except OSError as error:
@@ -158,7 +162,12 @@ class Job(Generic[Result]):
 
     def new_previews(self) -> list[Any]:
         """Return the previews of a `PreviewSolve` since the last call."""
-        previews, self._preview_offset = read_previews(self._path, self._preview_offset)
+        number = self._preview_number
+        is_full = previews_file(self._path, number + 1).exists()
+        previews, self._preview_offset = read_previews(self._path, self._preview_offset, number)
+        if is_full:
+            previews_file(self._path, number).unlink(missing_ok=True)
+            self._preview_number, self._preview_offset = number + 1, 0
         return previews
 
     def all_previews(self) -> list[Any]:
@@ -181,14 +190,14 @@ class Job(Generic[Result]):
         return self._reading.done()
 
     def end_early(self) -> None:
-        """Ask an `EndableSolve` for its result so far.
+        """Ask an `EndableSolve` for its result so far; may be repeated.
 
         Raises
         ------
         OSError
-            The file cannot be made.
+            Its file cannot be removed now, such as on Windows while another program reads it.
         """
-        (self._path / END).touch()
+        (self._path / GOES_ON).unlink(missing_ok=True)
 
     def cancel(self) -> None:
         """End the process at once; `result` then raises SolveCancelled."""

@@ -3,6 +3,7 @@
 import errno
 import pickle
 import re
+from contextlib import suppress
 from enum import IntEnum
 from functools import partial
 from pathlib import Path
@@ -10,11 +11,16 @@ from typing import Any, BinaryIO, TypeVar
 
 from ...solvers.faults import escaped
 
-REQUEST, RESULT, LOG, PREVIEWS, END = "request", "result", "log", "previews", "end"
+REQUEST, RESULT, LOG, PREVIEWS = "request", "result", "log", "previews"
+GOES_ON = "goes on"
+"""An `EndableSolve` ends once this file is removed, which works on a full disk, too."""
 WAIT = "wait"
 """Argument of child.py: the request is written later."""
 TAIL_BYTES = 4096
 LENGTH_BYTES = 8  # of the length before each pickle or array
+MAX_PREVIEWS_BYTES = 1 << 20
+"""Size from which the previews of an `EndableSolve` go on in another file, so that Blender can
+remove those it has shown. It bounds the space of hours: a file has about two seconds."""
 DISK_FULL = {errno.ENOSPC, errno.EDQUOT}
 PROGRESS = re.compile(r"^@([01]\.\d+) (.*)$")
 
@@ -68,13 +74,53 @@ def append_preview(file: BinaryIO, preview: Any) -> None:
     file.flush()
 
 
-def read_previews(folder: Path, start: int) -> tuple[list[Any], int]:
-    """Return the previews after an offset in the file, and the next offset.
+class EndlessPreviews:
+    """Appends previews to files that `read_previews` reads, one after the other.
+
+    The solve goes on without previews if they cannot be written, such as on a full disk.
+
+    Parameters
+    ----------
+    folder : Path
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder, self._number = folder, 0
+        self._file: BinaryIO | None = previews_file(folder, 0).open("wb")
+
+    def __call__(self, preview: Any) -> None:
+        """Append a picklable preview."""
+        if self._file is None:
+            return
+        try:
+            append_preview(self._file, preview)
+            if self._file.tell() >= MAX_PREVIEWS_BYTES:
+                self._file.close()
+                self._number += 1
+                self._file = previews_file(self._folder, self._number).open("wb")
+        except OSError:  # What is half written is never read.
+            self.close()
+
+    def close(self) -> None:
+        """Append nothing more."""
+        file, self._file = self._file, None
+        if file is not None:
+            with suppress(OSError):
+                file.close()
+
+
+def previews_file(folder: Path, number: int) -> Path:
+    """Return the file of previews with a number; only `EndlessPreviews` has several."""
+    return folder / f"{PREVIEWS}{number or ''}"
+
+
+def read_previews(folder: Path, start: int, number: int = 0) -> tuple[list[Any], int]:
+    """Return the previews after an offset in a file, and the next offset.
 
     A partly written or unreadable preview is left for the next call.
     """
     try:
-        with (folder / PREVIEWS).open("rb") as file:
+        with previews_file(folder, number).open("rb") as file:
             file.seek(start)
             content = file.read()
     except OSError:

@@ -126,7 +126,7 @@ class SolverOperator(SettingsMixin):
             return {"CANCELLED"}
         escaped = event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS"
         escaped = (escaped and not event.is_repeat) or watch.is_cancelled
-        watch.is_cancelled = False
+        escaped, watch.is_cancelled = escaped and self.heeds_esc(), False
         if not escaped and event.type != "TIMER":
             return {"PASS_THROUGH"} if self.lets_pass(context, event) else {"RUNNING_MODAL"}
         try:
@@ -147,6 +147,10 @@ class SolverOperator(SettingsMixin):
 
     def is_requested(self) -> bool:
         """Return whether the animator pressed the button."""
+        return True
+
+    def heeds_esc(self) -> bool:
+        """Return whether Esc and Cancel have an effect now."""
         return True
 
     def lets_pass(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:

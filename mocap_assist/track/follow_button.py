@@ -1,5 +1,6 @@
 """The button Track Live: it goes on until the recording ends, or Esc is pressed."""
 
+from contextlib import suppress
 from time import monotonic
 from typing import Any
 
@@ -71,18 +72,33 @@ class FollowButton(WatchedOperator):
 
     def progress_of(self, job: Job[Any]) -> tuple[float, str]:
         """Return the progress of the take; it is endless until Esc."""
-        is_finishing = self._ended_at < float("inf")
-        return (1.0, FINISHING) if is_finishing else super().progress_of(job)
+        if self._ended_at == float("inf"):
+            return super().progress_of(job)
+        with suppress(OSError):  # It is tried again at the next look.
+            job.end_early()
+        return 1.0, FINISHING
 
     def ends_early(self, job: Job[Any]) -> bool:
         """Let the first Esc end the take; a later one discards it."""
-        if self._ended_at < monotonic() - MIN_DISCARD_S:
+        if self._ended_at < float("inf"):
             return False
-        if self._ended_at == float("inf"):
-            job.end_early()
-            self._ended_at = monotonic()
-            self._watch.ending, self._watch.button = ESC_DISCARDS, CANCEL_TEXT
+        self._note_end()
         return True
+
+    def result_from_job(self, job: Job[Any]) -> Any:
+        """Return the result of the job; one that ended by itself is guarded from Esc, too."""
+        if self._ended_at == float("inf"):
+            self._note_end()
+        return super().result_from_job(job)
+
+    def heeds_esc(self) -> bool:
+        """Return whether Esc has an effect: not just after the end, see `MIN_DISCARD_S`."""
+        is_running = self._ended_at == float("inf")
+        return is_running or monotonic() - self._ended_at > MIN_DISCARD_S
+
+    def _note_end(self) -> None:
+        self._ended_at = monotonic()
+        self._watch.ending, self._watch.button = ESC_DISCARDS, CANCEL_TEXT
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw nothing: a take cannot be recorded again with other settings."""

@@ -10,9 +10,9 @@ import bpy
 import numpy as np
 
 from ...solvers.denoising import PlantSettings
-from ...solvers.depth_scene import LEVEL, DepthRecording, ForegroundSettings
+from ...solvers.depth_scene import LEVEL, Camera, DepthRecording, ForegroundSettings
 from ...solvers.depth_tracking.capturing import CaptureSettings
-from ...solvers.errors import InvalidSettingError
+from ...solvers.errors import InvalidFileError, InvalidSettingError
 from ...solvers.faults import Failure, attempt
 from ...solvers.recordings import DepthSettings, Unit
 from ...solvers.settings import setting
@@ -138,10 +138,9 @@ def write_followed(
     that cannot be read are hidden.
     """
     reference = BlockReference.of(scene)
-    path = recording_of(absolute(settings.recording.recording_file))
-    shown = Shown(str(path), depth_settings(settings), 0.0, 1.0, 1)
+    shown = Shown(str(result.path), depth_settings(settings), 0.0, 1.0, 1)
     close_recordings()
-    opened = yield from in_thread.steps(partial(attempt, path, open_recording, shown))
+    opened = yield from in_thread.steps(partial(attempt, result.path, _open, shown))
     scene = reference.find()
     with undo_on_error(bpy.context):
         fits_scene = not is_animated(scene)
@@ -158,6 +157,23 @@ def write_followed(
     return f"{message} {opened.sentence}" if isinstance(opened, Failure) else message
 
 
+def _open(shown: Shown) -> tuple[DepthRecording, int]:
+    """Return the recording, and the step between its columns and rows that become points.
+
+    Damaged images, of which the step could not be found, have no points; the others have.
+    """
+    recording = open_recording(shown)
+    try:
+        return recording, cheap_step(recording)
+    except InvalidFileError:
+        return recording, _safe_step(recording.camera)
+
+
+def _safe_step(camera: Camera) -> int:
+    """Return a step that suits any image."""
+    return ceil(sqrt(camera.width * camera.height / MAX_POINTS))
+
+
 def _track_bundle(settings: FollowBundle) -> TrackBundle:
     choices = TrackChoices(plant_feet=settings.choices.plant_feet)
     return TrackBundle(choices, settings.tracking, settings.actor, settings.planting)
@@ -168,7 +184,10 @@ def _origin(settings: FollowBundle) -> dict[str, Any]:
 
 
 def _add_points(
-    scene: bpy.types.Scene, result: Followed, shown: Shown, opened: DepthRecording | Failure
+    scene: bpy.types.Scene,
+    result: Followed,
+    shown: Shown,
+    opened: tuple[DepthRecording, int] | Failure,
 ) -> tuple[bpy.types.Object, Tracked]:
     """Return new points so that the motion begins at its frame, and the motion in their time.
 
@@ -178,15 +197,16 @@ def _add_points(
     if isinstance(opened, Failure):
         rate = tracked.motion.frame_rate
         recording = DepthRecording(result.camera, 1, rate, lambda _: np.zeros((0, 0), "f4"))
-        every = ceil(sqrt(result.camera.width * result.camera.height / MAX_POINTS))
+        every = _safe_step(result.camera)
     else:
-        recording, rate, every = opened, opened.frame_rate, cheap_step(opened)
+        recording, every = opened
+        rate = recording.frame_rate
         tracked = tracked._replace(images_per_frame=rate / tracked.motion.frame_rate)
     step = scene_rate(scene) / rate
     start = result.first_frame - step * tracked.images_per_frame * tracked.first
     shown = replace(shown, start=start, step=step, every=every)
     allow_recording(shown.path)
-    path, plane, scale = Path(shown.path), tracked.floor or LEVEL, 1.0 / unit_of(scene)
+    path, plane, scale = result.path, tracked.floor or LEVEL, 1.0 / unit_of(scene)
     points = build_preview(bpy.context, path.stem, recording, shown, plane, scale)
     note_origin(points, origin_of_file(path, recording))
     return points, tracked

@@ -76,5 +76,6 @@ class FollowingView(DrawnBody):
         shader.bind()
         shader.uniform_float("color", POINT_COLOR)
         batch.draw(shader)
+        gpu.state.point_size_set(1.0)
         gpu.state.depth_test_set("NONE")
         gpu.state.blend_set("NONE")

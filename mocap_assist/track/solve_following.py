@@ -58,6 +58,8 @@ class Followed(NamedTuple):
     camera: Camera
     """Of its images, which may be gone."""
     first_frame: float
+    path: Path
+    """Of the recording; a path relative to the file would change when the file is saved."""
 
 
 def follow_recording(
@@ -101,7 +103,7 @@ def follow_recording(
     assert growing.camera is not None
     floor = display.floor
     tracked = build_tracked(found.first, found.motion, found.captured, floor, found.remarks)
-    return Followed(tracked, growing.camera, problem.first_frame)
+    return Followed(tracked, growing.camera, problem.first_frame, problem.path)
 
 
 class _Display:

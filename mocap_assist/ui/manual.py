@@ -38,6 +38,7 @@ CHAPTERS = {
     "bpy.types.windowmanager.mocap_assist_confidence*": "reconstruct",
     "bpy.ops.mocap_assist.track_depth*": "track",
     "bpy.ops.mocap_assist.track_live*": "track",
+    "bpy.ops.mocap_assist.choose_live*": "track",
     "bpy.types.mocap_pg_track*": "track",
     "bpy.ops.mocap_assist.retrack*": "track",
     "bpy.types.mocap_pg_retrack*": "track",

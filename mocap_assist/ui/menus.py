@@ -13,6 +13,8 @@ BUTTONS = (
     "mocap_assist.submit_folder",
     "mocap_assist.accept_fix",
     "mocap_assist.track_depth",
+    "mocap_assist.choose_live",
+    "mocap_assist.track_live",
     "mocap_assist.retrack",
     "mocap_assist.reconstruct",
     "mocap_assist.solve_skeleton",

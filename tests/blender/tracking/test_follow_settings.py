@@ -18,7 +18,7 @@ def test_chosen_image_stands_for_its_folder(load, tmp_path, chosen, recording):
     assert found == tmp_path / recording
 
 
-def test_panel_offers_the_button_once_a_folder_is_chosen(blank, draw):
+def test_panel_offers_the_button_once_a_folder_is_chosen(blank, draw, all_panels):
     assert "Choose the folder that" in " ".join(draw("MOCAP_PT_tracklive"))
     blank.context.scene.mocap_assist.track_live.recording_file = "/tmp/take"
 

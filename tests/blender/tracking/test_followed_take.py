@@ -11,7 +11,7 @@ def n_frames():
 
 
 @pytest.fixture
-def followed(load, given_poses):
+def followed(load, given_poses, folder):
     def make(first=5, rate=30.0):
         body = load("solvers.depth_tracking.body.model").default_body()
         motion = load("solvers.depth_tracking.body.motion")
@@ -28,7 +28,7 @@ def followed(load, given_poses):
             remarks=(),
         )
         camera = load("solvers.depth_scene").Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
-        return load("mocap_assist.track.solve_following").Followed(tracked, camera, 3.0)
+        return load("mocap_assist.track.solve_following").Followed(tracked, camera, 3.0, folder)
 
     return make
 
@@ -101,6 +101,36 @@ def test_images_of_several_sizes_have_no_points(write, recorded, folder, truth, 
 
     assert "000030.png has 320 x 100 pixels, the others 320 x 240" in message
     assert blank.context.object.type == "ARMATURE"
+
+
+def test_damaged_image_is_hidden_and_the_others_have_points(
+    write, recorded, folder, blank, load
+):
+    """It is one of those that the density of the points is measured in."""
+    image = folder / "000007.png"
+    image.write_bytes(image.read_bytes()[:200] + bytes(40) + image.read_bytes()[240:])
+
+    write()
+
+    preview, scene = load("mocap_assist.depth.depth_preview"), blank.context.scene
+    points = blank.data.objects["take"]
+    scene.frame_set(5)
+    assert "000007.png is missing or damaged" in preview.problem_of(points)
+    scene.frame_set(6)
+    assert not preview.problem_of(points) and blank.context.object.type == "ARMATURE"
+
+
+def test_points_are_those_of_the_take_if_the_file_was_saved_elsewhere(
+    write, recorded, follow_bundle, blank, load
+):
+    """A path relative to the file has another meaning then."""
+    bundle = follow_bundle()
+    moved = bundle.recording.__class__(**vars(bundle.recording) | {"recording_file": "//take"})
+
+    write(bundle._replace(recording=moved))
+
+    points = blank.data.objects["take"]
+    assert not load("mocap_assist.depth.depth_preview").problem_of(points)
 
 
 def test_earlier_images_of_a_folder_are_forgotten(write, recorded, folder, truth, blank, load):

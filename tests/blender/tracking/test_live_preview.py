@@ -139,6 +139,42 @@ def test_loading_another_file_ends_tracking(press, window):
     assert nothing_is_left(window)
 
 
+def test_previews_of_hours_take_little_space(load, tmp_path, monkeypatch):
+    """Those that were shown are removed, and none is lost between two files."""
+    protocol, job = load("mocap_assist.jobs.protocol"), load("mocap_assist.jobs.job")
+    monkeypatch.setattr(protocol, "MAX_PREVIEWS_BYTES", 1000)
+    show, reader = protocol.EndlessPreviews(tmp_path), object.__new__(job.Job)
+    reader._path, reader._preview_offset, reader._preview_number = tmp_path, 0, 0
+    found = []
+    for number in range(1000):
+        show((number, bytes(100)))
+        if number % 7 == 0:
+            found += reader.new_previews()
+    show.close()
+    for _ in range(5):
+        found += reader.new_previews()
+
+    assert [number for number, _ in found] == list(range(1000))
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_previews_without_room_are_left_out(load, tmp_path, monkeypatch):
+    protocol = load("mocap_assist.jobs.protocol")
+    show = protocol.EndlessPreviews(tmp_path)
+    show("one")
+    append, full = protocol.append_preview, OSError(28, "No space left on device")
+
+    def fail(*_):
+        raise full
+
+    monkeypatch.setattr(protocol, "append_preview", fail)
+    show("two")
+    monkeypatch.setattr(protocol, "append_preview", append)
+    show("three")
+
+    assert protocol.read_previews(tmp_path, 0)[0] == ["one"]
+
+
 def test_incomplete_pose_waits_for_the_next_read(load, tmp_path):
     protocol = load("mocap_assist.jobs.protocol")
     path = tmp_path / protocol.PREVIEWS

@@ -2,15 +2,14 @@
 
 import json
 import threading
+import time
 
 import numpy as np
 import pytest
 from depth_folders import save_png
-from followed_fixtures import CAMERA, FAST
-from modal_events import event, nothing_is_left, wait
-from process_checks import children_of, descendants_of, wait_until_gone
+from followed_fixtures import CAMERA, FAST, RATE_HZ
+from mkv_files import STRAIGHT, calibration, k4a
 
-RATE_HZ = 30.0
 JOINTS = {"head": "Head", "leftUpperArm": "LeftArm", "rightLowerLeg": "RightLeg"}
 pytestmark = pytest.mark.timeout(900)
 
@@ -18,30 +17,6 @@ pytestmark = pytest.mark.timeout(900)
 @pytest.fixture
 def n_frames():
     return 30
-
-
-@pytest.fixture
-def record(truth, folder):
-    """Write the images of a walk at the rate of a camera, once or again and again."""
-    threads, ended = [], threading.Event()
-
-    def start(n_images=None):
-        images = truth["depth"]
-        n_images = len(images) if n_images is None else n_images
-
-        def write():
-            for number in range(n_images):
-                save_png(folder / f"{number:06}.png", images[number % len(images)])
-                if ended.wait(1.0 / RATE_HZ):
-                    return
-
-        threads.append(threading.Thread(target=write))
-        threads[-1].start()
-
-    yield start
-    ended.set()
-    for thread in threads:
-        thread.join()
 
 
 @pytest.fixture
@@ -53,11 +28,6 @@ def track_live(blank, folder):
         return blank.ops.mocap_assist.track_live(recording_file=str(path), **given)
 
     return call
-
-
-@pytest.fixture
-def press(press_button, follow_bundle):
-    return lambda **settings: press_button("track_live", follow_bundle(**settings))
 
 
 def heads(armature, names):
@@ -97,109 +67,30 @@ def test_followed_recording_becomes_what_track_makes(record, track_live, blank, 
     assert not load("mocap_assist.track.retracking").why_not_retrack(blank.context)
 
 
-def test_esc_ends_the_take_and_keeps_it(record, press, window, blank):
-    record(3000)
-    button = press(max_silence=20.0)
-    wait(button, window, until=lambda: "Tracking image" in window.status[-1])
-    assert "Esc ends the take" in window.status[-1]
-    wait(button, window, until=lambda: button._view.drawn is not None)
-    assert button._view.points is not None and not blank.data.objects
+def test_mkv_is_followed_while_it_grows(track_live, truth, tmp_path, blank, load):
+    content = k4a(truth["depth"], calibration(STRAIGHT), open_sizes=True)
+    path = tmp_path / "film.mkv"
+    step = len(content) // 30
 
-    assert button.modal(window.context, event("ESC", "PRESS")) == {"RUNNING_MODAL"}
+    def write():
+        with path.open("wb") as file:
+            for start in range(0, len(content), step):
+                file.write(content[start : start + step])
+                file.flush()
+                time.sleep(1.0 / RATE_HZ)
 
-    assert wait(button, window) == {"FINISHED"}
-    assert any("Finishing the take" in str(text) for text in window.status)
-    assert any("Esc discards the take" in str(text) for text in window.status)
-    ((kind, message),) = window.reports
-    assert kind == {"INFO"} and message.startswith("take tracked: ")
-    assert {each.type for each in blank.data.objects} == {"ARMATURE", "MESH"}
-    assert nothing_is_left(window)
+    recorder = threading.Thread(target=write)
+    recorder.start()
 
+    assert track_live(path, focal_length_y=285.63, center_x=159.5, center_y=119.5) == {
+        "FINISHED"
+    }
 
-def test_esc_without_an_image_says_so_and_changes_nothing(press, window, blank, folder):
-    folder.mkdir()
-    button = press()
-    wait(button, window, until=lambda: hasattr(button, "_job"))
-    drawings = button._view._drawing, button._view._points_drawing
-
-    button.modal(window.context, event("ESC", "PRESS"))
-
-    assert wait(button, window) == {"CANCELLED"}
-    ((kind, message),) = window.reports
-    assert kind == {"INFO"} and message.startswith("No depth image came. Check the folder")
-    assert not blank.data.objects and nothing_is_left(window)
-    assert not any(each.is_on for each in drawings)
-
-
-def test_esc_that_is_held_or_pressed_twice_does_not_discard(press, window, folder):
-    folder.mkdir()
-    button = press()
-    wait(button, window, until=lambda: hasattr(button, "_job"))
-    held = event("ESC", "PRESS")
-    held.is_repeat = True
-
-    button.modal(window.context, event("ESC", "PRESS"))
-    button.modal(window.context, event("ESC", "PRESS"))
-    button.modal(window.context, held)
-
-    assert not button._job.cancelled
-    wait(button, window)
-
-
-def test_later_esc_discards(press, window, blank, load, folder, monkeypatch):
-    monkeypatch.setattr(load("mocap_assist.track.follow_button"), "MIN_DISCARD_S", -1.0)
-    folder.mkdir()
-    button = press()
-    wait(button, window, until=lambda: hasattr(button, "_job"))
-
-    button.modal(window.context, event("ESC", "PRESS"))
-
-    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
-    assert window.reports == [({"INFO"}, "Cancelled.")]
-    assert not blank.data.objects and nothing_is_left(window)
-
-
-def test_stop_in_the_status_bar_is_one_esc(press, window, load, folder):
-    """It does not count as another press of Esc in each event that follows."""
-    folder.mkdir()
-    button = press()
-    wait(button, window, until=lambda: hasattr(button, "_job"))
-    assert window.status[-1].endswith("[mocap_assist.cancel_solve]")
-
-    load("mocap_assist.runtime.watch").cancel_running()
-    wait(button, window)
-
-    ((kind, message),) = window.reports
-    assert kind == {"INFO"} and message.startswith("No depth image came.")
-
-
-def test_both_processes_end_with_blender(press, window, folder):
-    """The child notices that its input has closed, and the detector that the child is gone."""
-    folder.mkdir()
-    button = press()
-    wait(button, window, until=lambda: hasattr(button, "_job"))
-    child = button._job._child.process
-    wait(button, window, until=lambda: len(children_of(child.pid)) > 1)
-    processes = {child.pid, *descendants_of(child.pid)}
-
-    child.stdin.close()
-
-    assert not wait_until_gone(processes)
-    assert wait(button, window) == {"CANCELLED"}
-    assert nothing_is_left(window)
-
-
-def test_loading_another_file_ends_both_processes(press, window, folder):
-    folder.mkdir()
-    button = press()
-    wait(button, window, until=lambda: hasattr(button, "_job"))
-    child = button._job._child.process.pid
-    wait(button, window, until=lambda: len(children_of(child)) > 1)
-    processes = {child, *descendants_of(child)}
-
-    button.cancel(window.context)
-
-    assert not wait_until_gone(processes) and nothing_is_left(window)
+    recorder.join()
+    armature, points = blank.context.object, blank.data.objects["film"]
+    assert armature.animation_data.action.frame_range[1] > 20.0
+    preview = load("mocap_assist.depth.depth_preview")
+    assert not preview.problem_of(points) and preview.recording_of(points.data).n_frames == 30
 
 
 @pytest.mark.parametrize(
@@ -247,7 +138,7 @@ def test_folder_must_be_chosen(track_live):
 
 
 def test_published_methods_are_refused(track_live):
-    with pytest.raises(RuntimeError, match="Published methods track complete recordings"):
+    with pytest.raises(RuntimeError, match="tracks one person in the complete recording"):
         track_live(method="EDGES")
 
 

@@ -33,25 +33,43 @@ def _is_within(panel, visible):
     return not parent or parent in visible
 
 
-def test_empty_scene_has_only_import_and_track_live(shown, draw):
-    assert shown() == ["import", "tracklive"]
+def test_empty_scene_has_only_import(shown, draw):
+    assert shown() == ["import"]
     assert draw("MOCAP_PT_import") == [
         "mocap_assist.import_recording", "Or drop files into the 3D", "View.",
         "mocap_assist.load_sample", "wm.url_open", "mocap_assist.add_workspace",
     ]  # fmt: skip
 
 
+def test_track_live_is_there_once_its_recording_is_chosen(blank, shown, actor):
+    actor.select_set(False)
+    blank.context.view_layer.objects.active = None
+
+    blank.ops.mocap_assist.choose_live(directory="/tmp/take/", filename="1.png")
+
+    live = blank.context.scene.mocap_assist.track_live
+    assert live.recording_file == "/tmp/take/1.png" and shown() == ["import", "tracklive"]
+    blank.context.view_layer.objects.active = actor
+    actor.select_set(True)
+    assert shown() == FOR_ARMATURES
+
+
+def test_choice_of_no_recording_is_one_sentence(blank):
+    with pytest.raises(RuntimeError, match="Choose the folder that the recorder writes to"):
+        blank.ops.mocap_assist.choose_live()
+
+
 def test_other_objects_change_nothing(blank, shown):
     blank.ops.mesh.primitive_cube_add()
 
-    assert shown() == ["import", "tracklive"]
+    assert shown() == ["import"]
 
 
 def test_selected_armature_that_is_not_active_gets_a_hint(blank, actor, shown, draw):
     blank.context.view_layer.objects.active = None
     actor.select_set(True)
 
-    assert shown() == ["import", "tracklive"]
+    assert shown() == ["import"]
     drawn = " ".join(draw("MOCAP_PT_import"))
     assert "Shift-click the selected armature" in drawn and "load_sample" not in drawn
     with pytest.raises(RuntimeError, match="Shift-click the selected armature"):
@@ -106,5 +124,5 @@ def test_matches_keep_the_library_in_sight(blank, shown):
     rows = blank.context.window_manager.mocap_assist_matches.rows
     rows.add()
 
-    assert shown() == ["import", "tracklive", "library"]
+    assert shown() == ["import", "library"]
     rows.clear()
