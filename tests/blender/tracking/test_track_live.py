@@ -247,7 +247,7 @@ def test_folder_must_be_chosen(track_live):
 
 
 def test_published_methods_are_refused(track_live):
-    with pytest.raises(RuntimeError, match="Published methods track complete recordings"):
+    with pytest.raises(RuntimeError, match="tracks one person in the complete recording"):
         track_live(method="EDGES")
 
 
