@@ -13,7 +13,7 @@ from ...solvers.command_line.arguments import (
     settings_from_arguments,
 )
 from ...solvers.command_line.batches import Screen
-from ...solvers.errors import InvalidFileError
+from ...solvers.errors import InvalidFileError, InvalidSettingError
 from ...solvers.faults import Failure, attempt
 from ...solvers.settings import Settings
 from ..importing.button_settings import ImportChoices
@@ -56,6 +56,8 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     ------
     InvalidFileError
         A recording could not be tracked, or the file could not be saved.
+    InvalidSettingError
+        --other-cameras is given for other files than those of several cameras.
     """
     target = target_file(arguments)
     given: dict[str, Settings] = {
@@ -65,10 +67,9 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     given["watching"] = WatchChoices()
     settings = TrackBundle._make(given[name] for name in TrackBundle._fields)
     made, messages, failed = [], [], []
-    takes = [path for path in arguments.files if is_take(path)]
-    others = [path for path in arguments.files if path not in takes]
-    inside = find_recordings(others, list_recordings=depth_recordings_in)
-    paths = [*takes, *(path for path, _ in inside)]
+    paths = [path for given in arguments.files for path in _recordings_of(given)]
+    if settings.choices.other_cameras:
+        _check_cameras(paths, settings)
     for cameras in [paths] if settings.choices.other_cameras else [[path] for path in paths]:
         path = cameras[0]
         screen.title = path.name
@@ -90,6 +91,30 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
         draw_result(bpy.context.scene, made[0], arguments.picture, screen)
     if failed:
         raise InvalidFileError(" ".join(failed))
+
+
+def _recordings_of(given: Path) -> list[Path]:
+    """Return a take that is named, or the takes in a folder; raises InvalidFileError."""
+    if is_take(given):
+        return [given]
+    return [path for path, _ in find_recordings([given], list_recordings=depth_recordings_in)]
+
+
+def _check_cameras(paths: Sequence[Path], settings: TrackBundle) -> None:
+    """Raise InvalidSettingError if the files are not those of several cameras."""
+    if settings.choices.all_people:
+        raise InvalidSettingError(
+            "--other-cameras tracks one person. Leave out --all-people or --other-cameras."
+        )
+    if len(paths) < 2:
+        raise InvalidSettingError(
+            "--other-cameras joins recordings of one take. Name those of the other cameras,"
+            " too, or leave it out."
+        )
+    if len({path.resolve() for path in paths}) < len(paths):
+        raise InvalidSettingError(
+            "The same recording is named twice. With --other-cameras, name one of each camera."
+        )
 
 
 def _import_and_track(

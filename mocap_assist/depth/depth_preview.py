@@ -126,7 +126,7 @@ def build_preview(
     preview.modifiers.new("Points", "NODES").node_group = point_nodes()
     shown.write(mesh)
     add_object(context, preview)
-    _show(mesh, context.scene.frame_current_final)
+    show_points(mesh, context.scene.frame_current_final)
     return preview
 
 
@@ -185,7 +185,7 @@ def show_on_request(mesh: bpy.types.Mesh, frame: float) -> str:
     shown = shown_by(mesh)
     open_recording(shown)
     allow_recording(shown.path)
-    _show(mesh, frame)
+    show_points(mesh, frame)
     return f"{mesh.name} shows {shown.path}."
 
 
@@ -202,8 +202,8 @@ def cheap_step(recording: DepthRecording) -> int:
     return every
 
 
-def _show(mesh: bpy.types.Mesh, frame: float) -> None:
-    """Move the points of a mesh to their positions at a scene frame."""
+def show_points(mesh: bpy.types.Mesh, frame: float) -> None:
+    """Move the points of a mesh to their positions at a scene frame, or hide them all."""
     try:
         recording, shown = recording_of(mesh), Shown.read(mesh)
         rays = _rays(recording, shown.every)
@@ -260,7 +260,7 @@ def _follow(scene: bpy.types.Scene, *_: object) -> None:
         if not _is_allowed(mesh):
             _hide(mesh, NOT_ALLOWED)
             continue
-        shown = attempt(mesh.name, _show, mesh, scene.frame_current_final)
+        shown = attempt(mesh.name, show_points, mesh, scene.frame_current_final)
         if isinstance(shown, Failure):
             _hide(mesh, shown.sentence)
 
@@ -269,7 +269,7 @@ def _is_allowed(mesh: bpy.types.Mesh) -> bool:
     try:
         return recording_allowed(shown_by(mesh).path)
     except MocapAssistError:
-        return True  # It names no recording; `_show` reports that.
+        return True  # It names no recording; `show_points` reports that.
 
 
 def close_recordings() -> None:

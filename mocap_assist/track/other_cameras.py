@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -15,23 +16,26 @@ from ..depth.depth_preview import (
     Shown,
     problem_of,
     recording_of,
-    show_on_request,
+    show_points,
     shown_by,
     shows_depth,
 )
+from .pose_previews import ObjectNumber
 from .solve_cameras import OtherCamera, SeveralCameras
-from .solve_tracking import FoundCamera, ObjectNumber, Tracked
+from .solve_tracking import FoundCamera, Tracked
 
 MATRIX_ROUNDING = 1e-4
-"""Ratio to a scene unit of a difference that is no movement. It guards the rounding of matrices
-to 32 bits."""
+"""Meters of a difference that is no movement. It guards the rounding of matrices to 32 bits."""
 
 
 def other_previews(preview: bpy.types.Object) -> list[bpy.types.Object]:
-    """Return the other selected objects that show depth recordings, by name."""
+    """Return the other selected objects that show depth recordings, in order of import.
+
+    After a file was opened, the order is that of the file.
+    """
     selected = bpy.context.view_layer.objects.selected
     others = [each for each in selected if each != preview and shows_depth(each)]
-    return sorted(others, key=lambda each: each.name)
+    return sorted(others, key=lambda each: each.session_uid)
 
 
 def check_others(preview: bpy.types.Object, *, all_people: bool) -> None:
@@ -55,7 +59,7 @@ def check_others(preview: bpy.types.Object, *, all_people: bool) -> None:
             )
         paths[path] = each.name
         if problem := problem_of(each):
-            raise InvalidMotionError(problem)
+            raise InvalidMotionError(f"{each.name}: {problem}")
 
 
 def read_cameras(preview: bpy.types.Object) -> SeveralCameras:
@@ -67,14 +71,11 @@ def read_cameras(preview: bpy.types.Object) -> SeveralCameras:
     )
 
 
-def read_again(preview: bpy.types.Object, cameras: Sequence[FoundCamera]) -> SeveralCameras:
+def read_again(preview: bpy.types.Object, numbers: Sequence[ObjectNumber]) -> SeveralCameras:
     """Return the recordings that the cameras' objects show now."""
     return SeveralCameras(
         recording_of(preview.data),
-        tuple(
-            OtherCamera(recording_of(_object_of(each).data), each.object_number)
-            for each in cameras
-        ),
+        tuple(OtherCamera(recording_of(_object_of(each).data), each) for each in numbers),
     )
 
 
@@ -83,6 +84,7 @@ def camera_entries(cameras: Sequence[FoundCamera]) -> list[dict[str, object]]:
     return [
         {
             "object": each.object_number[-1],
+            "recording": shown_by(_object_of(each.object_number).data).path,
             "first_from_camera": each.first_from_camera.tolist(),
             "offset_s": each.offset,
             "mismatch_m": each.mismatch,
@@ -101,7 +103,7 @@ def scene_from_first_camera(preview: bpy.types.Object, result: Tracked) -> Matri
         for each in result.cameras:
             if each.shows_floor:
                 camera_from_first = Matrix(each.first_from_camera.tolist()).inverted()
-                return _object_of(each).matrix_world @ camera_from_first
+                return _object_of(each.object_number).matrix_world @ camera_from_first
     return preview.matrix_world.copy()
 
 
@@ -113,9 +115,9 @@ def place_cameras(
         return []
     scene_from_first = scene_from_first_camera(preview, result)
     shown, rate = shown_by(preview.data), recording_of(preview.data).frame_rate
-    targets = [(preview, scene_from_first, shown)]
-    for each in result.cameras:
-        other = _object_of(each)
+    places = [_Place(1, preview, scene_from_first, shown)]
+    for number, each in enumerate(result.cameras, start=2):
+        other = _object_of(each.object_number)
         own = shown_by(other.data)
         frames_per_second = shown.step * rate
         in_time = replace(
@@ -124,20 +126,27 @@ def place_cameras(
             step=frames_per_second / recording_of(other.data).frame_rate,
         )
         matrix = scene_from_first @ Matrix(each.first_from_camera.tolist())
-        targets.append((other, matrix, in_time))
-    return [
-        sentence
-        for number, target in enumerate(targets, start=1)
-        if (sentence := _move(number, *target, scene.frame_current_final))
-    ]
+        places.append(_Place(number, other, matrix, in_time))
+    # Parents first, as they move their children.
+    places.sort(key=lambda place: (_n_parents(place.preview), place.number))
+    said = {place.number: _move(place, scene.frame_current_final) for place in places}
+    return [said[number] for number in sorted(said) if said[number]]
 
 
-def _move(
-    number: int, preview: bpy.types.Object, matrix: Matrix, shown: Shown, frame: float
-) -> str:
+class _Place(NamedTuple):
+    """Where and when the points of a camera belong."""
+
+    number: int
+    preview: bpy.types.Object
+    matrix: Matrix
+    """Transform (4, 4) to the scene."""
+    shown: Shown
+
+
+def _move(place: _Place, frame: float) -> str:
     """Move points in space and time; return a sentence, empty if they stood there."""
-    stands_there = np.allclose(preview.matrix_world, matrix, atol=MATRIX_ROUNDING)
-    if stands_there and shown_by(preview.data) == shown:
+    number, preview, matrix, shown = place
+    if _stands_at(preview, matrix) and shown_by(preview.data) == shown:
         return ""
     if not (preview.is_editable and preview.data.is_editable):
         return (
@@ -145,9 +154,25 @@ def _move(
             " were not moved."
         )
     preview.matrix_world = matrix
+    preview.update_tag(refresh={"TIME"})  # Keys and drivers hold it again.
+    bpy.context.view_layer.update()
     shown.write(preview.data)
-    show_on_request(preview.data, frame)
+    show_points(preview.data, frame)
+    if not _stands_at(preview, matrix):
+        return (
+            f"The points of camera {number}, {preview.name}, are not at its position: keys, a"
+            " constraint or the scale of a parent hold them."
+        )
     return f"The points of camera {number}, {preview.name}, were moved to its position."
+
+
+def _stands_at(preview: bpy.types.Object, matrix: Matrix) -> bool:
+    close = MATRIX_ROUNDING * matrix.median_scale
+    return bool(np.allclose(preview.matrix_world, matrix, atol=close))
+
+
+def _n_parents(preview: bpy.types.Object) -> int:
+    return 0 if preview.parent is None else 1 + _n_parents(preview.parent)
 
 
 def _number_of(preview: bpy.types.Object) -> ObjectNumber:
@@ -156,8 +181,8 @@ def _number_of(preview: bpy.types.Object) -> ObjectNumber:
     return kind, number, name
 
 
-def _object_of(camera: FoundCamera) -> bpy.types.Object:
+def _object_of(number: ObjectNumber) -> bpy.types.Object:
     """Return the points of a camera; raises InvalidMotionError if they were deleted."""
-    found = BlockReference(*camera.object_number).find()
+    found = BlockReference(*number).find()
     assert isinstance(found, bpy.types.Object)
     return found

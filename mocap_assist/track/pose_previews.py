@@ -14,10 +14,15 @@ def no_preview(preview: Any) -> None:
     """Ignore a preview; the default of solves."""
 
 
+ObjectNumber = tuple[str, int, str]
+"""Kind, session UID and name of an object, as in a `BlockReference`."""
+
+
 class FloorPreview(NamedTuple):
-    """First preview: the floor under the actor."""
+    """First preview: the floor under the actor, and the points of the other cameras."""
 
     floor: FloorPlane | None
+    others: tuple[ObjectNumber, ...] = ()
 
 
 class PosePreviewSender:
@@ -40,13 +45,14 @@ class PosePreviewReceiver:
 
     def __init__(self) -> None:
         self.floor: FloorPlane | None = None
+        self.others: tuple[ObjectNumber, ...] = ()
         self._body: BodyModel | None = None
 
     def poses(self, previews: Iterable[Any]) -> Iterator[PosePreview]:
         """Yield the poses of new previews; they share a body."""
         for preview in previews:
             if isinstance(preview, FloorPreview):
-                self.floor = preview.floor
+                self.floor, self.others = preview
             elif isinstance(preview, BodyModel):
                 self._body = preview
             elif self._body is not None:

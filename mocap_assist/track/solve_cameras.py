@@ -10,14 +10,8 @@ from ...solvers.depth_tracking.capturing import CaptureSettings
 from ...solvers.depth_tracking.several_cameras import AlignmentSettings
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.workflows import capture_seen_actor, find_actor_of_cameras
-from .pose_previews import FloorPreview, PosePreviewSender, Show, no_preview
-from .solve_tracking import (
-    ACTOR_FRACTION,
-    FoundCamera,
-    ObjectNumber,
-    Tracked,
-    build_tracked,
-)
+from .pose_previews import FloorPreview, ObjectNumber, PosePreviewSender, Show, no_preview
+from .solve_tracking import ACTOR_FRACTION, FoundCamera, Tracked, build_tracked
 
 
 class OtherCamera(NamedTuple):
@@ -49,7 +43,8 @@ def track_cameras(
     actors = find_actor_of_cameras(
         recordings, actor, progress=within(progress, 0.0, ACTOR_FRACTION)
     )
-    show(FloorPreview(actors[0].floor))
+    numbers = tuple(other.object_number for other in cameras.others)
+    show(FloorPreview(actors[0].floor, numbers))
     done = capture_seen_actor(
         actors,
         settings=tracking,
@@ -71,4 +66,6 @@ def track_cameras(
             cameras.others, done.alignments[1:], actors[1:], strict=True
         )
     )
-    return tracked._replace(cameras=found, first_shows_floor=actors[0].floor is not None)
+    return tracked._replace(
+        other_numbers=numbers, cameras=found, first_shows_floor=actors[0].floor is not None
+    )

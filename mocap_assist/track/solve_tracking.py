@@ -22,6 +22,7 @@ from ...solvers.signals import find_runs
 from ...solvers.workflows import capture_actor, capture_separated_people
 from .pose_previews import (
     FloorPreview,
+    ObjectNumber,
     PosePreviewReceiver,
     PosePreviewSender,
     Show,
@@ -38,10 +39,6 @@ class LowConfidenceRange(NamedTuple):
     joint: str
     first: int
     last: int
-
-
-ObjectNumber = tuple[str, int, str]
-"""Kind, session UID and name of an object, as in a `BlockReference`."""
 
 
 class FoundCamera(NamedTuple):
@@ -80,8 +77,10 @@ class Tracked(NamedTuple):
     """Images of the recording from one frame of the motion to the next."""
     others: tuple[Any, ...] = ()
     """The other people, each `Tracked`."""
+    other_numbers: tuple[ObjectNumber, ...] = ()
+    """The points of the other cameras that were solved."""
     cameras: tuple[FoundCamera, ...] = ()
-    """The other cameras."""
+    """The other cameras; none if the solve was stopped."""
     first_shows_floor: bool = True
     """Whether the floor is that of the first camera, where there are others."""
 
@@ -143,11 +142,10 @@ def partial_result(
     previews: Iterable[Any],
     recording: DepthRecording,
     settings: CaptureSettings,
-    several_cameras: bool = False,
 ) -> Tracked:
     """Return the result of a stopped `track_recording`, without planted feet.
 
-    Of `several_cameras`, it is the motion before the first.
+    Of several cameras, it is the motion before the first, whose `recording` is given.
 
     Raises InvalidMotionError if no pose was found yet.
     """
@@ -162,9 +160,10 @@ def partial_result(
         else "Stopped after the last frame: feet were not planted."
     )
     remarks = [remark]
-    if several_cameras:
+    if receiver.others:
         remarks.append("The cameras were not joined: this is the motion before the first.")
-    return build_tracked(first, captured.motion, captured, floor, tuple(remarks))
+    tracked = build_tracked(first, captured.motion, captured, floor, tuple(remarks))
+    return tracked._replace(other_numbers=receiver.others)
 
 
 def build_tracked(

@@ -189,7 +189,6 @@ def rescue_partial(
         partial_result,
         recording=recording_of(preview.data),
         settings=settings.tracking,
-        several_cameras=settings.choices.other_cameras,
     )
 
 
@@ -209,8 +208,8 @@ def write_tracked(
     Raises InvalidMotionError if the points show another recording than the one that was solved.
     """
     shown: Any = recording_of(preview.data)
-    if result.cameras:
-        shown = read_again(preview, result.cameras)
+    if result.other_numbers:
+        shown = read_again(preview, result.other_numbers)
     check_unchanged(preview, solved_digest, shown)
     with undo_on_error(bpy.context):
         others = [
@@ -284,11 +283,12 @@ def _report(result: Tracked) -> str:
 
 
 def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, object]:
+    used = [settings.choices, settings.tracking, settings.actor, settings.planting]
+    if result.cameras:
+        used.append(settings.alignment)
     return {
         "version": version(),
-        "settings": history.json_ready(
-            settings.choices, settings.tracking, settings.actor, settings.planting
-        ),
+        "settings": history.json_ready(*used),
         "recording": shown.path,
         "mean_residual_cm": mean_cm(result.residual),
         "coverage": result.coverage,

@@ -31,7 +31,12 @@ from .arguments import (
     settings_from_arguments,
     write,
 )
-from .batches import check_files_of_people, left_of_earlier_run, path_of_person
+from .batches import (
+    check_files_of_people,
+    check_is_no_person,
+    left_of_earlier_run,
+    path_of_person,
+)
 from .capture_options import add_capture_options, read_body
 from .follow_recording import follow_recording
 
@@ -40,6 +45,7 @@ def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) 
     """Capture one recording, write it and report the quality of the tracking."""
     arguments, messages = task.arguments, list[Remark]()
     found: CapturedMotion | FollowedMotion
+    check_is_no_person(task)
     if arguments.follow:
         found = follow_recording(task.source, arguments, prepared, within(progress, 0.0, 0.98))
     elif arguments.people == 1:
@@ -120,6 +126,7 @@ def _write_people(
 ) -> Outcome:
     """Write each person to a file of its own, the most visible one, the target, last."""
     assert task.target is not None
+    check_files_of_people(task, len(people))  # Another process may have written meanwhile.
     targets = [path_of_person(task.target, number) for number in range(1, len(people) + 1)]
     for written, index in enumerate(reversed(range(len(people)))):
         part = within(progress, written / len(people), (written + 1) / len(people))
@@ -132,7 +139,7 @@ def _write_people(
         for number, (target, outcome) in enumerate(zip(targets, outcomes, strict=True), start=1)
     ]
     lines += [
-        f"{path.name} is of an earlier run: it is no person of this take."
+        f"{path.name} was there before: it is no person of this take."
         for path in left_of_earlier_run(task.target, len(people))
     ]
     figures = {

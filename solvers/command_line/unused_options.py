@@ -29,7 +29,8 @@ def check_unused_options(arguments: argparse.Namespace) -> None:
     for names, is_used, reason in _conditions(arguments):
         given = [name for name in names if hasattr(arguments, name)]
         if given and not is_used:
-            option = f"--{given[0].replace('_', '-')}"
+            no = "no-" if getattr(arguments, given[0]) is False else ""
+            option = f"--{no}{given[0].replace('_', '-')}"
             raise InvalidSettingError(f"{option} has no effect {reason}. Leave it out.")
     if arguments.joints and arguments.output_folder is None:
         raise InvalidSettingError(

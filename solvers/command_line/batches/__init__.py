@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     )
     from .files_of_people import (
         check_files_of_people,
+        check_is_no_person,
         left_of_earlier_run,
         path_of_person,
         take_of_person,
@@ -36,6 +37,7 @@ __all__ = [
     "Screen",
     "already_made",
     "check_files_of_people",
+    "check_is_no_person",
     "check_output_folder",
     "draw_task",
     "escape_undecodable_names",

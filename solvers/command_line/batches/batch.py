@@ -24,6 +24,7 @@ from ..sharing import (
     is_of_another_build,
     run_hook,
 )
+from .files_of_people import n_people_of, path_of_person
 from .report import Entry, output_of, picture_file, picture_of, remove_picture, write_report
 from .screen import Screen
 
@@ -207,8 +208,8 @@ def made_record(task: Task) -> Record | None:
 
 def _lacks_person(target: Path, record: Record) -> bool:
     """Return whether a file of another person of the take is missing."""
-    people = record.figures.get("people", ())
-    return any(is_missing(target.with_name(Path(each["output"]).name)) for each in people)
+    numbers = range(2, n_people_of(record) + 1)
+    return any(is_missing(path_of_person(target, number)) for number in numbers)
 
 
 def current_record(task: Task) -> Record | None:

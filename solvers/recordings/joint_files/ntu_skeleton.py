@@ -124,6 +124,7 @@ def _with_people_followed(
         part = within(progress, 0.7 * (number - 1) / len(keys), 0.7 * number / len(keys))
         try:
             rows = _read_joints(lines, found, path, part)
+            checked_states(rows[..., -1], path)
         except InvalidFileError as error:
             damaged[key] = error
             progress(0.7, Remark(f"Body {number} is damaged and is left out: {error}"))

@@ -1,9 +1,11 @@
 """Track with the other selected recordings: one body before several cameras."""
 
 import json
+import pickle
 
 import numpy as np
 import pytest
+from modal_events import event, nothing_is_left, wait
 
 FAST_SETTINGS = {
     "backward": False, "refine": False, "plant_feet": False, "other_cameras": True,
@@ -87,7 +89,7 @@ def test_two_cameras_make_one_motion_and_the_second_is_placed(takes, imported, b
     assert shown.start == pytest.approx(1.0 + LATE_FRAMES, abs=0.6)
     assert shown.step == pytest.approx(2.0)
     (camera,) = json.loads(action["mocap_assist_captured"])["cameras"]
-    assert camera["object"] == "side"
+    assert camera["object"] == "side" and camera["recording"].endswith("side.npz")
 
 
 @pytest.fixture
@@ -111,7 +113,7 @@ def write_joined(load, blank):
             first=0, motion=body.body_motion(model, poses, 30.0, floor), body=model,
             floor=floor, confidence={}, residual=np.full(N_FRAMES, 0.01), coverage=1.0,
             restarts=(), low_confidence=(), remarks=(), cameras=(found,),
-            first_shows_floor=first_shows_floor,
+            first_shows_floor=first_shows_floor, other_numbers=(found.object_number,),
         )  # fmt: skip
         settings = tracking.TrackBundle(
             tracking.TrackChoices(other_cameras=True),
@@ -165,6 +167,64 @@ def test_points_without_floor_move_to_those_that_stand_on_it(
     assert "The points of camera 1, front, were moved to its position." in message
 
 
+def test_points_of_a_camera_move_with_their_parents_and_against_keys(
+    takes, imported, blank, write_joined
+):
+    front, side = imported(takes / "front.npz", takes / "side.npz")
+    stood = np.diag([1e-3, 1e-3, 1e-3, 1.0])  # a scene in kilometers
+    stood[:3, 3] = 3e-3, 1e-3, 0.0
+    front.parent = side  # which moves it, though it stands where it should
+    placed([side, front], blank, np.eye(4).tolist(), stood.tolist())
+
+    message = write_joined(front, side, first_shows_floor=True)
+
+    blank.context.view_layer.update()
+    right = stood @ np.linalg.inv(SIDE)
+    np.testing.assert_allclose(front.matrix_world, stood, atol=1e-6)
+    np.testing.assert_allclose(side.matrix_world, right, atol=1e-6)
+    assert message.endswith("camera 2, side, were moved to its position.")
+    away = right.copy()
+    away[1, 3] += 9e-5  # 9 cm
+    placed([side, front], blank, away.tolist(), stood.tolist())
+    side.keyframe_insert("location")
+    message = write_joined(front, side, first_shows_floor=True)
+    assert "camera 2, side, are not at its position: keys, a constraint" in message
+
+
+def test_cameras_that_are_read_again_are_those_that_were_solved(takes, imported, load):
+    front, *_ = imported(takes / "front.npz", takes / "side.npz", takes / "side.npz")
+    cameras = load("mocap_assist.track.other_cameras")
+    fingerprint = load("mocap_assist.runtime.redo").fingerprint
+    solved = cameras.read_cameras(front)
+    assert [each.object_number[-1] for each in solved.others] == ["side", "side.001"]
+
+    sent = pickle.loads(pickle.dumps(tuple(each.object_number for each in solved.others)))
+
+    assert fingerprint(cameras.read_again(front, sent)) == fingerprint(solved)
+
+
+def test_esc_keeps_what_was_tracked_before_the_first_camera(
+    takes, imported, load, press_button, window, blank
+):
+    imported(takes / "front.npz", takes / "side.npz")
+    tracking = load("mocap_assist.track.tracking")
+    settings = tracking.TrackBundle(
+        tracking.TrackChoices(plant_feet=False, other_cameras=True),
+        load("solvers.depth_tracking.capturing").CaptureSettings(backward=False, refine=False),
+        load("solvers.depth_scene").ForegroundSettings(),
+        load("solvers.denoising").PlantSettings(),
+        escaping=tracking.EscChoices(keep_on_esc=True),
+    )
+    button = press_button("track_depth", settings)
+    wait(button, window, until=lambda: button._view and button._view.drawn)
+
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"FINISHED"}
+
+    ((_, message),) = window.reports
+    assert f"of {N_FRAMES} frames tracked. The cameras were not joined" in message
+    assert blank.context.object.name == "front tracked" and nothing_is_left(window)
+
+
 def test_deleted_camera_is_named_and_nothing_is_added(takes, imported, blank, write_joined):
     front, side = imported(takes / "front.npz", takes / "side.npz")
     kept = type("Kept", (), {"session_uid": side.session_uid, "name": "side"})
@@ -216,3 +276,21 @@ def test_command_joins_the_files(takes, load, tmp_path, monkeypatch, command):
     (cameras,) = solved
     assert cameras.first.frame_rate == 15.0
     assert [each.recording.frame_rate for each in cameras.others] == [30.0]
+    for refused, sentence in (
+        ([*words, "--all-people"], "Leave out --all-people or --other-cameras."),
+        (words[1:], "--other-cameras joins recordings of one take."),
+        ([words[0], *words], "The same recording is named twice."),
+    ):
+        status, _, err = command("capture", *refused, "--output", tmp_path / "out.blend")
+        assert status == 2 and sentence in err
+    assert len(solved) == 1
+
+
+def test_command_takes_the_cameras_in_the_order_of_their_names(load, tmp_path, monkeypatch):
+    """The first one has the frames of the motion, also if the next is a folder."""
+    verb = load("mocap_assist.batch.capture_verb")
+    monkeypatch.setattr(verb, "is_take", lambda path: path.suffix == "")
+
+    given = [tmp_path / "b.npz", tmp_path / "folder", tmp_path / "a.npz"]
+
+    assert [path for each in given for path in verb._recordings_of(each)] == given

@@ -20,7 +20,7 @@ def take(tmp_path):
     [
         (("--max-delay", "0"), "--max-delay has no effect without --follow. Leave it out."),
         (("--max-offset", "9"), "--max-offset has no effect without --camera."),
-        (("--no-feet", "--no-move-root"), "--move-root has no effect with --no-feet."),
+        (("--no-feet", "--no-move-root"), "--no-move-root has no effect with --no-feet."),
         (("--follow", "--smoothing", "2"), "--smoothing has no effect with --follow."),
         (("--method", "wei", "--backward"), "--backward has no effect with --method wei."),
         (("--joints",), "--joints has no effect without --output-folder."),
@@ -80,8 +80,37 @@ def test_result_of_another_take_is_not_replaced_by_a_person(call, take, tmp_path
     assert other.read_text() == "the only person of another take"
 
 
-def test_people_of_an_earlier_run_are_listed(tmp_path):
-    for name in ("a.bvh", "a_person2.bvh", "a_person3.bvh", "a_person3.csv", "b_person3.bvh"):
-        (tmp_path / name).touch()
+def test_take_does_not_replace_a_person_of_another_take(call, take, tmp_path):
+    folder, person = tmp_path / "out", tmp_path / "two_person2.npz"
+    person.write_bytes(take.read_bytes())
+    records = Records(folder)
+    records.prepare()
+    (folder / "two_person2.bvh").write_text("the second person of two")
+    people = [{"output": f"Z:\\\\out\\\\{name}"} for name in ("two.bvh", "two_person2.bvh")]
+    given = {"verb": "capture", "inputs": [], "output": "two.bvh", "fingerprint": {}}
+    records.write(Record(**given, figures={"people": people}))
+    words = ("capture", person, "--output-folder", folder)
 
-    assert left_of_earlier_run(tmp_path / "a.bvh", 2) == [tmp_path / "a_person3.bvh"]
+    status, _, err = call(*words)
+
+    assert status == 2 and "two_person2.bvh is a person of two.bvh, and would be" in err
+    assert (folder / "two_person2.bvh").read_text() == "the second person of two"
+    records.write(Record(**given, figures={"people": people[:1]}))
+    assert "is a person of" not in call(*words)[2]
+
+
+def test_only_names_that_people_get_are_files_of_people(call, take, tmp_path):
+    for name in ("_person1", "_person02", "_person3", "_person2_person2"):
+        (tmp_path / f"out{name}.bvh").write_text("precious")
+
+    _, _, err = call("capture", take, tmp_path / "out.bvh", "--people", "2")
+
+    assert "would be replaced" not in err  # but that no person is visible
+
+
+def test_people_that_this_run_has_not_found_are_listed(tmp_path):
+    for name in ("a*", "a*_person2", "a*_person3", "a*_person1", "ab_person3"):
+        (tmp_path / f"{name}.bvh").touch()
+    (tmp_path / "a*_person3.csv").touch()
+
+    assert left_of_earlier_run(tmp_path / "a*.bvh", 2) == [tmp_path / "a*_person3.bvh"]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from drawn_bodies import CAMERA, NATURAL, drawn, waving
 
+from solvers.command_line import capture_verb
 from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.ray_capsules import cast_rays
 from solvers.depth_tracking.body.segment_kinematics import segment_frames
@@ -49,6 +50,24 @@ def test_each_person_is_written_to_a_file_and_a_second_run_keeps_both(
     written[1].unlink()
     assert "already_made" not in call(*words, *FAST_OPTIONS)[1]
     assert written[1].exists()
+
+
+def test_person_that_another_process_wrote_meanwhile_is_not_replaced(
+    call, two_people, tmp_path, monkeypatch
+):
+    captured, other = capture_verb.capture_every_person, tmp_path / "out_person2.bvh"
+
+    def capture(*arguments, **options):
+        other.write_text("of another process")
+        return captured(*arguments, **options)
+
+    monkeypatch.setattr(capture_verb, "capture_every_person", capture)
+    words = ("capture", two_people, tmp_path / "out.bvh", "--people", "all")
+
+    status, _, err = call(*words, *FAST_OPTIONS)
+
+    assert status == 2 and f"{other} exists, and would be replaced" in err
+    assert other.read_text() == "of another process"
 
 
 def test_numbers_of_people_are_checked(call, two_people, tmp_path):

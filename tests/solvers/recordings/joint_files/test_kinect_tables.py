@@ -123,6 +123,27 @@ def test_ntu_opens_the_other_bodies_where_one_is_damaged(write):
         open_ntu_skeleton(write(text.replace("278.3", "x")))
 
 
+@pytest.mark.parametrize("position", [0, 1, 2])
+def test_ntu_body_with_an_impossible_state_is_damaged(write, position):
+    bodies = [moving(3, 25, seed=seed) for seed in (0, 50, 90)]
+    bodies[position][1, 7, 3] = 9
+    ids = (ONE, TWO, "72057594037944741")
+    text = ntu([dict(zip(ids, frame, strict=True)) for frame in zip(*bodies, strict=True)])
+    remarks = []
+
+    opened = open_ntu_skeleton(
+        write(text), scale=1.0, progress=collect_remarks(unwatched, remarks)
+    )
+
+    kept = [body for index, body in enumerate(bodies) if index != position]
+    assert len(opened.listed) == 2
+    for index, body in enumerate(kept):
+        assert_allclose(opened.read(index, unwatched).tracks.positions, upright(body))
+    (remark,) = remarks
+    assert remark.startswith(f"Body {position + 1} is damaged and is left out: ")
+    assert "tracking states other than 0, 1 and 2" in remark
+
+
 def test_kinect_csv_with_blank_lines_and_without_times(write):
     values = moving(5, 25)
     values[2, 4, 3] = 0
