@@ -117,7 +117,7 @@ def test_each_body_becomes_a_clip(recordings, tmp_path, capsys):
     assert json.loads(capsys.readouterr().out)["matches"][0]["clip"] == "duo 8"
 
 
-def test_names_that_no_file_tells_apart_get_numbers():
+def test_equal_names_of_files_get_numbers():
     """Signs that no file name may have are replaced; the names of some disks have no case."""
     names = ["Anna:1", "Anna 1", "ANNA/1", "../Anna", "a" * 50 + "b", "a" * 50 + "c", "é"]
 
