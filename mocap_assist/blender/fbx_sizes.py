@@ -11,9 +11,10 @@ VERSION_OFFSET, FIRST_NODE = 23, 27
 LONG_HEADERS_VERSION = 7500
 ITEM_BYTES = {b"f": 4, b"d": 8, b"l": 8, b"i": 4, b"b": 1, b"c": 1}
 PLAIN_BYTES = {b"Y": 2, b"C": 1, b"B": 1, b"I": 4, b"F": 4, b"D": 8, b"L": 8}
-MAX_UNFOLDING = 8
+MAX_UNFOLDING = 32
 """Bytes of arrays for each byte of a file, a ratio. With the next it bounds the memory: curves
-that do not move are stored in few bytes, so that a long take is unfolded 16 times."""
+that do not move are stored in few bytes, so that a long take is unfolded 16 times. Twice that
+is read, however long the take is."""
 UNFOLDED_BYTES = 1 << 30
 """Bytes of arrays that a file of any size may have: 20 minutes of 100 bones at 120 Hz whose
 curves for location and scale do not move have as many in them."""

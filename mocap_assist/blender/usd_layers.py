@@ -12,6 +12,9 @@ NETWORK = re.compile(r"[\\/]{2}|[A-Za-z][\w+.-]+:[\\/]{2}")
 """The begin of a path on another computer: a share of Windows, or an address. A drive is one
 letter."""
 LAYER_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
+EXPRESSION, QUOTES = "`", "`'\""
+"""The begin of a path that variables become part of, which may be any, and what surrounds
+it."""
 MAX_SHOWN = 80
 
 
@@ -36,8 +39,9 @@ def refuse_other_sources(path: str) -> None:
         named = composed.union(*UsdUtils.ExtractExternalReferences(layer.identifier))
         for name in sorted(named):  # pictures and clips too; pictures are not opened
             found = Sdf.ComputeAssetPathRelativeToLayer(layer, name)
-            is_layer = name in composed or name.lower().endswith(LAYER_SUFFIXES)
-            if (is_layer and NETWORK.match(name)) or _is_no_file(found):
+            is_layer = name in composed or name.rstrip(QUOTES).lower().endswith(LAYER_SUFFIXES)
+            is_elsewhere = NETWORK.match(name) or name.startswith(EXPRESSION)
+            if (is_layer and is_elsewhere) or _is_no_file(found):
                 raise InvalidFileError(
                     f"{path} refers to {name[:MAX_SHOWN]}, which is not a file on this"
                     " computer. Flatten it into one USD file."

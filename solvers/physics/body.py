@@ -39,6 +39,10 @@ MIN_FRAME_RATE_HZ = 5.0
 """Minimum frame rate. It guards takes with a few poses a second, between which no path is known
 (`test_simulate_raises_for_a_low_frame_rate`)."""
 
+MAX_JOINTS = 250
+"""Maximum number of simulated joints. It bounds the run time, which grows with their cube:
+the engine needs 0.2 s to build a chain of 125, 1.7 s for one of 250."""
+
 MIN_LENGTH_M = 0.01
 """Meters, for legs of 0.9 m: a shorter segment is a sphere. It guards rigs with bones of zero
 length, which have no direction (`test_other_skeleton_is_simulated_bone_by_bone`)."""
@@ -154,8 +158,14 @@ def check_size(body: PhysicsBody, frame_rate: float) -> None:
     Raises
     ------
     InvalidMotionError
-        The body is implausibly large or small, or the frame rate is too low.
+        The body is implausibly large or small, has too many joints, or the frame rate is too
+        low.
     """
+    if len(body.joints) > MAX_JOINTS:
+        raise InvalidMotionError(
+            f"Physics simulates {MAX_JOINTS} bones at most, and {len(body.joints)} of this"
+            " armature move. Choose the joints of a body in the humanoid map."
+        )
     leg = HUMAN_LEG_LENGTH_M * body.size
     if not MIN_SIZE <= body.size <= MAX_SIZE:
         raise InvalidMotionError(

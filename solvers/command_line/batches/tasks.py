@@ -4,6 +4,7 @@ import argparse
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from itertools import count
 from pathlib import Path
 
 from ...errors import InvalidFileError, InvalidSettingError
@@ -139,11 +140,14 @@ def _tasks_without_folder(verb: Verb, arguments: argparse.Namespace) -> list[Tas
             " a folder for the results with --output-folder DIR."
         )
     source, target = files
-    _check_overwriting([source], [target])
-    check_target(target, _allowed_extensions(verb))
+    bodies = _bodies(source, arguments)
+    targets = [_with_ending(target, ending) for _, ending in bodies]
+    _check_overwriting([source], targets)
+    for each in targets:
+        check_target(each, _allowed_extensions(verb))
     return [
-        Task((source,), _with_ending(target, ending), of_body)
-        for of_body, ending in _bodies(source, arguments)
+        Task((source,), each, of_body)
+        for (of_body, _), each in zip(bodies, targets, strict=True)
     ]
 
 
@@ -226,11 +230,23 @@ def _bodies(
     names = bodies_in(source, arguments) if getattr(arguments, "body", None) else []
     if len(names) < 2:
         return [(arguments, "")]
-    return [(with_body(arguments, name), f"_{_file_name(name)}") for name in names]
+    files = _file_names(names)
+    return [
+        (with_body(arguments, name), f"_{file}")
+        for name, file in zip(names, files, strict=True)
+    ]
 
 
-def _file_name(name: str) -> str:
-    return re.sub(r"[^\w-]", "_", name)[:MAX_NAME_LETTERS]
+def _file_names(names: Sequence[str]) -> list[str]:
+    """Return what a file may be named after each body; equal ones get numbers."""
+    made: list[str] = []
+    taken: set[str] = set()
+    for name in names:
+        plain = re.sub(r"[^\w-]", "_", name)[:MAX_NAME_LETTERS]
+        numbered = (plain if n == 1 else f"{plain}_{n}" for n in count(1))
+        made.append(next(each for each in numbered if each.casefold() not in taken))
+        taken.add(made[-1].casefold())
+    return made
 
 
 def _prepare_failure(source: Path, target: Path, extensions: Mapping[str, str]) -> str:

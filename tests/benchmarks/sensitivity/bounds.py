@@ -20,6 +20,7 @@ BOUNDS: dict[str, tuple[str, ...]] = {
         "depth_tracking/tracking/register_pose._MIN_STEP",
         "motion/humanoid/points_skeleton.N_ITERATIONS",
         "motion/skeletons/resampling.ROWS_PER_BLOCK",
+        "physics/body.MAX_JOINTS",
         "physics/plant_target.NEAR_M",
         "reconstruction/pose_completion/complete_postures.CORRECTION_FRAMES",
         "reconstruction/pose_completion/complete_postures.CORRECTION_ROUNDS",

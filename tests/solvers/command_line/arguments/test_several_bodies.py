@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from joint_files import moving, ntu
 
+from solvers.command_line.batches import tasks
 from solvers.command_line.run import run
 from solvers.command_line.verbs import VERBS
 from solvers.recordings import read_recording
@@ -114,3 +115,23 @@ def test_each_body_becomes_a_clip(recordings, tmp_path, capsys):
     words = ["find", str(tmp_path / "duo.txt"), library, "--body", "8", "--json"]
     assert main(words) == 0
     assert json.loads(capsys.readouterr().out)["matches"][0]["clip"] == "duo 8"
+
+
+def test_equal_names_of_files_get_numbers():
+    """Signs that no file name may have are replaced; the names of some disks have no case."""
+    names = ["Anna:1", "Anna 1", "ANNA/1", "../Anna", "a" * 50 + "b", "a" * 50 + "c", "é"]
+
+    made = tasks._file_names(names)
+
+    assert made == ["Anna_1", "Anna_1_2", "ANNA_1_3", "___Anna", "a" * 40, "a" * 40 + "_2", "é"]
+
+
+def test_no_body_is_written_to_the_recording(crowd, tmp_path, capsys):
+    """The recording is named as the output of its second body would be."""
+    recording = crowd.rename(tmp_path / "out_2.trc")
+    before = recording.read_bytes()
+
+    assert main(["convert", str(recording), str(tmp_path / "out.trc"), "--body", "all"]) != 0
+
+    assert "would be overwritten" in capsys.readouterr().err
+    assert recording.read_bytes() == before
