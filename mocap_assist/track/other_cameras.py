@@ -115,7 +115,7 @@ def place_cameras(
         return []
     scene_from_first = scene_from_first_camera(preview, result)
     shown, rate = shown_by(preview.data), recording_of(preview.data).frame_rate
-    places = [_Place(1, preview, scene_from_first, shown)]
+    targets = [_Place(1, preview, scene_from_first, shown)]
     for number, each in enumerate(result.cameras, start=2):
         other = _object_of(each.object_number)
         own = shown_by(other.data)
@@ -126,11 +126,11 @@ def place_cameras(
             step=frames_per_second / recording_of(other.data).frame_rate,
         )
         matrix = scene_from_first @ Matrix(each.first_from_camera.tolist())
-        places.append(_Place(number, other, matrix, in_time))
+        targets.append(_Place(number, other, matrix, in_time))
     # Parents first, as they move their children.
-    places.sort(key=lambda place: (_n_parents(place.preview), place.number))
-    said = {place.number: _move(place, scene.frame_current_final) for place in places}
-    return [said[number] for number in sorted(said) if said[number]]
+    targets.sort(key=lambda place: (_n_parents(place.preview), place.number))
+    sentences = {place.number: _move(place, scene.frame_current_final) for place in targets}
+    return [sentences[number] for number in sorted(sentences) if sentences[number]]
 
 
 class _Place(NamedTuple):
