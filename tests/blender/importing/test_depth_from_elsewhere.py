@@ -99,7 +99,7 @@ def test_the_steepest_step_shows_an_end_of_the_recording(archive, bring, blank, 
 def test_the_other_previews_follow_when_one_raises(archive, bring, blank, load, monkeypatch):
     meshes = [bring(archive).data for _ in range(2)]
     preview = load("mocap_assist.depth.depth_preview")
-    shown, show = [], preview._show
+    shown, show = [], preview.show_points
 
     def fail_once(mesh, frame):
         shown.append(mesh)
@@ -107,7 +107,7 @@ def test_the_other_previews_follow_when_one_raises(archive, bring, blank, load, 
             raise IndexError
         show(mesh, frame)
 
-    monkeypatch.setattr(preview, "_show", fail_once)
+    monkeypatch.setattr(preview, "show_points", fail_once)
 
     blank.context.scene.frame_set(3)
 

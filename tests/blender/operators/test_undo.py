@@ -10,6 +10,7 @@ ELSEWHERE = {
     "mocap_assist.show_raw": "a held key",
     "mocap_assist.listen": "a sender",
     "mocap_assist.record_live": "a sender",
+    "mocap_assist.track_live": "a recorder",
     "mocap_assist.export_take": "a file to write",
     "mocap_assist.index_library": "clips",
     "mocap_assist.keep_current": "clips",
