@@ -38,11 +38,10 @@ def as_blender_wants(pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
     """Return red, green, blue and alpha from 0 to 1, the lowest row first.
 
     The figures have one color, on a transparent card: a lighter limb is more transparent, and
-    so fainter on any background.
+    so fainter on any background. Colors are multiplied by alpha, as Blender draws previews.
     """
     opacity = 1.0 - pixels[::-1, :, :1].astype(np.float32) / np.float32(255.0)
-    color = np.broadcast_to(np.array(FIGURE_COLOR, dtype=np.float32), (*opacity.shape[:2], 3))
-    return np.concatenate([color, opacity], axis=-1)
+    return opacity * np.array([*FIGURE_COLOR, 1.0], dtype=np.float32)
 
 
 def give_picture(action: bpy.types.Action, pixels: NDArray[np.uint8]) -> None:

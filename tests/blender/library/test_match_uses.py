@@ -159,9 +159,10 @@ def test_action_becomes_an_asset_with_catalog_tags_and_preview(
     assert tuple(action.preview.image_size) == (128, 128)
     pixels = np.empty(128 * 128 * 4, np.float32)
     action.preview.image_pixels_float.foreach_get(pixels)
-    opacity = pixels.reshape(-1, 4)[:, 3]
+    colors, opacity = pixels.reshape(-1, 4)[:, :3], pixels[3::4]
     assert 0.02 < (opacity > 0.2).mean() < 0.4 and opacity.max() == 1.0
     assert opacity[:128].max() == 0.0  # a transparent margin
+    assert (colors <= opacity[:, None]).all()  # else Blender draws the card as a light square
 
 
 def test_asset_is_the_result_on_a_strip_and_the_dialog_names_it(newcomer, blank):
